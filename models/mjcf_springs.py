@@ -24,8 +24,7 @@ class SpringTendon:
 
     ``joints`` are those whose coordinates it adds up, with their signs, or one that it adds 0
     times; none where it runs between points. ``sense`` is -1 where the length at which it is slack
-    would be negative otherwise: MuJoCo
-    takes -1 for "as the model stands".
+    would be negative otherwise: MuJoCo takes -1 for "as the model stands".
     """
 
     spring: Spring

@@ -17,6 +17,7 @@ from models.array import Array
 from models.controlled import Controlled
 from models.elastic import Shape
 from models.motion import Motion
+from models.rigid import with_rigid_links
 from models.scene import Scene
 from reports.describe.elastic_words import described
 
@@ -96,11 +97,6 @@ class ElasticCourse:
         return None if acting is None or rigid is None else (acting.torque, rigid.torque)
 
 
-def rigid_of(scene: Scene) -> Scene:
-    """The scene with its elastic links as rigid ones."""
-    return replace(scene, elastic={}, start=replace(scene.start, shape=None))
-
-
 def closely_sampled(scene: Scene, until_s: float) -> Array:
     """Instants from 0 to a time [s], both included, close enough to draw, and to find extremes."""
     count = IN_A_PERIOD * until_s / scene.driver.law.period_s
@@ -130,7 +126,7 @@ def drawn_course(motion: ElasticHistory, time_s: Array) -> ElasticCourse:
 
 def _with_rigid_links(motion: ElasticHistory, time_s: Array) -> Motion:
     """The same mechanism, driven or let go alike, with its forces where it is driven."""
-    scene = rigid_of(motion.scene)
+    scene = with_rigid_links(motion.scene)
     if scene.is_free:
         return release(scene, motion.until_s).at(time_s, bound=False)
     acting = forces(scene, time_s, bound=False, skip_dead_points=True)

@@ -15,7 +15,7 @@ from reports.face.simulation import Simulation
 from reports.face.solution import Solution
 from reports.logs.channel import OwnLog
 from reports.logs.map_file import Map, map_of, read_map
-from reports.plan.elastic import under_control
+from reports.plan.free import under_control
 from sim.engine import Run
 
 if TYPE_CHECKING:

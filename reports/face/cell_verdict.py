@@ -25,7 +25,7 @@ from reports.output.provenance import provenance
 from reports.plan.chosen import refuse_unfollowed
 from reports.plan.elastic import given_of, held_steps, refuse_unelastic
 from reports.plan.forces import refuse_forceless
-from reports.plan.free import refuse_unreleased
+from reports.plan.free import refuse_giving_way, refuse_unreleased
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import counted
@@ -109,6 +109,7 @@ def check(
         which its motion is not determined.
     """
     scene = scene_of(scene)
+    refuse_giving_way(scene, "`run` runs it, and `judge` judges that run")
     name, profile = engine_of(engine, profile, settings)
     driven = cast(Drive, one_of(drive, "--drive", DRIVES))
     limits = tolerances_of(tolerance, "tolerance")

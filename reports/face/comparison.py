@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.errors import CrankcheckError
-from models.scene import Same, Scene
+from models.scene import Scene
 from reports.compare import compare as comparing
-from reports.compare.beside import Truth, truth_of
+from reports.compare.beside import Truth
 from reports.compare.errors import Error, Errors
+from reports.compare.run_truth import run_truth
 from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
 from reports.face.arguments import SceneLike, is_true, one_of, scene_of
 from reports.face.shown import Shown
@@ -142,23 +143,11 @@ def compare(
 
 def _truth_of_run(scene: Scene, run: Run) -> Truth:
     """The truth of a scene as a run has it. Raises CrankcheckError."""
-    bent = getattr(run, "segments", SEGMENTS), getattr(run, "springs", "plain")
-    if scene.elastic and run.drive == "free":
-        from reports.compare.elastic.released_truth import released_elastic_truth  # where they bend
-
-        scene = scene_of_run(scene, run)
-        return released_elastic_truth(scene, *bent, run.steps, run.dt_s)
-    if scene.elastic:
-        from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend alone
-
-        return elastic_truth(scene, *bent, run.dt_s * run.steps)
-    if run.drive != "free":
-        return truth_of(Same(scene))
-    from reports.compare.free.free_truth import free_truth  # for what is let go alone
-
-    scene = scene_of_run(scene, run)
-    refuse_unreleased(scene, run.dt_s * run.steps)
-    return free_truth(scene, run.steps, run.dt_s)
+    scene, free = scene_of_run(scene, run), run.drive == "free"
+    if free and not scene.elastic:
+        refuse_unreleased(scene, run.dt_s * run.steps)
+    given = getattr(run, "segments", SEGMENTS), getattr(run, "springs", "plain")
+    return run_truth(scene, run.steps, run.dt_s, free=free, given=given)
 
 
 def refuse_without_forces(run: Run, *, forces: bool) -> None:

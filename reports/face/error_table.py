@@ -40,7 +40,7 @@ def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> 
             f"{math.degrees(worst.driver_at_maximum_rad):.1f}",
         )
     console.print(table, "")
-    said = held_to(free=errors.free is not None, elastic=errors.elastic is not None)
+    said = held_to(free=errors.free is not None, elastic=errors.elastic)
     console.print(said, style="dim", highlight=False)
     for note in errors.notes:
         console.print(note, style="yellow", highlight=False, markup=False)

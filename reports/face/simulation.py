@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, cast
 
 from models.errors import CrankcheckError
 from models.released import let_go
-from models.scene import Same, Scene
-from reports.compare.beside import Truth, truth_of
+from models.scene import Scene
+from reports.compare.beside import Truth
 from reports.compare.free.kept_motion import released_state
+from reports.compare.run_truth import run_truth
 from reports.face.arguments import (
     SceneLike,
     engine_of,
@@ -24,7 +25,8 @@ from reports.face.shown import Shown
 from reports.face.solution import ROWS, drawn, thinned
 from reports.face.told import told_at_the_call
 from reports.judge.cell import SEGMENTS, Springs
-from reports.plan.elastic import GivenAs, counted_released, given_of, held_steps, under_control
+from reports.plan.elastic import GivenAs, counted_released, given_of, held_steps
+from reports.plan.free import under_control
 from reports.plan.steps import TURNS, counted, counted_free
 from sim import run as stepping
 from sim.engine import Drive, Run, SettingValue
@@ -238,17 +240,9 @@ def simulated(
 def _truth(scene: Scene, bent: GivenAs, dt_s: float, steps: int) -> Truth | None:
     """What a run of so many steps starts from, None of one with rigid links that is let go. Raises
     CrankcheckError."""
-    if scene.elastic and scene.is_free:
-        from reports.compare.elastic.released_truth import released_elastic_truth  # where they bend
-
-        return released_elastic_truth(scene, bent.segments, bent.springs, steps, dt_s)
-    if scene.is_free:
+    if scene.is_free and not scene.elastic:
         return None
-    if scene.elastic:
-        from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend alone
-
-        return elastic_truth(scene, bent.segments, bent.springs, dt_s * steps)
-    return truth_of(Same(scene))
+    return run_truth(scene, steps, dt_s, free=scene.is_free, given=(bent.segments, bent.springs))
 
 
 def _refuse_other_length(

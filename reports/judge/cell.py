@@ -10,11 +10,12 @@ from typing import Any, Literal
 
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
-from models.scene import Same, Scene
+from models.scene import Scene
 from reports.compare.asked import not_asked_for
-from reports.compare.beside import Truth, truth_of
+from reports.compare.beside import Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Departure
+from reports.compare.run_truth import run_truth
 from reports.judge.halving import Followed, followed
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Evidence, Finding
@@ -74,23 +75,14 @@ class Cell:
     @property
     def truth(self) -> Truth:
         """What it is held to. Raises CrankcheckError for a scene that can not be let go."""
-        if self.scene.elastic and self.drive == "free":
-            from reports.compare.elastic.released_truth import (  # where links bend
-                released_elastic_truth,
-            )
-
-            given = self.segments, self.springs, self.steps, self.dt_s
-            return released_elastic_truth(self.scene, *given, self.tolerance)
-        if self.scene.elastic:
-            from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend
-
-            until_s = self.dt_s * (self.steps + 1)
-            return elastic_truth(self.scene, self.segments, self.springs, until_s)
-        if self.drive == "free":
-            from reports.compare.free.free_truth import free_truth  # for what is let go alone
-
-            return free_truth(self.scene, self.steps, self.dt_s, self.tolerance)
-        return truth_of(Same(self.scene))
+        return run_truth(
+            self.scene,
+            self.steps,
+            self.dt_s,
+            free=self.drive == "free",
+            given=(self.segments, self.springs),
+            tolerance=self.tolerance,
+        )
 
     @property
     def shown_truth(self) -> Truth:

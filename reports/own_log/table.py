@@ -224,11 +224,13 @@ def footer(judged: JudgedLog, facts: Mapping[str, str]) -> list[str]:
         "fitted": "a driver fitted to the log",
         "logged": "the logged angle of the driver (geometry alone)",
     }
-    scene, moved = judged.scene, f" moved by {drives[judged.drive]}"
+    elastic = judged.errors.elastic if judged.errors else None
     time_s = judged.log.time_s
     step = f"step {judged.step_s:g} s" if judged.step_s else "no step known"
     return [
-        held_to(free=scene.is_free, elastic=bool(scene.elastic), moved=moved),
+        held_to(
+            free=judged.scene.is_free, elastic=elastic, moved=f" moved by {drives[judged.drive]}"
+        ),
         f"t = {time_s[0]:.6g} to {time_s[-1]:.6g} s, {step}; limits from "
         f"{', '.join(dict.fromkeys(row.limit.origin for row in log_rows(judged)))}.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from models.errors import CrankcheckError, shown
 from reports.plan.chosen import chosen_engines
 from reports.plan.free import free_names
-from reports.plan.steps import FREE_STEPS_S
+from reports.plan.steps import FREE_STEPS_S, TIMES_HELD
 from reports.plan.study import Study, StudyValue, Variant
 from sim.registry import engine
 from sim.settings import profile_of
@@ -99,12 +99,14 @@ def _free_lines(study: Study, choice: StudyChoice) -> dict[str, object]:
         raise CrankcheckError(
             f"{option}: what is let go has no turns; give --dt and --duration, in seconds"
         )
+    held = study.times_held or ([] if study.dt_s else list(TIMES_HELD))
     return {
         "free": True,
         "drive": "prescribed",
         "steps_per_turn": [],
         "scenes": free_names(choice.scenes or (study.scenes if study.free else ())),
         "dt_s": list(choice.dt_s) or study.dt_s or list(FREE_STEPS_S),
+        "times_held": [] if choice.dt_s else held,
         "duration_s": study.duration_s if choice.duration_s is None else choice.duration_s,
     }
 

@@ -7,13 +7,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from models.controlled import Controlled
 from models.errors import CrankcheckError, EngineError, shown
 from models.motion import State
 from models.scene import Scene
 from reports.judge.cell import SEGMENTS, Springs
 from reports.plan.chosen import refuse_unfollowed
-from reports.plan.free import LOOK
+from reports.plan.free import LOOK, gives_way
 from reports.plan.steps import (
     FREE_STEP_S,
     LEAST_STEPS,
@@ -29,9 +28,6 @@ if TYPE_CHECKING:
 SPRINGS: tuple[Springs, ...] = ("plain", "corrected", "beam")
 MOST_SEGMENTS = 64
 """Their exact chain takes minutes, and a turn 100 000 steps."""
-STEADY = 1.5
-"""The step times the fastest frequency of the segments, in the steps that are taken if none are
-asked for: explicit methods come apart from 2 on, or from 2.8."""
 SWINGS = 5
 """Of the slowest elastic link of what is let go, in a run for which no time is asked for."""
 PART = 360
@@ -100,10 +96,11 @@ def rigid_alone(what: str) -> Callable[[Scene], None]:
 
     def check(scene: Scene) -> None:
         if scene.elastic:
+            free = "--free " * (scene.is_free or gives_way(scene))
             raise CrankcheckError(
                 f"{scene.name}: {', '.join(scene.elastic)} bends, and `crankcheck {what}` takes "
-                f"rigid links; `crankcheck sweep {scene.name} --segments 4,8,16 -o DIR` finds the "
-                "cheapest settings of elastic ones, and `verify` judges them"
+                f"rigid links; `crankcheck sweep {scene.name} {free}--segments 4,8,16 -o DIR` "
+                "finds the cheapest settings of elastic ones, and `verify` judges them"
             )
         refuse_unfollowed(scene)
 
@@ -115,17 +112,6 @@ def segmented(scene: Scene) -> tuple[Scene, State]:
     Raises CrankcheckError as the truth of such a scene."""
     truth = _truth_of_start(scene, SEGMENTS, SPRINGS[0])
     return truth.given, truth.start
-
-
-def under_control(scene: Scene) -> Scene:
-    """A scene whose links bend and whose driver is controlled as what engines are given of it: let
-    go, with the torque of the controller as loads; others as they are. Raises CrankcheckError as
-    `analytic.elastic.control.released_under_control`."""
-    if not (scene.elastic and isinstance(scene.driver.law, Controlled)):
-        return scene
-    from analytic.elastic.control import released_under_control  # for elastic links alone
-
-    return released_under_control(scene)
 
 
 def refuse_rigid(scenes: Iterable[Scene], count: object, springs: object) -> None:
@@ -172,18 +158,20 @@ def held_steps(scene: Scene, segments: int, springs: Springs) -> float:
     is what the implicit ones of engines that have beams are given."""
     if springs == "beam":
         return float(STEPS_PER_TURN)
-    needed = scene.driver.law.period_s * _fastest_rad_s(scene, segments, springs) / STEADY
+    needed = scene.driver.law.period_s * _held_steps_s(scene, segments, springs)
     return max(STEPS_PER_TURN, float(PART * math.ceil(needed / PART)))
 
 
-def _fastest_rad_s(scene: Scene, segments: int, springs: Springs) -> float:
-    """That of the segments; 0 where a link stretches alone, and is no chain of them."""
+def _held_steps_s(scene: Scene, segments: int, springs: Springs) -> float:
+    """Steps in a second that explicit methods hold so many segments with; 0 where a link stretches
+    alone, and is no chain of them."""
     from analytic.elastic.discretisation import Segments
     from analytic.elastic.stiffness import fastest_rad_s
+    from reports.compare.elastic.elastic_truth import STEADY
 
     if not all(link.bends for link in scene.elastic.values()):
         return 0.0
-    return fastest_rad_s(scene, Segments(segments, springs == "corrected"))
+    return fastest_rad_s(scene, Segments(segments, springs == "corrected")) / STEADY
 
 
 def counted_released(
@@ -204,7 +192,7 @@ def counted_released(
     else:
         lasts_s = few_swings_s(scene)
     if dt_s is None:
-        needed = lasts_s * max(_fastest_rad_s(scene, segments, springs) / STEADY, 1.0 / FREE_STEP_S)
+        needed = lasts_s * max(_held_steps_s(scene, segments, springs), 1.0 / FREE_STEP_S)
         dt_s = lasts_s / (PART * math.ceil(needed / PART))
     return counted_free(scene, dt_s, lasts_s, every=every, least=least)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
+from models.controlled import Controlled
 from models.errors import CrankcheckError
 from models.files import kinds, shipped
 from models.released import let_go
@@ -30,10 +31,41 @@ def free_names(names: Sequence[str]) -> list[str]:
 
 
 def scenes_of(names: Sequence[str], *, free: bool) -> list[Scene]:
-    """The scenes of a study, which are all driven, or all let go. Raises CrankcheckError."""
+    """The scenes of a study, which are all driven, or all let go, with the torque of its controller
+    where that gives way to elastic links. Raises CrankcheckError."""
     if not free:
-        return chosen_scenes(names)
-    return [let_go(scene) for scene in chosen_scenes(free_names(names), check_names)]
+        scenes = chosen_scenes(names)
+        for scene in scenes:
+            refuse_giving_way(scene, "`crankcheck sweep --free` lets it go so, as `verify` does")
+        return scenes
+    scenes = chosen_scenes(free_names(names), check_names)
+    return [let_go(under_control(scene)) for scene in scenes]
+
+
+def gives_way(scene: Scene) -> bool:
+    """Whether its driver is controlled and its links bend, so that it follows its law nearly."""
+    return bool(scene.elastic) and isinstance(scene.driver.law, Controlled)
+
+
+def under_control(scene: Scene) -> Scene:
+    """A scene whose links bend and whose driver is controlled as what engines are given of it: let
+    go, with the torque of the controller as loads; others as they are. Raises CrankcheckError as
+    `analytic.elastic.control.released_under_control`."""
+    if not gives_way(scene):
+        return scene
+    from analytic.elastic.control import released_under_control  # for elastic links alone
+
+    return released_under_control(scene)
+
+
+def refuse_giving_way(scene: Scene, instead: str) -> None:
+    """Refuse a scene whose controlled driver gives way, where turns are asked for; ``instead`` says
+    what takes it. Raises CrankcheckError."""
+    if gives_way(scene):
+        raise CrankcheckError(
+            f"{scene.name}: {', '.join(scene.elastic)} bends, and engines are given it let go, "
+            f"with the torque of its controller: it has no turns; {instead}"
+        )
 
 
 def refuse_unreleased(scene: Scene, duration_s: float) -> None:

@@ -15,6 +15,7 @@ from reports.output.numbers import count as told
 from reports.plan.chosen import chosen_engines
 from reports.plan.elastic import (
     GivenAs,
+    counted_released,
     given_as,
     held_steps,
     refuse_rigid,
@@ -114,8 +115,9 @@ def _steps(study: Study, scene: Scene, given: GivenAs) -> list[tuple[float, int]
     """Steps [s] and numbers of steps of a scene. Raises CrankcheckError where it can not be run for
     so long."""
     if study.free:
-        steps = [counted_free(scene, each, study.duration_s) for each in study.dt_s]
+        steps = _released(study, scene, given)
         refuse_unreleased(scene, max(dt_s * count for dt_s, count in steps))
+        refuse_unelastic(scene, given.segments, given.springs)
         return steps
     refuse_unelastic(scene, given.segments, given.springs)
     per_turn = study.steps_per_turn
@@ -129,6 +131,19 @@ def _steps(study: Study, scene: Scene, given: GivenAs) -> list[tuple[float, int]
         refuse_forceless(scene, longest_s)
     refuse_short_tables(scene, longest_s)
     return steps
+
+
+def _released(study: Study, scene: Scene, given: GivenAs) -> list[tuple[float, int]]:
+    """As `_steps`, of what is let go. Raises CrankcheckError."""
+    if not scene.elastic:
+        return [counted_free(scene, each, study.duration_s) for each in study.dt_s]
+    lasts_s, bent = study.duration_s, (given.segments, given.springs)
+    if not study.times_held:
+        return [counted_released(scene, each, lasts_s, *bent) for each in study.dt_s]
+    held_s, count = counted_released(scene, None, lasts_s, *bent)
+    return [
+        counted_released(scene, held_s / times, held_s * count, *bent) for times in study.times_held
+    ]
 
 
 def refuse_endless(study: Study) -> None:

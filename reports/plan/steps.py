@@ -28,6 +28,8 @@ FREE_STEPS = 5000
 """The least in what a scene says it is left free for: what is fast is over soon."""
 FREE_STEPS_S = (4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4)
 """Those of a sweep over it."""
+TIMES_HELD = (1.0, 2.0, 4.0)
+"""Those of a sweep over elastic links that are let go, over the fewest that their segments hold."""
 
 
 def counted(

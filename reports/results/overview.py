@@ -12,6 +12,7 @@ from models.errors import CrankcheckError
 from models.files import parse_scene
 from models.released import let_go
 from models.scene import Scene
+from reports.plan.free import under_control
 from reports.results.candidates import Candidate, candidates
 from reports.results.cost import Costs, costs_of, noise
 from reports.results.lines import Line, Named, has_bent, lines, named
@@ -71,7 +72,7 @@ class Report:
         found = {name: _parsed(texts.get(name), name) for name in names}
         driven = {line.scene for line in self.lines if line.drive != "free"}
         return {
-            name: scene if scene is None or name in driven else let_go(scene)
+            name: scene if scene is None or name in driven else let_go(under_control(scene))
             for name, scene in found.items()
         }
 

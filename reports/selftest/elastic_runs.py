@@ -54,8 +54,7 @@ BENDING: Mapping[RunKind, Mapping[str, ElasticRun]] = {"elastic": ELASTIC_RUNS, 
 
 @cache
 def _once(name: str) -> Scene:
-    """The elastic scene of that name, one and the same: its truth is kept under the scene itself,
-    and takes seconds."""
+    """The elastic scene of that name, read once."""
     return load_scene(name)
 
 

@@ -7,22 +7,25 @@ from collections.abc import Mapping, Sequence
 from rich.markup import escape
 
 from reports.compare.errors import largest
-from reports.describe.held_to import held_to
+from reports.describe.held_to import BENT, OVER_G, held_to
 from reports.judge.cell import Checked
 from reports.judge.rules.elastic import TruthEnds
 
-DRIVEN = held_to(free=False, elastic=False, moved=" at the commanded time")
+DRIVEN = held_to(free=False, elastic=None, moved=" at the commanded time")
 FREE = (
     "Let go: errors at the same time over G, by how much a small change of the start has grown; "
     "geometry at the run's own angle; drift of energy over the largest kinetic energy T. Classes: "
     "fine is a thousandth of the limit of the phase; 1e-1 and 1e-3 of the error as it is, and to "
     "when 1e-3 holds."
 )
-ELASTIC = (
-    "Elastic links: largest errors against the solved motion of the beam with foreshortening at "
-    "the commanded time, of deflections over the largest, D, of places over the longest link, L; "
-    "engine: against the exact chain of as many segments instead; chain: that against the beam; "
-    "what the beam may be off by, and the linear theory, which is judged by nothing."
+CHAINS = "engine: against the exact chain of as many segments instead; chain: that against the beam"
+BEAMS = (
+    "a beam of the engine's own has no exact chain, and under chain stands what its elements lock "
+    "by, estimated"
+)
+THEORIES = (
+    "doubt: what the beam may be off by; linear: what the linear theory is, which is judged by "
+    "nothing."
 )
 FORCES = (
     "Forces against kinetostatics at the instants that they act at; F largest reaction, M largest "
@@ -36,9 +39,10 @@ def footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
     driven = [one for one in checked if one.cell.drive != "free"]
     lines = [
         *([DRIVEN] if any(not one.cell.scene.elastic for one in driven) else ()),
-        *_elastic_words(driven),
+        *_elastic_words([one for one in checked if one.cell.scene.elastic]),
         *(FORCES for _ in checked[:1] if any(one.cell.with_forces for one in checked)),
-        *(_free_words(free) if free else ()),
+        *([FREE] if any(not one.cell.scene.elastic for one in free) else ()),
+        *(_free_steps(free) if free else ()),
         *_notes(checked),
         *(_driven_steps(driven) if driven else ()),
         ", ".join(f"{name} {value}" for name, value in facts.items()),
@@ -61,9 +65,14 @@ def _driven_steps(driven: Sequence[Checked]) -> list[str]:
     ]
 
 
-def _elastic_words(driven: Sequence[Checked]) -> list[str]:
+def _elastic_words(bent: Sequence[Checked]) -> list[str]:
     """What the numbers of elastic links are, as what these were given, and where the truth ends."""
-    bent = [one for one in driven if one.cell.scene.elastic]
+    if not bent:
+        return []
+    is_beam = {one.cell.springs == "beam" for one in bent}
+    parts = [f"{BENT}, of deflections over the largest, D, of places over the longest link, L"]
+    parts += [CHAINS] * (False in is_beam) + [BEAMS] * (True in is_beam)
+    parts += [OVER_G] * any(one.cell.drive == "free" for one in bent)
     given = dict.fromkeys(
         f"{one.cell.segments} elements of a beam"
         if one.cell.springs == "beam"
@@ -77,16 +86,15 @@ def _elastic_words(driven: Sequence[Checked]) -> list[str]:
         for found in one.findings
         if found.rule == TruthEnds.id
     )
-    return [*([f"{ELASTIC} Given as {'; '.join(given)}."] if bent else ()), *ends]
+    return [f"{'; '.join([*parts, THEORIES])} Given as {'; '.join(given)}.", *ends]
 
 
-def _free_words(free: Sequence[Checked]) -> list[str]:
-    """What the numbers of free cells are, and how these were stepped."""
+def _free_steps(free: Sequence[Checked]) -> list[str]:
+    """How free cells were stepped."""
     dts = sorted({one.cell.dt_s for one in free})
     lasts = sorted({round(one.cell.dt_s * one.cell.steps, 9) for one in free})
     growth = sorted(one.errors.free.sensitivity for one in free if one.errors and one.errors.free)
     return [
-        FREE,
         f"dt {_span(dts)} s over {_span(lasts)} s"
         + (f"; G up to {_span(growth)}" if growth else "")
         + "; - not reported.",

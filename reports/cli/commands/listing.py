@@ -23,7 +23,8 @@ from reports.describe.law import describe_law
 from reports.judge.cell import SEGMENTS
 from reports.output.columns import plain_table
 from reports.output.write import check_file, write
-from reports.plan.elastic import SPRINGS, held_steps, segmented, under_control
+from reports.plan.elastic import SPRINGS, held_steps, segmented
+from reports.plan.free import under_control
 from sim.registry import available, brought, engine
 
 

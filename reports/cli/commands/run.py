@@ -58,16 +58,17 @@ def _origin(done: Simulation) -> dict[str, str]:
 
 
 def _written(request: RunRequest, done: Simulation) -> str:
-    """What was written, what came of the run, and how the log is judged."""
+    """What was written, what came of the run, and how the log is judged, where it is."""
     assert done.motion is not None
+    told = (
+        f"{request.output}: {done.motion.time_s.size} samples of {done.scene} in {done.engine} "
+        f"{done.version}, profile {done.profile}; {done.ending()}"
+    )
+    if done.mechanism.elastic and done.drive == "free":
+        return harmless(told)
     judge = ["crankcheck", "judge", request.scene, str(request.output), "--step", repr(done.dt_s)]
     judge += ["--forces"] * request.forces + ["--free"] * (request.drive == "free")
-    lines = [
-        f"{request.output}: {done.motion.time_s.size} samples of {done.scene} in {done.engine} "
-        f"{done.version}, profile {done.profile}; {done.ending()}",
-    ]
     if done.mechanism.elastic:
         judge += ["--segments", str(done.segments)]
         judge += ["--springs", done.springs] * (done.springs != "plain")
-    lines.append(f"next: {shlex.join(judge)}")
-    return harmless("\n".join(lines))
+    return harmless(f"{told}\nnext: {shlex.join(judge)}")

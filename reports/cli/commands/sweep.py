@@ -12,7 +12,7 @@ from reports.cli.measuring import SweepRequest
 from reports.face.sweep_text import show_sweep
 from reports.plan.chosen import left_out_note
 from reports.plan.chosen_study import StudyChoice, chosen_study, refuse_other_engine, study_engines
-from reports.plan.elastic import chosen_segments, chosen_springs
+from reports.plan.elastic import chosen_segments, chosen_springs, shortened_note
 from reports.plan.forces import silent_note
 from reports.plan.study import Study, StudyValue, load_study
 from reports.sweep.whole import Manner, swept
@@ -41,6 +41,10 @@ def sweep(request: SweepRequest, console: Console, progress: Console) -> int:
     for note in filter(None, (silent, left_out_note(study.scenes))):
         progress.print(note, markup=False, highlight=False, soft_wrap=True)
     laid, done = swept(study, request.folder, manner, command, progress)
+    lengths = {(t.cell.scene.name, t.cell.dt_s * t.cell.steps): t.cell.scene for t in laid.tasks}
+    notes = (shortened_note(scene, lasts_s) for (_, lasts_s), scene in lengths.items())
+    for note in filter(None, dict.fromkeys(notes)):
+        progress.print(note, markup=False, highlight=False, soft_wrap=True)
     show_sweep(console, request.folder, len(laid.tasks), done)
     return 0
 

@@ -39,7 +39,6 @@ from reports.plan.elastic import (
     refuse_rigid,
     refuse_unelastic,
     shortened_note,
-    under_control,
 )
 from reports.plan.forces import gives_forces, refuse_forceless, silent_note
 from reports.plan.free import (
@@ -47,6 +46,7 @@ from reports.plan.free import (
     refuse_other_options,
     refuse_unreleased,
     scenes_of,
+    under_control,
 )
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular

@@ -34,9 +34,14 @@ class ElasticFacts:
     straight: bool = False
 
     @property
+    def is_chain(self) -> bool:
+        """Whether they are segments, whose exact motion is known as well."""
+        return self.springs != "beam"
+
+    @property
     def pieces(self) -> str:
         """How many there are of what, in words."""
-        return f"{self.segments} {'elements' if self.springs == 'beam' else 'segments'}"
+        return f"{self.segments} {'segments' if self.is_chain else 'elements'}"
 
     @property
     def chain(self) -> float:

@@ -5,15 +5,23 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
-from models.files import find_scene
+import crankcheck as face
+from models.errors import CrankcheckError
+from models.files import find_scene, load_scene
 from reports.cli import app
+from reports.plan.chosen_study import StudyChoice, chosen_study
+from reports.plan.elastic import counted_released
+from reports.plan.free import scenes_of, under_control
+from reports.plan.grid import grid
+from reports.plan.study import load_study
 from reports.store.reader import read_store
 
 STEPS = ["--engine", "mujoco", "--segments", "4", "--steps-per-turn", "720", "--turns", "1"]
-NAME = "fourbar-elastic"
+NAME, CONTROLLED = "fourbar-elastic", "fourbar-elastic-controlled"
 
 
 def crankcheck(*words: object, code: int = 0) -> str:
@@ -64,6 +72,18 @@ def test_a_sweep_has_a_line_for_every_number_of_segments(tmp_path: Path) -> None
             ["tune", NAME, "--engine", "mujoco", "--target", "1e-3"],
             f"`crankcheck sweep {NAME} --segm",
         ),
+        (
+            ["tune", "fourbar-elastic-pulse", "--engine", "mujoco", "--target", "1e-3"],
+            "`crankcheck sweep fourbar-elastic-pulse --free --segments 4,8,16 -o DIR`",
+        ),
+        (
+            ["tune", CONTROLLED, "--engine", "mujoco", "--target", "1e-3"],
+            f"`crankcheck sweep {CONTROLLED} --free --segments 4,8,16 -o DIR`",
+        ),
+        (
+            ["sweep", CONTROLLED, "--engine", "mujoco", "--segments", "4", "-o", "none"],
+            "it has no turns; `crankcheck sweep --free` lets it go so",
+        ),
         (["advise", NAME, "--dt", "0.01", "--speed", "7", "--target", "1e-3"], "takes rigid links"),
     ],
 )
@@ -103,11 +123,48 @@ def test_elastic_links_that_are_let_go_are_verified_where_they_are_named() -> No
     assert "WITHIN TOLERANCE" in told
 
 
-def test_a_log_of_elastic_links_that_were_let_go_is_not_judged_either(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["fourbar-elastic-pulse", CONTROLLED])
+def test_a_log_of_elastic_links_that_were_let_go_is_not_judged_either(
+    name: str, tmp_path: Path
+) -> None:
     log = tmp_path / "log.csv"
-    crankcheck("run", "fourbar-elastic-pulse", "--segments", "2", "--duration", "0.05", "-o", log)
-    told = crankcheck("judge", "fourbar-elastic-pulse", log, code=2)
-    assert "logs of elastic links that are let go are not judged yet" in told
+    asked = ["--segments", "2", "--duration", "0.05"]
+    assert "next:" not in crankcheck("run", name, *asked, "-o", log)
+    said = "logs of elastic links that are let go are not judged yet"
+    for free in ([], ["--free"]):
+        assert said in crankcheck("judge", name, log, "--target", "1e-3", *free, code=2)
+    frame = pd.read_csv(log)
+    with pytest.raises(CrankcheckError, match=said):
+        face.judge(name, frame, target=1e-3, segments=2)
+    with pytest.raises(CrankcheckError, match=said):
+        face.compare(name, frame, segments=2)
+
+
+def test_a_check_in_turns_of_what_a_controller_drives_says_what_takes_it() -> None:
+    with pytest.raises(CrankcheckError, match="it has no turns; `run` runs it"):
+        face.check(CONTROLLED, segments=4)
+
+
+def test_what_a_controller_drives_keeps_it_when_it_is_let_go() -> None:
+    (own,) = scenes_of([CONTROLLED], free=True)
+    assert own.is_free
+    assert own == under_control(load_scene(CONTROLLED))
+    assert own.loads
+
+
+def test_a_sweep_of_what_is_let_go_steps_elastic_links_as_their_segments_ask() -> None:
+    """At 4 ms all would come apart."""
+
+    def steps(name: str, **choice: object) -> list[float]:
+        asked = StudyChoice([name], ["mujoco"], ["tuned"], free=True, segments=[4], **choice)  # type: ignore[arg-type]
+        study = chosen_study(load_study(None), asked, is_shipped=True)
+        return [task.cell.dt_s for task in grid(study).tasks]
+
+    for name in ("fourbar-elastic-pulse", CONTROLLED):
+        own = under_control(load_scene(name))
+        held_s, _ = counted_released(own, None, 0.1, 4, "plain")
+        assert steps(name, duration_s=0.1) == [held_s, held_s / 2, held_s / 4]
+        assert steps(name, duration_s=0.1, dt_s=[5e-4]) == [5e-4]
 
 
 def test_what_is_let_go_is_swept_and_timed_over_the_step(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from models.files import load_scene
 from models.scene import Scene
 from models.springs import PinSpring
 from reports.compare.elastic.released_truth import ReleasedElasticTruth
+from reports.describe.held_to import held_to
 from reports.face.comparison import compare
 from reports.face.log_verdict import judge
 from reports.face.simulation import run as simulated
@@ -21,8 +22,9 @@ from reports.plan.elastic import (
     counted_released,
     few_swings_s,
     shortened_note,
-    under_control,
 )
+from reports.plan.free import under_control
+from reports.verify.footer import footer
 from sim.engine import Run
 from sim.run import run
 
@@ -110,6 +112,35 @@ def test_a_cell_has_what_is_of_free_motion_and_what_is_of_elastic_links(checked:
     for name in ("phase_limit_pure", "energy_limit_pure", "segments_limit_pure", "sensitivity"):
         assert isinstance(row[name], float)
     assert (row["segments"], row["left_out"]) == (4.0, 0)
+
+
+def test_the_footer_says_what_stands_under_its_heads(checked: Checked) -> None:
+    told = footer([checked], {})
+    assert told.startswith("Elastic links: ")
+    assert "geometry at" not in told
+    assert "Classes" not in told
+    assert "engine: against the exact chain of as many segments instead" in told
+    assert "angles, places and rates are over G" in told
+    assert "Given as 4 segments, plain springs." in told
+    assert f"{PULSE}, mujoco: the segments end before the engine does" in told
+    assert "s over 0.3 s; G up to" in told
+    as_beam = replace(checked, cell=replace(checked.cell, springs="beam"))
+    told = footer([as_beam], {})
+    assert "a beam of the engine's own has no exact chain" in told
+    assert "engine: against" not in told
+    assert "Given as 4 elements of a beam." in told
+
+
+def test_the_words_under_errors_are_those_of_what_links_were_given_as(checked: Checked) -> None:
+    assert checked.errors is not None
+    assert checked.errors.elastic is not None
+    told = held_to(free=True, elastic=checked.errors.elastic)
+    assert "segments against the exact chain of as many; let go, angles" in told
+    assert "geometry" not in told
+    told = held_to(free=False, elastic=replace(checked.errors.elastic, springs="beam"))
+    assert "chain" not in told
+    assert "let go" not in told
+    assert "log's" not in held_to(free=True, elastic=None)
 
 
 def stiffer(by: float) -> CellRunner:
