@@ -34,6 +34,8 @@ class FormulaChange:
 
 def first_crossing(rows: list[Kinked], looks: Array) -> FormulaChange | None:
     """The first one in formulas at looks [s], (T,); None where all are as at the first look."""
+    if not rows:
+        return None
     pieces = np.array([row.pieces for row in rows])
     changed = pieces != pieces[:, :1]
     if not changed.any():

@@ -163,11 +163,11 @@ class Integration:
             before = self.windows[-1]
             orders = np.arange(len(before.a))
             return float(before.a.sum()), float(orders * (orders + 1) @ before.a) / before.long_s
-        start = self._acceleration(
-            np.array([self.now_s + 1e-3 * long_s]),
-            np.array([self.u]),
-            np.array([self.v or way * TINY]),
-        )
+        after_s = 1e-3 * long_s
+        time_s, v = np.array([self.now_s + after_s]), np.array([self.v or way * TINY])
+        start = self._acceleration(time_s, np.array([self.u]), v)
+        if not np.isfinite(start).all():  # a spring of no length has no direction
+            start = self._acceleration(time_s, self.u + after_s * v, v)
         return float(start[0]), 0.0
 
     def _tried(

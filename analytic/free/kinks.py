@@ -2,21 +2,25 @@
 
 Between two kinks every load follows one formula. Those over time are known beforehand; all others
 are told apart by the number of their piece, which changes where a load, a stroke or friction goes
-over to another formula (`Kinked`).
+over to another formula (`Kinked`). So does the pull of a spring where its two points pass one
+another: it turns over.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
+from analytic.forces.springs import spring_lengths
 from analytic.free.machine import Machine
 from models.array import Array
 from models.scene import Scene
+from models.springs import LineSpring, Spring
 
 
 def heeds_direction(scene: Scene) -> bool:
@@ -27,8 +31,10 @@ def heeds_direction(scene: Scene) -> bool:
 def is_kinked(scene: Scene) -> bool:
     """Whether anything has kinks over where or how fast the machine moves."""
     loads = scene.loads.values()
-    return heeds_direction(scene) or any(
-        load.over != "time" and load.characteristic.kinks for load in loads
+    return (
+        heeds_direction(scene)
+        or any(load.over != "time" and load.characteristic.kinks for load in loads)
+        or any(_turns_over(spring) for spring in scene.springs.values())
     )
 
 
@@ -97,4 +103,22 @@ def kinked(machine: Machine, u: Array, v: Array) -> list[Kinked]:
             x = sliding.s if load.over == "displacement" else sliding.speed * v
         kinks = np.array(load.characteristic.kinks)
         rows.append(Kinked(whole(x), kinks, load.characteristic.repeats_after))
+    if any(_turns_over(spring) for spring in machine.scene.springs.values()):
+        rows += _turning_over(machine.scene, unit(), u)
     return rows
+
+
+def _turns_over(spring: Spring) -> bool:
+    """Whether it pulls with something where it has no length."""
+    return isinstance(spring, LineSpring) and spring.rate * spring.free != 0.0
+
+
+def _turning_over(scene: Scene, unit: Chunk, u: Array) -> Iterator[Kinked]:
+    """Springs whose two points may come to one place between the samples: the way between these,
+    times its own derivative, goes through 0 there, as it does where they are nearest."""
+    with np.errstate(all="ignore"):  # of no length it has no rate
+        stretched = [*spring_lengths(scene, unit)]
+    for spring, length, rate in stretched:
+        reach = np.nanmax(np.abs(rate), initial=0.0) * np.abs(np.diff(u)).max(initial=0.0)
+        if _turns_over(spring) and not length.min() > reach:
+            yield Kinked(np.nan_to_num(length * rate), np.zeros(1), sign=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -34,7 +35,13 @@ from models.staircase import Staircase
 from models.start import Start
 from models.tabulated import Tabulated
 from models.waves import Pulse
-from tests.analytic.free.mechanisms import fourbar, past_limits, slider_crank, weightless
+from tests.analytic.free.mechanisms import (
+    SLIDER_CRANK,
+    fourbar,
+    past_limits,
+    slider_crank,
+    weightless,
+)
 from tests.analytic.free.second_method import driver_by_steps
 from tests.worlds.loading import loaded_mechanism
 
@@ -175,6 +182,27 @@ def test_energy_balances(scene: Scene) -> None:
     energy = release(scene, 0.6).energy(np.linspace(0.0, 0.6, 301))
     off = np.abs(energy.balance - energy.balance[0])
     assert off.max() <= 1e-11 * energy.kinetic.max()
+
+
+@pytest.mark.parametrize(
+    ("damping", "more"),
+    [(0.0, {}), (0.1, {}), (0.0, {"friction": {"C": ConstantFriction("C", 0.02)}})],
+)
+def test_a_spring_whose_points_pass_one_another_turns_over(
+    damping: float, more: dict[str, Any]
+) -> None:
+    """The slider comes through the other end of its spring twice a turn; the pull jumps there."""
+    ends = SLIDER_CRANK.replace("A = [0.0, 0.0]", "A = [0.0, 0.0], E = [0.3, 0.0]")
+    text = ends.format(r=0.1, l=0.3, offset=0.0, start_deg=30.0, speed_rad_s=12.0)
+    across = LineSpring("across", 40.0, damping, 0.05, ("E", "C"))
+    free = release(replace(parse_scene(text, "across"), springs={"across": across}, **more), 1.0)
+    points = free.at(np.array(free.edges_s)).points
+    apart = np.abs(points["C"].position - points["E"].position).max(axis=1)
+    assert np.count_nonzero(apart < 1e-13) >= 3
+    time_s = np.linspace(0.0, 1.0, 401)
+    energy = free.energy(time_s)
+    assert np.ptp(energy.balance) <= 1e-12 * energy.kinetic.max()
+    assert free.error_rad(time_s).max() <= 1e-12
 
 
 def times_of(free: FreeMotion, level: float, until_s: float) -> list[float]:
