@@ -22,7 +22,7 @@ def held_to(*, free: bool, elastic: ElasticFacts | None, moved: str = "") -> str
     """The truth of a scene's errors, and the letters of their shares; ``moved`` says what moves the
     closed form of one that is driven."""
     if elastic is not None:
-        parts = [BENT + ", segments against the exact chain of as many" * elastic.is_chain]
+        parts = [BENT + ", segments against the exact chain of as many" * (not elastic.of_beam)]
         parts += [OVER_G] * free
         return "; ".join([*parts, "D largest deflection, L longest link, w driver's peak speed."])
     if free:
