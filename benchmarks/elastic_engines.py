@@ -30,7 +30,7 @@ from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.judge.cell import Cell, Springs, examined
 from reports.plan.elastic import SPRINGS, held_steps
-from sim.registry import available, engine, usual
+from sim.registry import applying_beams, usual
 
 COUNTS, ELEMENTS = (4, 8, 16, 32), (2, 4, 8, 16)
 RATIOS = (10.5, 5.5)
@@ -99,7 +99,7 @@ def main() -> int:
     counts = COUNTS[:-1] if "--few" in sys.argv else COUNTS
     chains = () if "--beams" in sys.argv else (s for s in SPRINGS if s != "beam")
     lines: list[Line] = [(e, s, finer) for s in chains for finer in (1, 2) for e in usual()]
-    able = [one.name for one in available() if one.version and engine(one.name).applies_beams]
+    able = applying_beams()
     beams: list[Line] = [(e, "beam", finer) for e in able for finer in (1, 4)]
     missed = False
     for scene in (*map(at_ratio, RATIOS), load_scene("slider-crank-elastic")):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 
@@ -31,6 +32,22 @@ class Beam:
         """
         stiff = self.axial_n * deflection_m**2 / self.flexural_n_m2
         return 0.04 * stiff / self.elements**5
+
+    def between(self) -> float:
+        """By which share of its deflection the middle of a beam is off the cubic of the element
+        that it lies in, where no node is: the fourth derivative of a half-wave, h^4/384 of it."""
+        return (math.pi / self.elements) ** 4 / 384.0 if self.elements % 2 else 0.0
+
+    def pushed(self, deflection_m: float) -> float:
+        """What it starts off by, bent so far: acceleration of its ends over its length [1/s^2].
+        Nodes that stand on the true line leave elements stretched, by (w/l)^2/n^4, until they have
+        moved.
+
+        Fitted (exudyn 1.13.6; n = 2 to 5, EA l^2/EI of 1e5 and 1e6, frequencies of 3.5 to 20.5
+        times the speed): 2.0 to 2.1 of it in the four-bar, 0.8 and 0.4 in six-bar and slider-crank.
+        """
+        stretched = (deflection_m / self.length_m) ** 2 / self.elements**4
+        return self.axial_n * stretched / (self.density_kg_m * self.length_m**2)
 
     @property
     def elements(self) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
@@ -45,9 +45,16 @@ def refuse_other_model(
         raise EngineError(f"the engine does not hold {scene.name}: " + "; ".join(faults))
 
 
-def refuse_unknown_forces(scene: Scene, engine: Engine, *, with_forces: bool) -> None:
+def refuse_unknown_forces(
+    scene: Scene,
+    engine: Engine,
+    *,
+    with_forces: bool,
+    applying_beams: Callable[[], Iterable[str]] = tuple,
+) -> None:
     """Raise EngineError for a scene with loads, springs or friction in an engine that would leave
-    them out without a word, and for forces of an engine that reports none."""
+    them out without a word, and for forces of an engine that reports none; of beams it names the
+    engines that are ``applying_beams``."""
     if scene.loads and not engine.applies_loads:
         names = ", ".join(f"loads.{name}" for name in scene.loads)
         raise EngineError(
@@ -61,9 +68,11 @@ def refuse_unknown_forces(scene: Scene, engine: Engine, *, with_forces: bool) ->
             "or use the reference alone"
         )
     if scene.beams and not engine.applies_beams:
+        able = " or ".join(applying_beams()) or "no engine here"
         raise EngineError(
-            f"{scene.name}: {engine.name} has no beams ({', '.join(scene.beams)}); give it rigid "
-            "segments with springs between them (--springs plain)"
+            f"{scene.name}: {engine.name} has no beams ({', '.join(scene.beams)}), and {able} has; "
+            "it may be given links that do not stretch as rigid segments with springs between them "
+            "(--springs plain)"
         )
     if isinstance(scene.driver.law, Controlled):
         raise EngineError(

@@ -172,6 +172,11 @@ def available() -> tuple[Availability, ...]:
     return tuple(engines)
 
 
+def applying_beams() -> list[str]:
+    """The installed engines of ours that have beams of their own."""
+    return [one.name for one in available() if one.version and engine(one.name).applies_beams]
+
+
 def brought() -> tuple[Availability, ...]:
     """The engines that other installed packages bring, by their entry points; what is wrong with
     one that can not be used is said."""

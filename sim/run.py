@@ -16,6 +16,7 @@ from sim.drive import pace, period
 from sim.engine import Drive, Engine, Run, Settings, Setup
 from sim.own_engine.watched import BrokenContractError
 from sim.recording import recorded
+from sim.registry import applying_beams
 from sim.registry import engine as engine_of
 from sim.settings import SettingError, profile_of, resolved
 
@@ -82,7 +83,7 @@ def run(
             "segments for it: `models.segmented.SegmentedScene(scene, count).rigid`"
         )
     try:
-        refuse_unknown_forces(scene, chosen, with_forces=with_forces)
+        refuse_unknown_forces(scene, chosen, with_forces=with_forces, applying_beams=applying_beams)
         session = chosen.open(scene, state, told.asked, dt_s, drive)
     except (SettingError, BrokenContractError):
         raise

@@ -13,6 +13,7 @@ from sim.check import refuse_unknown_forces
 from sim.drive import period
 from sim.engine import Cost, Drive, Engine, Session, Settings
 from sim.recording import chunks
+from sim.registry import applying_beams
 from sim.registry import engine as engine_of
 from sim.run import check_steps
 from sim.settings import profile_of, resolved
@@ -58,7 +59,7 @@ def time_run(
     chosen = engine_of(engine) if isinstance(engine, str) else engine
     asked = resolved(profile_of(chosen, profile), settings)
     check_steps(scene, period(scene, state, drive), dt_s, steps, max(every, 1))
-    refuse_unknown_forces(scene, chosen, with_forces=False)
+    refuse_unknown_forces(scene, chosen, with_forces=False, applying_beams=applying_beams)
     walls = []
     collecting = gc.isenabled()
     gc.disable()

@@ -41,7 +41,9 @@ Where links bend, rates have as many joints in a row as there are segments, each
 own: their budget grows with the root of that number. The deflection of the links, a share of its
 largest, has the budget of places over that (``bends``), and what the swings of the springs are off
 by (`_swung`); all that is held to the beam, what the exact chain of as many segments is off it by
-(`reports.compare.elastic`), as that is no engine's fault.
+(`reports.compare.elastic`), as that is no engine's fault. A beam of an engine's own has no joints
+within: its deflection is off by that share of itself by which what bends it is. Of exudyn it is a
+quarter of all that on the shipped scenes.
 
 Forces are shares of the largest of the reference, in which the masses cancel: no ratio of these is
 in their budget, but in that of the start (`reports.judge.start_allowance`).
@@ -126,7 +128,8 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     budget += shaken * step**tolerance.share_order
     budget += _felt(tolerance, errors)
     if tolerance.bends and errors.elastic is not None:
-        budget = budget * errors.elastic.slender + _swung(step, errors.elastic)
+        joined = 1.0 if errors.elastic.of_beam else errors.elastic.slender
+        budget = budget * joined + _swung(step, errors.elastic)
     budget = min(float(budget), tolerance.cap)
     return float(budget + tolerance.floor + AT_ROUNDING / step**tolerance.differenced)
 
@@ -163,8 +166,9 @@ def beyond_engine(name: str, errors: Errors) -> float:
     own = elastic.apart.get(name.removesuffix("-differenced"), 0.0)
     if elastic.estimated:
         own *= 2.0
-    if name in FORCES:  # springs that are off push by as much more
-        return own + 0.5 * default(ELASTIC["segments"], errors)
+    if name in FORCES:  # what bends by another share pushes by as much more
+        locked = 2.0 * elastic.chain if elastic.of_beam else 0.0
+        return own + 0.5 * (default(ELASTIC["segments"], errors) + locked)
     return own + (elastic.doubt if name == "deflection" else 0.0)
 
 

@@ -46,7 +46,8 @@ def _middle(column: str) -> Measure:
 
 
 BENT = Tolerance(
-    "What joints are off by, step^2 of the longest link at the curvature, over the deflection; "
+    "What joints are off by, step^2 of the longest link at the curvature, over the deflection (of "
+    "a beam of an engine's own, which has none, step^2 of itself); "
     "what a spring's swing of r times the driver's speed is off by, (r step)^2/24 of its phase in "
     "every swing; and, of what is held to the beam, what the exact chain of as many segments is "
     "off it by, and what the beam itself is.",

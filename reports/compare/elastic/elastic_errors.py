@@ -59,11 +59,12 @@ def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
         ratio=theory.lowest_rad_s / beside.scene.driver.law.peak_speed_rad_s,
         cycles=theory.cycles_per_s * float(time_s[-1] - time_s[0]),
         slender=beside.scene.longest_m / theory.largest_m,
-        doubt=theory.doubt_m / theory.largest_m,
+        doubt=truth.doubt,
         linear=theory.linear_m / theory.largest_m,
         apart=apart,
         estimated=not truth.is_exact,
         straight=theory.shape == "straight",
+        pushed=truth.pushed,
     )
 
 

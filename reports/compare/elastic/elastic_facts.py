@@ -13,7 +13,8 @@ class ElasticFacts:
     they swing at it over the run, 0 where the motion is periodic. ``slender`` is the longest link
     over the largest deflection.
 
-    ``straight`` says that they start so, and ring with all that they have.
+    ``straight`` says that they start so, and ring with all that they have; ``pushed`` is the
+    acceleration that elements start off by, over the square of the driver's speed.
 
     As shares of the largest deflection: ``doubt`` is what the beam may be off by, and ``linear``
     what the linear theory, without foreshortening, is off it by. ``apart`` is how far the exact
@@ -32,11 +33,17 @@ class ElasticFacts:
     apart: Mapping[str, float] = field(default_factory=dict)
     estimated: bool = False
     straight: bool = False
+    pushed: float = 0.0
+
+    @property
+    def of_beam(self) -> bool:
+        """Whether they are elements of a beam."""
+        return self.springs == "beam"
 
     @property
     def pieces(self) -> str:
         """How many there are of what, in words."""
-        return f"{self.segments} {'elements' if self.springs == 'beam' else 'segments'}"
+        return f"{self.segments} {'elements' if self.of_beam else 'segments'}"
 
     @property
     def chain(self) -> float:

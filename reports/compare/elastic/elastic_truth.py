@@ -110,7 +110,26 @@ class ElasticTruth(Truth):
         """How far what is given is from the beam, as a pure number by quantity, ``by_name`` of two
         motions; an estimate of what elements lock by, where it is not exact."""
         largest = self.theory.largest_m
-        return {"deflection": max(one.locked(largest) for one in self.given.beams.values())}
+        off = (one.locked(largest) + one.between() for one in self.given.beams.values())
+        return {"deflection": max(off)}
+
+    @property
+    def doubt(self) -> float:
+        """What the beam may be off by, as a share of its largest deflection. Its slopes are small:
+        elements, whose slopes are not, show what goes with their squares."""
+        largest = self.theory.largest_m
+        beams = self.given.beams.values()
+        slopes = max((math.pi * largest / one.length_m) ** 2 for one in beams)
+        return max(self.theory.doubt_m / largest, slopes)
+
+    @property
+    def pushed(self) -> float:
+        """What pieces start off by, as an acceleration over the square of the driver's speed."""
+        start = self.theory.looked.elastic
+        most = max(
+            one.pushed(abs(float(start[name].middle[0]))) for name, one in self.given.beams.items()
+        )
+        return most / self.scene.driver.law.peak_speed_rad_s**2
 
     @cached_property
     def start(self) -> State:
@@ -183,6 +202,14 @@ class ChainTruth(ElasticTruth):
             share = (LEAST / self.cut.count) ** 2
         found = by_name(few.at(self.theory.looks_s), self.theory.looked)
         return {name: share * size for name, size in found.items()}
+
+    @property
+    def doubt(self) -> float:
+        return self.theory.doubt_m / self.theory.largest_m
+
+    @property
+    def pushed(self) -> float:
+        return 0.0
 
     @cached_property
     def start(self) -> State:
