@@ -37,6 +37,7 @@ from reports.own_log.free_log import (
 from reports.own_log.log_limits import limits_by_column, log_limits
 from reports.own_log.no_cause import of_no_cause, seldom
 from reports.own_log.required import absent_names, required_name
+from reports.quantities import named
 from sim.engine import Placing
 
 NO_FIT = (
@@ -193,8 +194,10 @@ def _explained(
 
 def _placing(errors: Errors) -> Placing:
     """How the places of a log came about, which its start goes by: those that are nearer than a
-    step leaves what is integrated were solved for."""
-    worst = largest(row for row in errors.rows if row.quantity in PLACES)
+    step leaves what is integrated were solved for. Where links bend places are off by what pieces
+    leave of the beam, and its pins tell alone: without these the start has the wider limit."""
+    told = named("closure") if errors.elastic is not None else PLACES
+    worst = largest(row for row in errors.rows if row.quantity in told)
     near = LEAST * errors.step_rad**2
     return "integrated" if worst is not None and not worst.pure <= near else "solved"
 

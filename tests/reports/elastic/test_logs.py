@@ -105,3 +105,28 @@ def test_rigid_links_have_no_deflection(tmp_path: Path) -> None:
     frame.to_csv(path, index=False)
     told = crank("judge", "fourbar-lecture-1", path, "--target", "1e-2")
     assert "coupler_deflection_m: 'deflection' is no kind of reading of a link" in told
+
+
+@pytest.mark.parametrize(
+    ("elements", "steps", "springs"), [(4, 360, "beam"), (8, 720, "beam"), (4, 720, "plain")]
+)
+def test_a_log_starts_within_the_limit_of_its_run(elements: int, steps: int, springs: str) -> None:
+    """Joints are solved for, whatever the beam is off by in its places."""
+    run = face.run(
+        NAME,
+        engine="exudyn",
+        segments=elements,
+        springs=springs,
+        steps_per_turn=steps,
+        turns=1,
+    )
+    of_run = face.judge(NAME, run)
+    assert run.motion is not None
+    step_s = 720.0 / steps * STEP_S
+    of_log = face.judge(NAME, run.motion, step_s=step_s, segments=elements, springs=springs)
+    assert (of_run.verdict, of_log.verdict) == ("within", "within")
+    first, second = (
+        next(finding.limit for finding in verdict.findings if finding.rule == "CC116")
+        for verdict in (of_run, of_log)
+    )
+    assert first == pytest.approx(second, rel=1e-6)
