@@ -3,7 +3,7 @@ centres of mass, or places and tangents of beams."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -20,16 +20,32 @@ def widths(made: PlaneSystem) -> list[int]:
     return [4 if name in made.looked else 3 for name in made.node]
 
 
-def body_poses(made: PlaneSystem, levels: Sequence[Array]) -> dict[str, BodyPose]:
-    """Poses by body, of samples (T, width) of the three levels of each node in turn."""
+def beam_angles(
+    made: PlaneSystem, looked: Mapping[str, float], levels: Sequence[Array]
+) -> dict[str, Array]:
+    """Angles of the tangents of nodes of beams, the first within half a turn of where they
+    ``looked`` [rad] and each within that of the one before: of samples of every step, or turns are
+    lost."""
+    angles = {}
+    for row, (name, node) in enumerate(made.node.items()):
+        if name in looked:
+            place = levels[len(LEVELS) * row] + made.system.GetNode(node)["referenceCoordinates"]
+            turned = np.arctan2(place[:, 3], place[:, 2])
+            angles[name] = np.unwrap(np.concatenate([[looked[name]], turned]))[1:]
+    return angles
+
+
+def body_poses(
+    made: PlaneSystem, levels: Sequence[Array], angles: Mapping[str, Array]
+) -> dict[str, BodyPose]:
+    """Poses by body, of samples (T, width) of the three levels of each node in turn, and of the
+    ``angles`` (T,) of nodes of beams."""
     poses = {}
     for row, (name, node) in enumerate(made.node.items()):
         moved, rate, push = (levels[len(LEVELS) * row + k] for k in range(len(LEVELS)))
         place = moved + made.system.GetNode(node)["referenceCoordinates"]
-        if name in made.looked:
-            poses[name] = _tangent_pose(place, rate, push, made.looked[name])
-            if len(place):
-                made.looked[name] = float(poses[name].theta[-1])
+        if name in angles:
+            poses[name] = _tangent_pose(place, rate, push, angles[name])
         else:
             poses[name] = _pose(place, rate, push, made.centre[name])
     return poses
@@ -51,12 +67,10 @@ def _pose(place: Array, rate: Array, push: Array, centre: Point) -> BodyPose:
     )
 
 
-def _tangent_pose(place: Array, rate: Array, push: Array, near_rad: float) -> BodyPose:
-    """A frame along the tangent of a beam; its first angle is that within half a turn of
-    ``near_rad``, and the others go on from there."""
+def _tangent_pose(place: Array, rate: Array, push: Array, theta: Array) -> BodyPose:
+    """A frame along the tangent of a beam, which is at those angles."""
     (x, y), (u, v), (a, b) = (each[:, 2:].T for each in (place, rate, push))
     far = x**2 + y**2
-    theta = np.unwrap(np.concatenate([[near_rad], np.arctan2(y, x)]))[1:]
     omega = (x * v - y * u) / far
     return BodyPose(
         origin=place[:, :2],

@@ -24,8 +24,8 @@ class PlaneSystem:
     ``centre`` is where the node of a body lies in the frame of its link [m]. ``hinge`` has, by pin,
     the joints of its first body with each of the others, ``prismatic`` the joint of each slider;
     ``weight`` is the load of each body's gravity. Nodes of beams are in ``node`` alone, and where
-    they looked when they were last seen [rad] in ``looked``, which counts turns; the elements of
-    each beam are in ``elements``. A system lives as long as its ``container``.
+    they look at the start [rad] in ``looked``; the elements of each beam are in ``elements``. A
+    system lives as long as its ``container``.
     """
 
     container: Any

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -16,7 +16,7 @@ from models.scene import Scene
 from sim.engine import Drive, Facts, Log, Poses, Settings
 from sim.exudyn.applied import Applied
 from sim.exudyn.beams import held_beams, node_masses, rounding_n
-from sim.exudyn.body_coordinates import LEVELS, body_poses, widths
+from sim.exudyn.body_coordinates import LEVELS, beam_angles, body_poses, widths
 from sim.exudyn.crank import CrankCourse
 from sim.exudyn.crank_drive import CrankDrive
 from sim.exudyn.friction import apply_friction
@@ -35,7 +35,9 @@ LEAST_DT_S = 1e-9
 
 
 class ExudynSession:
-    """One system with its solver. exudyn's clock begins at 0, whatever the time of the law."""
+    """One system with its solver. exudyn's clock begins at 0, whatever the time of the law. Turns
+    of the nodes of beams are counted from step to step while these are recorded; over steps that
+    are not, up to half a turn."""
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
@@ -53,6 +55,7 @@ class ExudynSession:
         with quiet(self._heard):
             self._model = build(scene, state, prescribed=drive == "prescribed")
             self._system = self._model.system
+            self._looked = dict(self._model.looked)
             self._applied = self._loaded(state, drive)
             self._springs = Springs(scene, state, self._model, self._applied.turning)
             self._crank = CrankDrive(scene, self._model, settings, drive, state.time_s, dt_s)
@@ -163,10 +166,14 @@ class ExudynSession:
         # Of a step that was cut the last part ends at the sample.
         rows = np.searchsorted(clock, (at + 1e-6) * self._dt, side="right") - 1
         there = np.abs(clock[rows] - at * self._dt) < 1e-3 * self._dt
-        levels = [each[rows, 1:] for each in kept]
+        every_step = [each[:, 1:] for each in kept]
+        levels = [each[rows] for each in every_step]
+        angles = beam_angles(self._model, self._looked, every_step)
         good = np.logical_and.reduce([there, *(np.isfinite(own).all(axis=1) for own in levels)])
         count = len(at) if good.all() else int(np.argmin(good))
-        poses = self._shown([own[:count] for own in levels], at[:count])
+        angles = {name: own[rows][:count] for name, own in angles.items()}
+        self._looked |= {name: float(own[-1]) for name, own in angles.items() if count}
+        poses = self._shown([own[:count] for own in levels], at[:count], angles)
         diverged = bool(stopped) or count < len(at)
         warnings = tuple(dict.fromkeys(self._heard))
         return Log(poses, (count - 1) * every, diverged, warnings, wall, stopped)
@@ -192,11 +199,13 @@ class ExudynSession:
         ends = np.cumsum(widths(self._model))[:-1]
         levels = [np.split(np.array(getattr(state, f"GetODE2{level}")()), ends) for level in LEVELS]
         of_nodes = [own[None] for node in zip(*levels, strict=True) for own in node]
-        return self._shown(of_nodes, np.array([float(self._done)]))
+        angles = beam_angles(self._model, self._looked, of_nodes)
+        return self._shown(of_nodes, np.array([float(self._done)]), angles)
 
-    def _shown(self, levels: Sequence[Array], at: Array) -> Poses:
-        """Poses of samples, after so many steps, of the three levels of each node in turn."""
-        return Poses(self._start_s + self._dt * at, body_poses(self._model, levels))
+    def _shown(self, levels: Sequence[Array], at: Array, angles: Mapping[str, Array]) -> Poses:
+        """Poses of samples, after so many steps, of the three levels of each node in turn, and of
+        the angles of those of beams."""
+        return Poses(self._start_s + self._dt * at, body_poses(self._model, levels, angles))
 
     def _advance(self, steps: int, *, log: bool) -> str:
         """Step in one go or, where steps may be cut, so that each ends in time. Why exudyn goes no
