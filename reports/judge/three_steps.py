@@ -83,7 +83,7 @@ def convergence(
         raise ValueError(f"{len(error)} steps: a floor needs three")
     first, second, third = error
     trend, order, floor = _read(first, second, third, rounding)
-    if trend not in ("at rounding", "diverges") and max(second, third) <= known:
+    if trend not in ("at rounding", "diverges", "grows") and max(second, third) <= known:
         trend, order, floor = "as the truth", math.nan, math.nan
     elif trend == "levels off" and floor <= known:
         trend, floor = "shrinks", math.nan

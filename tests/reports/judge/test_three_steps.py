@@ -76,6 +76,11 @@ def test_a_floor_that_the_truth_may_be_off_by_is_not_the_engines(
     assert convergence(dt_s, errors, "rad").trend in ("levels off", "shrinks", "does not shrink")
 
 
+def test_an_error_that_grows_is_told_however_far_the_truth_may_be_off() -> None:
+    errors = (1e-5, 2e-5, 3e-5)
+    assert convergence((1e-3, 5e-4, 2.5e-4), errors, "rad", known=4e-5).trend == "grows"
+
+
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
 def test_an_error_that_is_no_number_diverges(bad: float) -> None:
     assert seen(1e-3, 1e-4, bad).trend == "diverges"
