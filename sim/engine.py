@@ -33,10 +33,12 @@ the last step took, so that they are NaN at the start of a run."""
 
 @dataclass(frozen=True)
 class Setting:
-    """One engine setting: its value, and why a profile chose it."""
+    """One engine setting: its value, and why a profile chose it; one ``of_beams`` changes nothing
+    where there are none."""
 
     value: SettingValue
     reason: str
+    of_beams: bool = False
 
 
 @dataclass(frozen=True)

@@ -102,10 +102,11 @@ def grid(study: Study) -> Grid:
                 )
                 version = versions[variant.engine]
                 turns = cell.turns if study.free else study.turns
-                line = line_key(cell, turns, name, version, settings)
+                acting = _acting(cell, settings)
+                line = line_key(cell, turns, name, version, acting)
                 key = cell_key(line, cell)
                 tasks.setdefault(
-                    key, Task(cell, key, line, variant.name + bent.words, version, name, settings)
+                    key, Task(cell, key, line, variant.name + bent.words, version, name, acting)
                 )
     return Grid(tuple(tasks.values()), texts)
 
@@ -152,6 +153,13 @@ def refuse_endless(study: Study) -> None:
             + f" x {steps} steps{'' if study.free else ' in a turn'}; a sweep has at most "
             f"{MOST_CELLS}: take fewer of them"
         )
+
+
+def _acting(cell: Cell, settings: Mapping[str, SettingValue]) -> dict[str, SettingValue]:
+    """Those of a complete set that may change anything: where no beam is given, none of beams."""
+    beams = bool(cell.scene.elastic) and cell.springs == "beam"
+    own = profile_of(engine(cell.engine), cell.profile).settings
+    return {name: value for name, value in settings.items() if beams or not own[name].of_beams}
 
 
 def _complete(variant: Variant) -> dict[str, SettingValue]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from sim.engine import Engine
 from sim.exudyn.library import VERSION
 from sim.exudyn.session import ExudynSession
-from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, placing
+from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, of_rigid, placing
 
 ENGINE = Engine(
     "exudyn",
@@ -13,7 +13,7 @@ ENGINE = Engine(
     version=lambda: VERSION,
     check=checked,
     open=ExudynSession,
-    holds=lambda settings, dt_s, drive: of_drive(settings, drive),
+    holds=lambda settings, dt_s, drive: of_rigid(of_drive(settings, drive)),
     placing=placing,
     in_seconds=lambda settings: (),
     forces_of="states",

@@ -24,7 +24,7 @@ from sim.exudyn.library import VERSION, exu, items, plain, quiet
 from sim.exudyn.loads import apply_loads, follows_rates
 from sim.exudyn.present import Present
 from sim.exudyn.reactions import reactions
-from sim.exudyn.settings import checked, of_drive
+from sim.exudyn.settings import checked, of_drive, of_rigid
 from sim.exudyn.solver import held, initialized, multipliers, per_drive, simulation
 from sim.exudyn.springs import Springs
 from sim.exudyn.step_multipliers import Multipliers
@@ -134,6 +134,7 @@ class ExudynSession:
         nodes = node_masses(self._scene, self._model)
         loads = [self._system.GetLoad(load)["loadVector"] for load in self._model.weight.values()]
         gravity = loads[0] if loads else (0.0, 0.0)
+        settings = self._settings if self._scene.beams else of_rigid(self._settings)
         return Facts(
             version=VERSION,
             mass_kg={name: mass for name, (mass, _) in held_masses.items()} | nodes,
@@ -141,7 +142,7 @@ class ExudynSession:
             centre_m=dict(self._model.centre),
             gravity_m_s2=(float(gravity[0]), float(gravity[1])),
             start=self.read(),
-            settings=dict(self._settings) | held(self._asked, self._solver, self._settings),
+            settings=dict(settings) | held(self._asked, self._solver, self._settings),
             velocity_shift=0.0,
             acceleration_shift=0.0,
             springs=self._springs.held(),

@@ -50,7 +50,9 @@ AS_SHIPPED = Profile(
         "relative_tolerance": Setting(1e-8, "default: of Newton's method, over the first residual"),
         "absolute_tolerance": Setting(1e-10, "default: of the residual"),
         "beam_rounding": Setting(
-            0.0, "of beams: the least absolute tolerance, over what rounding leaves of their forces"
+            0.0,
+            "of beams: the least absolute tolerance, over what rounding leaves of their forces",
+            of_beams=True,
         ),
         "iterations": Setting(25, "default: the most that Newton's method may take"),
         "jacobian": Setting("as-needed", "default: useModifiedNewton, updated where it is slow"),
@@ -90,6 +92,7 @@ TUNED = Profile(
             "for less, steps fail and are cut, which excites what vibrates: of fourbar-elastic "
             "with 8 elements the deflection is 0.08 % off at 720 steps a turn, and 0.02 % with "
             "this; finer runs and those of 16 elements break down",
+            of_beams=True,
         ),
         "jacobian": Setting(
             "each-step",
@@ -118,6 +121,11 @@ def of_drive(settings: Settings, drive: Drive) -> Settings:
     if drive != "free":
         return settings
     return {**settings, "spectral_radius": settings["free_spectral_radius"]}
+
+
+def of_rigid(settings: Settings) -> Settings:
+    """What exudyn holds of a set of settings where there are no beams."""
+    return {n: v for n, v in settings.items() if not AS_SHIPPED.settings[n].of_beams}
 
 
 def placing(settings: Settings) -> Placing:

@@ -274,6 +274,28 @@ def test_only_loads_and_friction_make_other_names_than_before_engines_took_them(
     assert len({named(each) for each in (plain, loaded, rubbing, both)}) == 4
 
 
+def test_settings_of_beams_name_cells_of_beams_alone(tmp_path: Path) -> None:
+    text = """
+scenes = ["fourbar-lecture-1", "fourbar-elastic"]
+steps_per_turn = [720]
+segments = [4]
+springs = ["plain", "beam"]
+[[variants]]
+engine = "exudyn"
+profile = "tuned"
+"""
+    tasks = grid(load_study(written(tmp_path, "beams.toml", text))).tasks
+    told = {
+        (task.cell.scene.name, task.cell.springs): "beam_rounding" in task.settings
+        for task in tasks
+    }
+    assert told == {
+        ("fourbar-lecture-1", "plain"): False,
+        ("fourbar-elastic", "plain"): False,
+        ("fourbar-elastic", "beam"): True,
+    }
+
+
 FREE = """
 scenes = ["fourbar-swing"]
 free = true

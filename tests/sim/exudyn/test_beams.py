@@ -98,6 +98,15 @@ def test_rounding_sets_how_far_newton_goes() -> None:
     assert "absolute_tolerance_used" not in shipped.settings
 
 
+def test_rounding_of_beams_is_told_where_there_are_beams_alone() -> None:
+    scene = load_scene("fourbar-elastic")
+    _, done = ran(scene, 4, "straight", 1e-3, 5)
+    assert done.settings["beam_rounding"] == 16.0
+    chain = SegmentedScene(scene, 4)
+    rigid = run(chain.given, segment_start(chain, "straight"), ENGINE, dt_s=1e-4, steps=5)
+    assert "beam_rounding" not in rigid.settings
+
+
 def test_a_link_counts_its_turns_from_stretch_to_stretch() -> None:
     """A coupler at half a turn, whose tangents pass from pi to -pi."""
     scene = load_scene("fourbar-elastic")
