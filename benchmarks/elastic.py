@@ -28,7 +28,7 @@ from analytic.elastic.segment_start import segment_start
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.elastic import Shape
-from models.files import load_scene, shipped
+from models.files import load_scene, names_of_scenes
 from models.scene import Scene
 from models.segmented import SegmentedScene
 from reports.output.provenance import processor
@@ -87,10 +87,8 @@ def milliseconds(scene: Scene) -> dict[str, float]:
 
 def main() -> None:
     """Print the tables."""
-    for name in shipped("elastic"):
+    for name in names_of_scenes("elastic"):
         scene = load_scene(name)
-        if scene.is_free:
-            continue
         found = milliseconds(scene)
         engine = found[f"MuJoCo, chain of {COUNT}"]
         print(f"{name:34}       ms    x rigid   x MuJoCo")
