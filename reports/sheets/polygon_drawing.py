@@ -13,10 +13,11 @@ from matplotlib.patches import Polygon as Patch
 
 from analytic.drawings.paper_scale import round_scale
 from analytic.drawings.polygon import Polygon, Quantity, Vector
+from analytic.drawings.vector_equation import Kind
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.drawing.lettering import Label, place
-from reports.figures.style import INK, POINTS, SIZE, width_in
+from reports.figures.style import INK, POINTS, SIZE, TINY, width_in
 from reports.sheets.canvas import Canvas, arrow, line, text
 from reports.sheets.paper import MM_PER_IN, Box
 
@@ -24,13 +25,21 @@ PADDING_MM = 9.0
 """Room for letters around a polygon."""
 BEYOND_MM = 6.0
 """By how much a dashed direction goes on beyond the crossing."""
-COLOURS = {
+COLOURS: dict[Kind, str] = {
     "whole": INK,
     "rotation": "#2e6f9e",
     "normal": "#3a7d44",
     "tangential": "#2e6f9e",
     "coriolis": "#b7791f",
     "sliding": "#d1495b",
+}
+WORDS: dict[Kind, str] = {
+    "whole": "of a point",
+    "rotation": "about a pin",
+    "normal": "normal",
+    "tangential": "tangential",
+    "coriolis": "Coriolis",
+    "sliding": "sliding",
 }
 IMAGE = "#8a94a0"
 POLES: dict[Quantity, str] = {"velocity": "pᵥ", "acceleration": "pₐ"}
@@ -106,6 +115,7 @@ def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
             )
     axes = canvas.layer(f"{quantity}-letters")
     _letters(axes, drawn, box)
+    _legend(axes, drawn.polygon, box)
 
 
 def _draw_vector(drawn: DrawnPolygon, vector: Vector, axes: Axes, quantity: str) -> None:
@@ -126,6 +136,16 @@ def _direction(drawn: DrawnPolygon, vector: Vector) -> tuple[Array, Array] | Non
         return None
     spare = BEYOND_MM * (end - start) / length
     return start - spare, end + spare
+
+
+def _legend(axes: Axes, polygon: Polygon, box: Box) -> None:
+    """What the colours of the vectors are, of those that there are."""
+    there = {vector.kind for vector in polygon.vectors}
+    words = [(WORDS[kind], colour) for kind, colour in COLOURS.items() if kind in there]
+    x = box.left + 1.5
+    for told, colour in words:
+        text(axes, x, box.bottom + 1.8, told, TINY, color=colour)
+        x += MM_PER_IN * width_in(told, TINY) + 3.0
 
 
 def _letters(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
