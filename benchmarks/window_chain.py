@@ -30,6 +30,7 @@ if __name__ == "__main__":  # run as a file: the packages are beside this folder
 from concurrent.futures import ProcessPoolExecutor
 
 from analytic.free.window_chain import ChainMotion
+from models.errors import EngineError
 from models.window_chain import Chain
 from reports.compare.free_chain import ChainErrors, hold
 from reports.output.provenance import processor
@@ -221,28 +222,36 @@ def timings() -> None:
 
 
 def timed(case: Case, count: int) -> float:
-    """Microseconds per step of a chain that is about to lie flat."""
+    """Microseconds per step of a chain that is about to lie flat; NaN where the engine gives up on
+    it there."""
     turning = ChainMotion(Chain(count))
     times = np.linspace(0.0, turning.period_s / 2.0, 20_001)
     flat = float(np.interp(0.0, -turning.at(times)[0], times))
     start = turning.motion(np.array([flat - BEFORE_FLAT_S])).state(0)
-    timing = time_run(
-        Chain(count).scene(),
-        start,
-        case.engine,
-        case.profile,
-        dt_s=case.dt_s,
-        steps=STEPS,
-        repeats=1 if count >= 100 else 3,
-        drive="free",
-        settings=case.settings,
-    )
+    try:
+        timing = time_run(
+            Chain(count).scene(),
+            start,
+            case.engine,
+            case.profile,
+            dt_s=case.dt_s,
+            steps=STEPS,
+            repeats=1 if count >= 100 else 3,
+            drive="free",
+            settings=case.settings,
+        )
+    except EngineError as error:
+        print(f"  {case.words}, {count} windows: {error}")
+        return math.nan
     return timing.best.us_per_step
 
 
 def exponent(us: np.ndarray) -> tuple[float, float]:
-    """The slope of log(time) over log(N) for the longer chains, and its standard error."""
-    used = np.array(COUNTS) >= FITTED
+    """The slope of log(time) over log(N) for the longer chains, and its standard error; NaN of
+    fewer than three."""
+    used = (np.array(COUNTS) >= FITTED) & np.isfinite(us)
+    if used.sum() < 3:
+        return math.nan, math.nan
     x, y = np.log(np.array(COUNTS)[used]), np.log(us[used])
     slope, level = np.polyfit(x, y, 1)
     off = y - slope * x - level
