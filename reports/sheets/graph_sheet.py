@@ -73,6 +73,10 @@ def graphs(scene: Scene, name: str, divisions: int, paper: Paper) -> GraphSheet:
 
     Raises CrankcheckError for a quantity that the scene has not, and for parts too narrow to draw.
     """
+    if scene.is_free:
+        raise CrankcheckError(
+            f"{scene.name}: it is let go, and has no period to draw; give its driver a law"
+        )
     at, dense = sampled(scene, name, divisions, DENSE)
     boxes = _boxes(paper)
     wide = boxes[0].width - POLE_ROOM - 6.0

@@ -34,7 +34,8 @@ def evaluated(table: FormulaTable) -> dict[str, Array]:
     with np.errstate(invalid="ignore", divide="ignore"):
         for column in table.columns:
             if column.first is None:
-                values[column.name] = _of(column.formula, values, given)
+                value = _of(column.formula, values, given)  # one number where all rows have it
+                values[column.name] = np.broadcast_to(value, table.count)
             elif column.first == "0":
                 values[column.name] = np.arange(table.count, dtype=float)
             else:

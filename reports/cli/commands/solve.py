@@ -47,6 +47,11 @@ def run_solve(request: SolveRequest, console: Console) -> None:
         check_file(request.output, "-o", (*ENDINGS, PAGE), inputs=[find_scene(request.scene)])
     scene = load_scene(request.scene)
     asked = elastic_choice(request)
+    if request.family is not None:
+        from reports.cli.commands.solve_family import run_family  # slow to import
+
+        run_family(scene, request, console)
+        return
     if scene.elastic:
         from reports.cli.commands.solve_elastic import run_solve_elastic  # slow to import
 
@@ -59,11 +64,6 @@ def run_solve(request: SolveRequest, console: Console) -> None:
         run_solve_free(scene, request, console)
         return
     _check_driven(scene, request)
-    if request.family is not None:
-        from reports.cli.commands.solve_family import run_family  # slow to import
-
-        run_family(scene, request, console)
-        return
     along = [_along(scene, text) for text in request.along]
     structure = analyse(scene)
     motion = (

@@ -11,6 +11,7 @@ from models.scene import Scene
 from reports.cli.commands.solve import instants_of
 from reports.cli.showing import SolveRequest
 from reports.output.write import write
+from reports.workbook.beside_values import MOST_LIVE
 from reports.workbook.family import family
 from reports.workbook.live_workbook import formulas_of, live_workbook
 
@@ -20,12 +21,18 @@ WORKBOOK = ".xlsx"
 def run_family(scene: Scene, request: SolveRequest, console: Console) -> None:
     """Write the family. Raises CrankcheckError for what can not be asked."""
     assert request.family is not None
+    _check(scene, request)
     name, values = _values(request.family)
     if request.output is None or request.output.suffix.lower() != WORKBOOK:
         raise CrankcheckError(
             f"--family {request.family}: it is a workbook; give -o FILE{WORKBOOK}"
         )
     time_s = instants_of(scene, request)
+    if time_s.size > MOST_LIVE:
+        raise CrankcheckError(
+            f"--family {request.family}: {time_s.size} rows of formulas; a spreadsheet takes up to "
+            f"{MOST_LIVE} while one looks on: take fewer turns, or fewer steps in a turn"
+        )
     step_deg = math.degrees(float(time_s[1]) * scene.driver.law.peak_speed_rad_s)
     table = formulas_of(scene, time_s.size, step_deg)
     if table is None:
@@ -37,6 +44,23 @@ def run_family(scene: Scene, request: SolveRequest, console: Console) -> None:
     write(request.output, live_workbook(family(table, name, values), origin))
     told = f"{request.output}: {len(values)} members of {scene.name}, {time_s.size} rows"
     console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
+
+
+def _check(scene: Scene, request: SolveRequest) -> None:
+    """Refuse a family of what has none, or of a single position. Raises CrankcheckError."""
+    if scene.elastic or scene.is_free:
+        bends = "has elastic links" if scene.elastic else "is let go"
+        raise CrankcheckError(
+            f"--family {request.family}: {scene.name} {bends}; formulas are those of rigid links "
+            "and a crank at constant speed"
+        )
+    for option, given in (
+        ("--at-deg", request.at_deg is not None),
+        ("--forces", request.forces),
+        ("--figures", request.figures is not None),
+    ):
+        if given:
+            raise CrankcheckError(f"--family with {option}: a family is a workbook of whole turns")
 
 
 def _values(text: str) -> tuple[str, list[float]]:

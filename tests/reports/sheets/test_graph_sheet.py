@@ -50,6 +50,11 @@ def test_sliders_and_coordinates_are_drawn_within_their_graphs(name: str, of: st
     assert part == pytest.approx(round(part))  # whole millimetres
 
 
+def test_what_is_let_go_has_no_period_to_draw() -> None:
+    with pytest.raises(CrankcheckError, match="let go, and has no period"):
+        sheet_of("fourbar-swing", "rocker")
+
+
 @pytest.mark.parametrize(
     ("of", "divisions", "told"),
     [

@@ -185,6 +185,19 @@ def test_a_family_has_every_member_s_own_numbers_and_three_charts() -> None:
 
 
 @pytest.mark.parametrize(
+    ("scene", "name"),
+    [("fourbar-lecture-1", "BC"), ("slotted-lever", "R"), ("slider-crank-offset", "e")],
+)
+def test_every_kind_has_families(scene: str, name: str) -> None:
+    _, table = live(scene)
+    (value,) = (each.value for each in table.inputs if each.name == name)
+    columns = evaluated(family(table, name, [value, 1.01 * value]))
+    for title, drawn in table.charts.items():
+        for column in drawn:
+            assert columns[f"{column}_1"] == pytest.approx(evaluated(table)[column]), title
+
+
+@pytest.mark.parametrize(
     ("name", "values", "told"),
     [
         ("L", [3.5, 1.5], "L=1.5: this member can not be assembled with its crank at"),
