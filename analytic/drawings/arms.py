@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.drawings.body_rates import BodyRates
-from analytic.drawings.placement import quarter_turn
+from analytic.drawings.placed_mechanism import quarter_turn
 from analytic.drawings.vector_equation import Kind, Term, Way
 from models.array import Array
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.drawings.placement import quarter_turn
+from analytic.drawings.placed_mechanism import quarter_turn
 from models.array import Array
 
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.drawings.body_rates import BodyRates
-from analytic.drawings.placement import quarter_turn
+from analytic.drawings.placed_mechanism import quarter_turn
 from models.array import Array
 from models.errors import CrankcheckError
 

@@ -10,11 +10,11 @@ import numpy as np
 from analytic.drawings.arms import NodeMotion, Origin
 from analytic.drawings.body_rates import STILL, BodyRates
 from analytic.drawings.dyad_polygon import DyadPolygon, Known, dyad_polygon
-from analytic.drawings.placement import DriverState, Placement, quarter_turn
+from analytic.drawings.placed_mechanism import DriverState, PlacedMechanism, quarter_turn
 from analytic.drawings.polygon import (
+    DrawingStep,
     Polygon,
     Quantity,
-    Step,
     Vector,
     end_of,
     images_of,
@@ -35,7 +35,7 @@ class DrawnPolygons:
     ``undetermined`` names the groups that could not be drawn, and why.
     """
 
-    placement: Placement
+    placement: PlacedMechanism
     velocity: Polygon
     acceleration: Polygon
     rates: Mapping[str, BodyRates]
@@ -51,7 +51,7 @@ def draw_polygons(scene: Scene, driver: DriverState) -> DrawnPolygons:
     Where two directions of a group are parallel (a limit position, a change point) it and what
     hangs on it is left out and named. Raises as `analytic.kinematics.solve`.
     """
-    placement = Placement.of(scene, driver)
+    placement = PlacedMechanism.of(scene, driver)
     table = _Table(placement)
     table.draw_driver()
     undetermined = [said for part in placement.structure.order if (said := table.draw(part))]
@@ -71,9 +71,11 @@ def draw_polygons(scene: Scene, driver: DriverState) -> DrawnPolygons:
 class _Table:
     """What is on the drawing table: the steps of both polygons, and the bodies that are known."""
 
-    placement: Placement
+    placement: PlacedMechanism
     rates: dict[str, BodyRates] = field(default_factory=lambda: {GROUND: STILL})
-    steps: dict[Quantity, list[Step]] = field(default_factory=lambda: {q: [] for q in QUANTITIES})
+    steps: dict[Quantity, list[DrawingStep]] = field(
+        default_factory=lambda: {q: [] for q in QUANTITIES}
+    )
 
     def draw_driver(self) -> None:
         """The crank's points from the pole: a^n towards the pivot, a^t across."""
@@ -120,9 +122,9 @@ class _Table:
         ways = [arm.acceleration_way(velocity) for arm in dyad.arms]
         acceleration, drawn_a = self._crossed("acceleration", ways, dyad)
         title, node = _title(dyad.group), {dyad.node: velocity}
-        self.steps["velocity"].append(Step(title, drawn_v[0], drawn_v[1] | node))
+        self.steps["velocity"].append(DrawingStep(title, drawn_v[0], drawn_v[1] | node))
         node = {dyad.node: acceleration}
-        self.steps["acceleration"].append(Step(title, drawn_a[0], drawn_a[1] | node))
+        self.steps["acceleration"].append(DrawingStep(title, drawn_a[0], drawn_a[1] | node))
         self.rates |= dyad.rates(self.placement, NodeMotion(velocity, acceleration))
 
     def _crossed(
@@ -178,7 +180,7 @@ class _Table:
     ) -> None:
         body = self.rates[self.placement.scene.driver.link]
         nodes = {name: end_of(body, at, quantity) for name, at in places.items()}
-        self.steps[quantity].append(Step(title, tuple(vectors), nodes))
+        self.steps[quantity].append(DrawingStep(title, tuple(vectors), nodes))
 
 
 def _laid(quantity: Quantity, start: Array, terms: Iterable[Term]) -> list[Vector]:

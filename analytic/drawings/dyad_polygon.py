@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 
 from analytic.drawings.arms import Arm, NodeMotion, Origin, RotatingArm, SlidingArm
 from analytic.drawings.body_rates import BodyRates
-from analytic.drawings.placement import Placement
+from analytic.drawings.placed_mechanism import PlacedMechanism
 from analytic.structure.groups import Group
 from models.array import Array
 from models.joints import sliding_body
@@ -28,8 +28,7 @@ from models.scene import GROUND
 
 @dataclass(frozen=True)
 class DyadPolygon:
-    """A group and its two arms to ``node`` at ``place`` [m]; ``carried`` are the bodies of the
-    first and the second arm."""
+    """A group and its two arms to ``node``."""
 
     group: Group
     arms: tuple[Arm, Arm]
@@ -38,7 +37,7 @@ class DyadPolygon:
     def node(self) -> str:
         return self.arms[0].node
 
-    def rates(self, placement: Placement, node: NodeMotion) -> dict[str, BodyRates]:
+    def rates(self, placement: PlacedMechanism, node: NodeMotion) -> dict[str, BodyRates]:
         """How the bodies of the group move."""
         return _RATES[self.group.kind](self, placement, node)
 
@@ -46,7 +45,7 @@ class DyadPolygon:
 class Known:
     """The bodies that are drawn already."""
 
-    def __init__(self, placement: Placement, rates: Mapping[str, BodyRates]) -> None:
+    def __init__(self, placement: PlacedMechanism, rates: Mapping[str, BodyRates]) -> None:
         self.placement, self.rates = placement, rates
 
     def has(self, point: str) -> bool:
@@ -77,7 +76,9 @@ class Known:
         return SlidingArm(origin, node or inner, along, slider, body)
 
 
-def dyad_polygon(placement: Placement, rates: Mapping[str, BodyRates], group: Group) -> DyadPolygon:
+def dyad_polygon(
+    placement: PlacedMechanism, rates: Mapping[str, BodyRates], group: Group
+) -> DyadPolygon:
     """The group with its arms, the bodies that it hangs on being known by their ``rates``."""
     return DyadPolygon(group, _ARMS[group.kind](Known(placement, rates), group))
 
@@ -110,28 +111,32 @@ def _rpp(known: Known, g: Group) -> tuple[Arm, Arm]:
     return SlidingArm(known.pin(g.outer1), node, along, g.inner, outer.frame), outer
 
 
-def _guide_of(placement: Placement, g: Group) -> tuple[str, str, str]:
+def _guide_of(placement: PlacedMechanism, g: Group) -> tuple[str, str, str]:
     """The guide of an RPR group, the pin of what slides on it, and its own pin."""
     guide = placement.scene.sliders[g.inner].on
     pins = (g.outer1, g.outer2) if guide == g.second else (g.outer2, g.outer1)
     return guide, *pins
 
 
-def _rates_rrr(d: DyadPolygon, _: Placement, node: NodeMotion) -> dict[str, BodyRates]:
+def _rates_rrr(d: DyadPolygon, _: PlacedMechanism, node: NodeMotion) -> dict[str, BodyRates]:
     one, other = d.arms
     assert isinstance(one, RotatingArm)
     assert isinstance(other, RotatingArm)
     return {d.group.first: one.rates(node), d.group.second: other.rates(node)}
 
 
-def _rates_rrp(d: DyadPolygon, placement: Placement, node: NodeMotion) -> dict[str, BodyRates]:
+def _rates_rrp(
+    d: DyadPolygon, placement: PlacedMechanism, node: NodeMotion
+) -> dict[str, BodyRates]:
     one, other = d.arms
     assert isinstance(one, RotatingArm)
     assert isinstance(other, SlidingArm)
     return {d.group.first: one.rates(node), d.group.second: _carried(other, one.place, node)}
 
 
-def _rates_rpr(d: DyadPolygon, placement: Placement, node: NodeMotion) -> dict[str, BodyRates]:
+def _rates_rpr(
+    d: DyadPolygon, placement: PlacedMechanism, node: NodeMotion
+) -> dict[str, BodyRates]:
     about, along = d.arms
     assert isinstance(about, RotatingArm)
     assert isinstance(along, SlidingArm)
@@ -142,7 +147,9 @@ def _rates_rpr(d: DyadPolygon, placement: Placement, node: NodeMotion) -> dict[s
     return {guide: rates, slides: carried}
 
 
-def _rates_prp(d: DyadPolygon, placement: Placement, node: NodeMotion) -> dict[str, BodyRates]:
+def _rates_prp(
+    d: DyadPolygon, placement: PlacedMechanism, node: NodeMotion
+) -> dict[str, BodyRates]:
     place = placement.points[d.group.inner]
     one, other = d.arms
     assert isinstance(one, SlidingArm)
@@ -151,7 +158,9 @@ def _rates_prp(d: DyadPolygon, placement: Placement, node: NodeMotion) -> dict[s
     return {d.group.first: first, d.group.second: second}
 
 
-def _rates_rpp(d: DyadPolygon, placement: Placement, node: NodeMotion) -> dict[str, BodyRates]:
+def _rates_rpp(
+    d: DyadPolygon, placement: PlacedMechanism, node: NodeMotion
+) -> dict[str, BodyRates]:
     pinned, outer = d.arms
     assert isinstance(pinned, SlidingArm)
     assert isinstance(outer, SlidingArm)

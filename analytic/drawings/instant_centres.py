@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.drawings.placement import Placement, quarter_turn
+from analytic.drawings.placed_mechanism import PlacedMechanism, quarter_turn
 from models.array import Array
 from models.scene import GROUND
 
@@ -50,7 +50,7 @@ class _Known:
     by: tuple[tuple[Pair, Pair], ...] = ()
 
 
-def instant_centres(placement: Placement) -> dict[Pair, Centre]:
+def instant_centres(placement: PlacedMechanism) -> dict[Pair, Centre]:
     """The centres of all pairs of bodies that the theorem leads to, the joints' first."""
     size = placement.scene.longest_m
     found = _of_joints(placement, size)
@@ -67,7 +67,7 @@ def _centre(known: _Known, size: float) -> Centre:
     return Centre(size * np.array([x, y]) / w, None, known.by)
 
 
-def _of_joints(placement: Placement, size: float) -> dict[Pair, _Known]:
+def _of_joints(placement: PlacedMechanism, size: float) -> dict[Pair, _Known]:
     """The centres that pins and sliders show."""
     found: dict[Pair, _Known] = {}
     for point, bodies in placement.structure.pins.items():

@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 
 from analytic.drawings.body_rates import BodyRates
-from analytic.drawings.placement import Placement
+from analytic.drawings.placed_mechanism import PlacedMechanism
 from analytic.drawings.vector_equation import SUPERSCRIPTS, Kind
 from models.array import Array
 from models.scene import GROUND
@@ -52,7 +52,7 @@ class Vector:
 
 
 @dataclass(frozen=True)
-class Step:
+class DrawingStep:
     """What is drawn at once: the driver, or a group; ``nodes`` are the images that it gives."""
 
     title: str
@@ -69,7 +69,7 @@ class Polygon:
     """
 
     quantity: Quantity
-    steps: tuple[Step, ...]
+    steps: tuple[DrawingStep, ...]
     images: Mapping[str, Mapping[str, Array]]
     undetermined: tuple[str, ...] = ()
 
@@ -98,7 +98,7 @@ def name_of(quantity: Quantity, kind: Kind, subscript: str) -> str:
 
 
 def images_of(
-    placement: Placement, rates: Mapping[str, BodyRates], quantity: Quantity
+    placement: PlacedMechanism, rates: Mapping[str, BodyRates], quantity: Quantity
 ) -> dict[str, dict[str, Array]]:
     """The ends of the vectors of all points of all moving links that are placed."""
     return {

@@ -20,14 +20,16 @@ from analytic.kinematics import reach, solve_driven
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import GROUND
-from reports.drawing.lettering import Label, place
-from reports.figures.style import INK, POINTS, QUIET, SMALL, TINY, width_in
+from reports.figures.style import INK, QUIET, TINY
 from reports.sheets.canvas import Canvas, line, text
-from reports.sheets.paper import MM_PER_IN, Box, Paper
+from reports.sheets.letters import together, write_letters
+from reports.sheets.paper import Box, Paper
 from reports.sheets.scheme import draw_scheme
 from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 
 PADDING = 12.0
+NEAR_MM = 0.5
+"""Centres that stand nearer have their names in one label."""
 POLYGON_MM = 42.0
 """Room of the polygon of centres, in the upper right corner."""
 FAR = 1.5
@@ -202,35 +204,16 @@ def _centres(axes: Axes, sheet: CentreSheet) -> None:
 
 def _letters(axes: Axes, sheet: CentreSheet, points: Mapping[str, Array]) -> None:
     numbers = body_numbers(sheet.drawn)
-    spots: dict[str, Array] = {}
-    for pair, centre in sheet.centres.items():
-        if sheet.is_near(centre.place):
-            assert centre.place is not None
-            _add(spots, name_of(pair, numbers), sheet.at(centre.place))
-    if sheet.circles is not None and sheet.is_near(sheet.circles.acceleration_pole):
-        _add(spots, "Q", sheet.at(sheet.circles.acceleration_pole))
-    corner = np.array([sheet.box.left, sheet.box.bottom])
-    inches = {name: (at - corner) / MM_PER_IN for name, at in spots.items()}
-    labels = [
-        Label(name, (width_in(name, SMALL), SMALL / POINTS), at[None], 0.04)
-        for name, at in inches.items()
-    ]
-    heavy = (np.array(list(points.values())) - corner) / MM_PER_IN
-    thick = np.column_stack([heavy, np.full(len(heavy), 0.04)])
-    frame = (sheet.box.width / MM_PER_IN, sheet.box.height / MM_PER_IN)
-    centres = place(labels, thick, np.zeros((0, 2)), frame)
-    for label, at in zip(labels, centres, strict=True):
-        x, y = corner + MM_PER_IN * np.array(at)
-        text(axes, x, y, label.text, ha="center", va="center", color=INK)
-
-
-def _add(spots: dict[str, Array], name: str, at: Array) -> None:
-    """A name at a place; names of one place stand together."""
-    for other, there in spots.items():
-        if np.hypot(*(there - at)) < 0.5:
-            spots[f"{other}, {name}"] = spots.pop(other)
-            return
-    spots[name] = at
+    places = {name_of(pair, numbers): centre.place for pair, centre in sheet.centres.items()}
+    if sheet.circles is not None:
+        places["Q"] = sheet.circles.acceleration_pole
+    at = {
+        name: sheet.at(place)
+        for name, place in places.items()
+        if place is not None and sheet.is_near(place)
+    }
+    drawn = np.array(list(points.values()))
+    write_letters(axes, together(at, NEAR_MM), drawn, sheet.box, (0.04, 0.04))
 
 
 def body_numbers(drawn: DrawnPolygons) -> dict[str, int]:

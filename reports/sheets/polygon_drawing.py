@@ -19,6 +19,7 @@ from models.errors import CrankcheckError
 from reports.drawing.lettering import Label, place
 from reports.figures.style import INK, POINTS, SIZE, TINY, width_in
 from reports.sheets.canvas import Canvas, arrow, line, text
+from reports.sheets.letters import together
 from reports.sheets.paper import MM_PER_IN, Box
 
 PADDING_MM = 9.0
@@ -43,8 +44,8 @@ WORDS: dict[Kind, str] = {
 }
 IMAGE = "#8a94a0"
 POLES: dict[Quantity, str] = {"velocity": "pᵥ", "acceleration": "pₐ"}
-LEAST_MM = 8.0
-"""A polygon that is drawn smaller can not be read."""
+NEAR_MM = 0.3
+"""Images that stand nearer have their letters in one label."""
 
 
 @dataclass(frozen=True)
@@ -157,7 +158,8 @@ def _letters(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
         at |= {lower_case(name) + prime: drawn.at(v) for name, v in image.items() if np.any(v)}
     at |= {lower_case(name) + prime: drawn.at(v) for name, v in polygon.nodes.items()}
     corner = np.array([box.left, box.bottom])
-    names, spots = _together(at)
+    joined = together(at, NEAR_MM)
+    names, spots = list(joined), list(joined.values())
     labels = [
         Label(
             name, (width_in(name, SIZE), SIZE / POINTS), ((spot - corner) / MM_PER_IN)[None], 0.03
@@ -174,20 +176,6 @@ def _letters(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
     for label, (x, y) in zip(labels, centres, strict=True):
         at_x, at_y = corner + MM_PER_IN * np.array([x, y])
         text(axes, at_x, at_y, label.text, SIZE, ha="center", va="center")
-
-
-def _together(at: dict[str, Array]) -> tuple[list[str], list[Array]]:
-    """Names of images that stand on one spot, as one label."""
-    names: list[str] = []
-    spots: list[Array] = []
-    for name, spot in at.items():
-        same = [i for i, other in enumerate(spots) if np.hypot(*(other - spot)) < 0.3]
-        if same:
-            names[same[0]] += f", {name}"
-        else:
-            names.append(name)
-            spots.append(spot)
-    return names, spots
 
 
 def _sampled(start: Array, end: Array) -> Array:

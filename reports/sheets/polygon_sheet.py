@@ -29,9 +29,10 @@ from models.scene import GROUND
 from reports.figures.style import QUIET, SMALL, TINY
 from reports.output.numbers import readable
 from reports.sheets.canvas import Canvas, text
+from reports.sheets.letters import write_letters
 from reports.sheets.paper import Box, Paper
 from reports.sheets.polygon_drawing import DrawnPolygon, draw_polygon, fitted, frame_of
-from reports.sheets.scheme import bars, draw_scheme, write_letters
+from reports.sheets.scheme import bars, draw_scheme
 from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 
 GAP = 4.0
@@ -151,7 +152,7 @@ def _scheme(axes: Axes, sheet: PolygonSheet) -> None:
     points, box = sheet.drawn.placement.points, sheet.boxes["scheme"]
     places = {n: box.middle + (p - sheet.middle) / sheet.length_scale for n, p in points.items()}
     draw_scheme(axes, sheet.drawn.placement, places)
-    write_letters(axes, places, bars(sheet.drawn.placement, places), box)
+    write_letters(axes, places, bars(sheet.drawn.placement, places), box, (0.05, 0.03))
 
 
 def _table(axes: Axes, sheet: PolygonSheet) -> None:

@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Arc, Circle
 
 from analytic.drawings.paper_scale import round_scale
-from analytic.drawings.placement import DriverState, Placement
+from analytic.drawings.placed_mechanism import DriverState, PlacedMechanism
 from analytic.kinematics import reach, solve_driven
 from analytic.structure.groups import Group
 from models.array import Array
@@ -43,7 +43,7 @@ class PositionSheet:
     [m], and the scale of lengths [m/mm]."""
 
     scene: Scene
-    placement: Placement
+    placement: PlacedMechanism
     angles: Array
     points: dict[str, Array]
     loci: dict[str, Array]
@@ -79,7 +79,7 @@ def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
     box = inner_box(paper)
     room = np.array([box.width, box.height]) - 2 * PADDING
     scale = max(round_scale(s, r) for s, r in zip(size, room, strict=True) if s > 0.0)
-    placement = Placement.of(scene, DriverState(float(angles[0]), 1.0))
+    placement = PlacedMechanism.of(scene, DriverState(float(angles[0]), 1.0))
     sheet = PositionSheet(scene, placement, angles, points, loci, scale, corner + size / 2, paper)
     _check_apart(sheet, divisions)
     return sheet

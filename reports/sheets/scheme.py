@@ -11,13 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 from matplotlib.patches import Polygon as Patch
 
-from analytic.drawings.placement import Placement, quarter_turn
+from analytic.drawings.placed_mechanism import PlacedMechanism, quarter_turn
 from models.array import Array
 from models.scene import GROUND
-from reports.drawing.lettering import Label, place
-from reports.figures.style import INK, POINTS, QUIET, SMALL, width_in
-from reports.sheets.canvas import line, text
-from reports.sheets.paper import MM_PER_IN, Box
+from reports.figures.style import INK, QUIET
+from reports.sheets.canvas import line
 
 PIN_MM, BLOCK_MM, FOOT_MM = 0.9, (5.0, 3.0), 3.2
 HATCH_MM, HATCHES = 1.1, 5
@@ -25,7 +23,7 @@ FRONT = 6
 """Pins lie over everything."""
 
 
-def draw_scheme(axes: Axes, placement: Placement, places: Mapping[str, Array]) -> None:
+def draw_scheme(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]) -> None:
     """The mechanism with its points at ``places`` [mm]."""
     scene = placement.scene
     for name, slider in scene.sliders.items():
@@ -107,7 +105,7 @@ def _block(axes: Axes, place: Array, along: Array, *, on_ground: bool) -> None:
             _hatched(axes, start, end)
 
 
-def _guide(axes: Axes, placement: Placement, places: Mapping[str, Array], name: str) -> None:
+def _guide(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array], name: str) -> None:
     """The line of a guide that moves, from its nearest point through the block."""
     slider = placement.scene.sliders[name]
     along, block = placement.along(name), places[slider.point]
@@ -117,7 +115,7 @@ def _guide(axes: Axes, placement: Placement, places: Mapping[str, Array], name: 
     line(axes, block + low * along, block + high * along, linewidth=1.0, color=QUIET, zorder=1)
 
 
-def bars(placement: Placement, places: Mapping[str, Array]) -> Array:
+def bars(placement: PlacedMechanism, places: Mapping[str, Array]) -> Array:
     """Points along everything that is drawn (n, 2) [mm]: links, blocks, feet."""
     drawn = [np.array(list(places.values()))]
     for link in placement.scene.links.values():
@@ -133,19 +131,3 @@ def bars(placement: Placement, places: Mapping[str, Array]) -> Array:
 
 def _along(start: Array, end: Array) -> Array:
     return np.linspace(start, end, max(int(np.hypot(*(end - start))), 1) + 1)
-
-
-def write_letters(
-    axes: Axes, places: Mapping[str, Array], drawn: Array, box: Box, size: float = SMALL
-) -> None:
-    """Letters beside their points, clear of what is ``drawn`` (n, 2) and of one another [mm]."""
-    corner = np.array([box.left, box.bottom])
-    labels = [
-        Label(name, (width_in(name, size), size / POINTS), ((at - corner) / MM_PER_IN)[None], 0.05)
-        for name, at in places.items()
-    ]
-    heavy = np.column_stack([(drawn - corner) / MM_PER_IN, np.full(len(drawn), 0.03)])
-    frame = (box.width / MM_PER_IN, box.height / MM_PER_IN)
-    for label, at in zip(labels, place(labels, heavy, np.zeros((0, 2)), frame), strict=True):
-        x, y = corner + MM_PER_IN * np.array(at)
-        text(axes, x, y, label.text, size, ha="center", va="center")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import Console
 
 from analytic.drawings.drawn_polygons import draw_polygons
-from analytic.drawings.placement import DriverState
+from analytic.drawings.placed_mechanism import DriverState
 from models.array import Array
 from models.files import find_scene, load_scene
 from reports.cli.commands.sheets import ENDINGS, save_sheet

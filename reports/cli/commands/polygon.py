@@ -7,7 +7,7 @@ import math
 from rich.console import Console
 
 from analytic.drawings.drawn_polygons import DrawnPolygons, draw_polygons
-from analytic.drawings.placement import DriverState
+from analytic.drawings.placed_mechanism import DriverState
 from models.errors import CrankcheckError, harmless
 from models.files import find_scene, load_scene
 from models.scene import Scene

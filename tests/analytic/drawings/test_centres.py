@@ -11,7 +11,7 @@ from analytic.drawings.centrodes import centrodes
 from analytic.drawings.curvature_circles import curvature_circles
 from analytic.drawings.drawn_polygons import DrawnPolygons, draw_polygons
 from analytic.drawings.instant_centres import instant_centres
-from analytic.drawings.placement import DriverState
+from analytic.drawings.placed_mechanism import DriverState
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped

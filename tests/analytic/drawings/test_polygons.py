@@ -10,7 +10,7 @@ import pytest
 
 from analytic.drawings.drawn_polygons import DrawnPolygons, draw_polygons
 from analytic.drawings.paper_scale import book_scales, round_scale
-from analytic.drawings.placement import DriverState
+from analytic.drawings.placed_mechanism import DriverState
 from analytic.drawings.polygon import Polygon
 from analytic.kinematics import reach, solve_driven
 from models.files import load_scene, shipped

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from analytic.drawings.drawn_polygons import draw_polygons
-from analytic.drawings.placement import DriverState
+from analytic.drawings.placed_mechanism import DriverState
 from analytic.kinematics import solve_driven
 from models.errors import CrankcheckError
 from models.files import load_scene

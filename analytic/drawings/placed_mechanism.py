@@ -24,7 +24,7 @@ class DriverState:
 
 
 @dataclass(frozen=True)
-class Placement:
+class PlacedMechanism:
     """The places of all points [m], (2,) each, and the angles of all bodies [rad], blocks and the
     ground with them; no rates, which the polygons find."""
 
@@ -35,7 +35,7 @@ class Placement:
     angles: Mapping[str, float]
 
     @staticmethod
-    def of(scene: Scene, driver: DriverState) -> Placement:
+    def of(scene: Scene, driver: DriverState) -> PlacedMechanism:
         """The scene with its driver there. Raises as `analytic.kinematics.solve`."""
         structure = analyse(scene)
         one = np.ones(1)
@@ -47,7 +47,7 @@ class Placement:
             if slider.link is None:
                 angles[sliding_body(slider)] = angles[slider.on] + sliding_angle(slider)
         points = {name: np.array(point.position[0]) for name, point in motion.points.items()}
-        return Placement(scene, structure, driver, points, angles)
+        return PlacedMechanism(scene, structure, driver, points, angles)
 
     def along(self, slider: str) -> Array:
         """The unit vector along the line of a slider."""
