@@ -97,7 +97,8 @@ class SolveRequest:
         str | None,
         typer.Option(
             metavar="NAME=A,B,...",
-            help="With -o FILE.xlsx: formulas of mechanisms that differ in a length.",
+            help="With -o FILE.xlsx, .html, .svg or .pdf: mechanisms that differ in a number, such "
+            "as a length.",
         ),
     ] = None
 

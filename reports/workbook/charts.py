@@ -12,21 +12,25 @@ from openpyxl.chart import (  # type: ignore[import-untyped]  # as above
     ScatterChart,
     Series,
 )
+from openpyxl.chart.axis import ChartLines  # type: ignore[import-untyped]  # as above
+from openpyxl.chart.shapes import GraphicalProperties  # type: ignore[import-untyped]  # as above
+from openpyxl.drawing.line import LineProperties  # type: ignore[import-untyped]  # as above
 from openpyxl.worksheet.properties import (  # type: ignore[import-untyped]  # as above
     PageSetupProperties,
 )
 
 SHEET = "charts"
 WIDE_CM, HIGH_CM, ROWS_EACH = 24.0, 9.0, 19
+GRID, LINE_EMU = "D9DDE3", 15875
+"""Colour of the lines of a grid, and width of a curve, 1.25 pt."""
 
 
 @dataclass(frozen=True)
 class Curves:
-    """Columns of a sheet by number, over the column ``over``, in rows below a head."""
+    """Pairs of columns of a sheet by number, across and up, in rows below a head."""
 
     sheet: str
-    over: int
-    columns: Sequence[int]
+    pairs: Sequence[tuple[int, int]]
     rows: int
 
 
@@ -43,12 +47,18 @@ def add_chart(book: Workbook, number: int, title: str, curves: Curves) -> None:
     chart = ScatterChart()
     chart.title, chart.style, chart.scatterStyle = title, 2, "lineMarker"
     chart.width, chart.height = WIDE_CM, HIGH_CM
-    chart.x_axis.title, chart.x_axis.delete, chart.y_axis.delete = "time [s]", False, False
-    chart.x_axis.tickLblPos, chart.legend.position = "low", "b"
-    across = Reference(source, min_col=curves.over, min_row=2, max_row=last)
-    for column in curves.columns:
-        drawn = Reference(source, min_col=column, min_row=1, max_row=last)
+    chart.x_axis.title, chart.legend.position = "time [s]", "b"
+    for axis in (chart.x_axis, chart.y_axis):
+        axis.delete, axis.tickLblPos = False, "low"
+        axis.number_format = "General"  # its own, and not the many digits of the cells
+        axis.numFmt.sourceLinked = False
+        grey = GraphicalProperties(ln=LineProperties(solidFill=GRID))
+        axis.majorGridlines = ChartLines(spPr=grey)
+    for over, up in curves.pairs:
+        across = Reference(source, min_col=over, min_row=2, max_row=last)
+        drawn = Reference(source, min_col=up, min_row=1, max_row=last)
         series = Series(drawn, across, title_from_data=True)
         series.marker.symbol, series.smooth = "none", False
+        series.graphicalProperties.line.width = LINE_EMU
         chart.series.append(series)
     sheet.add_chart(chart, f"A{1 + ROWS_EACH * number}")

@@ -29,13 +29,15 @@ def drive_inputs(scene: Scene, pin: str, step_deg: float) -> tuple[Input, ...]:
     x, y = less(points[pin], points[scene.driver_pivot])
     start = math.degrees(law.start_rad + math.atan2(y, x))
     return (
-        Input("omega", law.speed_rad_s, "rad/s", "angular velocity of the crank"),
+        Input("omega", law.speed_rad_s, "rad/s", "angular velocity of the crank", "not 0"),
         Input("start_deg", start, "deg", "angle of the crank at time 0"),
-        Input("step_deg", step_deg, "deg", "angle of the crank between two rows"),
+        Input("step_deg", step_deg, "deg", "angle of the crank between two rows", "above 0"),
     )
 
 
 def continued(name: str, head: str, within: str) -> Column:
     """The angle of a column ``within`` a turn, going on continuously from row to row."""
     step = f"([{within}]-[{name}-1])"
-    return Column(name, head, f"[{within}]-2*PI()*ROUND({step}/(2*PI()),0)", first=f"[{within}]")
+    on = f"[{within}]-2*PI()*ROUND({step}/(2*PI()),0)"
+    formula = f"IF(ISNUMBER([{name}-1]),{on},[{within}])"  # begins anew after a gap
+    return Column(name, head, formula, first=f"[{within}]")

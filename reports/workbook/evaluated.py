@@ -19,12 +19,15 @@ FUNCTIONS = {
     "ABS": np.abs,
     "ATAN2": lambda x, y: np.arctan2(y, x),  # a spreadsheet has x first
     "PI": lambda: np.pi,
+    "IF": np.where,
+    "ISNUMBER": np.isfinite,
+    "NA": lambda: np.nan,
 }
-BEFORE = "-1"
 
 
 def evaluated(table: FormulaTable) -> dict[str, Array]:
-    """Every column by name, (rows,); NaN where a mechanism can not be assembled.
+    """Every column by name, (rows,); NaN where a mechanism can not be assembled. Columns of words
+    are arrays of text.
 
     Columns that build on the row before are told by what they end in: numbers of rows, and angles
     that go on continuously.

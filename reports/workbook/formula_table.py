@@ -1,4 +1,4 @@
-"""A table of formulas over inputs, as cells of a sheet.
+"""A table of formulas over inputs: columns that are written once, for all rows of a sheet.
 
 Spreadsheets take -a^2 for (-a)^2: a square that is taken away stands in brackets.
 
@@ -11,24 +11,39 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 from openpyxl.utils import get_column_letter  # type: ignore[import-untyped]  # ships no stubs
-from openpyxl.worksheet.worksheet import (  # type: ignore[import-untyped]  # as above
-    Worksheet,
-)
 
 NAME = re.compile(r"\{([\w]+)\}|\[([\w]+?)(-1)?\]")
-HEAD_ROWS = 1
+STATE = "state"
+"""The column that says in words whether a row's position can be assembled."""
+ASSEMBLED = "assembled"
+ZERO = "1E-14"
+"""What is not told from 0: its root is 1e-7, and rates are that many times less certain."""
+Range = Literal["any", "above 0", "not 0", "1 or -1"]
 
 
 @dataclass(frozen=True)
 class Input:
-    """A number that may be changed: its name in formulas, its unit, and what it is."""
+    """A number that may be changed: its name in formulas, its unit, what it is, which values it
+    takes, and the link whose length it is, if it is one's."""
 
     name: str
     value: float
     unit: str
     told: str
+    range: Range = "any"
+    link: str = ""
+
+    def allows(self, value: float) -> bool:
+        """Whether the value is in its range."""
+        return {
+            "any": True,
+            "above 0": value > 0.0,
+            "not 0": value != 0.0,
+            "1 or -1": abs(value) == 1.0,
+        }[self.range]
 
 
 @dataclass(frozen=True)
@@ -52,49 +67,24 @@ class FormulaTable:
     count: int
     charts: Mapping[str, Sequence[str]]
 
+    def place(self, column: str) -> int:
+        """The number of a column by its name, from 1."""
+        return [each.name for each in self.columns].index(column) + 1
+
     def letter(self, column: str) -> str:
         """The letter of a column by its name."""
+        return str(get_column_letter(self.place(column)))
+
+    @property
+    def states(self) -> list[str]:
+        """The columns that say whether a position can be assembled: one, or one a member."""
         names = [each.name for each in self.columns]
-        return str(get_column_letter(names.index(column) + 1))
+        return [name for name in names if name == STATE or name.startswith(f"{STATE}_")]
 
 
-def write_inputs(sheet: Worksheet, inputs: Sequence[Input]) -> None:
-    """The inputs, one a row: name, value, unit, and what it is."""
-    sheet.append(["name", "value", "unit", "what it is"])
-    for each in inputs:
-        sheet.append([each.name, each.value, each.unit or None, each.told])
-    for letter, width in zip("ABCD", (14, 24, 10, 70), strict=True):
-        sheet.column_dimensions[letter].width = width
-
-
-def write_columns(sheet: Worksheet, table: FormulaTable, inputs_of: str) -> None:
-    """The columns, with the inputs in a sheet of the name ``inputs_of``."""
-    places = {each.name: f"'{inputs_of}'!$B${row}" for row, each in enumerate(table.inputs, 2)}
-    sheet.append([_head(each.head, table, places) for each in table.columns])
-    for number in range(table.count):
-        row = number + HEAD_ROWS + 1
-        cells = []
-        for column in table.columns:
-            plain = column.first if number == 0 and column.first is not None else column.formula
-            cells.append("=" + _placed(plain, table, places, row))
-        sheet.append(cells)
-    sheet.freeze_panes = "B2"
-    for column in table.columns:
-        sheet.column_dimensions[table.letter(column.name)].width = 16
-
-
-def _head(head: str, table: FormulaTable, inputs: Mapping[str, str]) -> str:
-    """A head; one that has an input in it shows what that is now."""
-    return _placed(head, table, inputs, 0) if head.startswith("=") else head
-
-
-def _placed(formula: str, table: FormulaTable, inputs: Mapping[str, str], row: int) -> str:
-    """The formula with cells in place of names."""
-
-    def cell(match: re.Match[str]) -> str:
-        given, column, before = match.groups()
-        if given:
-            return inputs[given]
-        return f"{table.letter(column)}{row - 1 if before else row}"
-
-    return NAME.sub(cell, formula)
+def state_column(inside: str) -> Column:
+    """Says by the sign of the column ``inside``, the square of what the rates are divided by over
+    its size, whether a row can be assembled."""
+    words = f'"cannot be assembled",IF([{inside}]>{ZERO},"{ASSEMBLED}","rates not determined")'
+    formula = f'IF(ISNUMBER([{inside}]),IF([{inside}]<0,{words}),"not determined")'
+    return Column(STATE, STATE, formula)

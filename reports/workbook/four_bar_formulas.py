@@ -18,7 +18,7 @@ from analytic.structure.groups import Group
 from models.joints import less
 from models.scene import Scene
 from reports.workbook.drive_inputs import DRIVE_COLUMNS, continued, drive_inputs
-from reports.workbook.formula_table import Column, FormulaTable, Input
+from reports.workbook.formula_table import Column, FormulaTable, Input, state_column
 
 COLUMNS = (
     *DRIVE_COLUMNS,
@@ -27,7 +27,10 @@ COLUMNS = (
     Column("Dx", "D x m", "{AD}*COS(RADIANS({AD_deg}))"),
     Column("Dy", "D y m", "{AD}*SIN(RADIANS({AD_deg}))"),
     Column("BD", "BD m", "SQRT(([Dx]-[Bx])^2+([Dy]-[By])^2)"),
-    Column("inner", "angle CBD rad", "ACOS(({BC}^2+[BD]^2-{CD}^2)/(2*{BC}*[BD]))"),
+    Column("cosine", "cos CBD", "({BC}^2+[BD]^2-{CD}^2)/(2*{BC}*[BD])"),
+    Column("inside", "sin^2 CBD", "1-[cosine]^2"),
+    state_column("inside"),
+    Column("inner", "angle CBD rad", "ACOS(IF([inside]<0,NA(),[cosine]))"),
     Column("psi", "of BC rad", "ATAN2([Dx]-[Bx],[Dy]-[By])+{branch}*[inner]"),
     Column("Cx", "C x m", "[Bx]+{BC}*COS([psi])"),
     Column("Cy", "C y m", "[By]+{BC}*SIN([psi])"),
@@ -65,13 +68,17 @@ def four_bar_table(scene: Scene, group: Group, count: int, step_deg: float) -> F
     near = next(pin for pin in pins if pin != far)
     x, y = less(scene.ground[far], scene.ground[pivot])
     left = scene.branch.get(group.branch_key, 1) * (1 if pins[0] == near else -1)
+    crank = scene.driver.link
+    coupler, rocker = (
+        (group.first, group.second) if pins[0] == near else (group.second, group.first)
+    )
     inputs = (
-        Input("AB", bar.driver, "m", "length of the driver"),
-        Input("BC", bar.coupler, "m", "length of the coupler"),
-        Input("CD", bar.rocker, "m", "length of the rocker"),
-        Input("AD", bar.ground, "m", "distance of the pins on the ground"),
+        Input("AB", bar.driver, "m", "length of the driver", "above 0", crank),
+        Input("BC", bar.coupler, "m", "length of the coupler", "above 0", coupler),
+        Input("CD", bar.rocker, "m", "length of the rocker", "above 0", rocker),
+        Input("AD", bar.ground, "m", "distance of the pins on the ground", "above 0"),
         Input("AD_deg", math.degrees(math.atan2(y, x)), "deg", "direction of AD"),
-        Input("branch", left, "", "+1: C to the left of the way from B to D; -1: to the right"),
+        Input("branch", left, "", "1: C to the left of the way from B to D; -1: right", "1 or -1"),
         *drive_inputs(scene, near, step_deg),
     )
     return FormulaTable(inputs, COLUMNS, count, CHARTS)

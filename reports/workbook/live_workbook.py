@@ -12,12 +12,12 @@ from analytic.structure.mobility import analyse
 from models.laws import ConstantSpeed
 from models.scene import GROUND, Scene
 from reports.workbook.charts import Curves, add_chart
-from reports.workbook.formula_table import FormulaTable, write_columns, write_inputs
+from reports.workbook.formula_cells import TABLE, write_columns, write_inputs
+from reports.workbook.formula_table import FormulaTable
 from reports.workbook.four_bar_formulas import four_bar_table
 from reports.workbook.slider_crank_formulas import slider_crank_table
 from reports.workbook.slotted_lever_formulas import slotted_lever_table
 
-INPUTS, TABLE = "inputs", "live"
 TIME = "time"
 
 
@@ -48,12 +48,17 @@ def _is_slotted_lever(scene: Scene, group: Group) -> bool:
 
 def add_live(book: Workbook, table: FormulaTable) -> None:
     """Put inputs, formulas and charts into a workbook."""
-    write_inputs(book.create_sheet(INPUTS), table.inputs)
-    write_columns(book.create_sheet(TABLE), table, INPUTS)
-    places = {each.name: place for place, each in enumerate(table.columns, 1)}
+    write_inputs(book, table)
+    write_columns(book, table)
     for number, (title, names) in enumerate(table.charts.items()):
-        drawn = [places[name] for name in names]
-        add_chart(book, number, title, Curves(TABLE, places[TIME], drawn, table.count))
+        curves = [(table.place(_time_of(name, table)), table.place(name)) for name in names]
+        add_chart(book, number, title, Curves(TABLE, curves, table.count))
+
+
+def _time_of(column: str, table: FormulaTable) -> str:
+    """The times of a column: those of its member, where members have their own."""
+    own = f"{TIME}_{column.rpartition('_')[2]}"
+    return own if any(each.name == own for each in table.columns) else TIME
 
 
 def live_workbook(table: FormulaTable, origin: Mapping[str, str]) -> bytes:

@@ -19,13 +19,15 @@ from analytic.structure.groups import Group
 from models.joints import less, turned
 from models.scene import Scene, span
 from reports.workbook.drive_inputs import DRIVE_COLUMNS, drive_inputs
-from reports.workbook.formula_table import Column, FormulaTable, Input
+from reports.workbook.formula_table import Column, FormulaTable, Input, state_column
 
 COLUMNS = (
     *DRIVE_COLUMNS,
     Column("t", "t rad", "[phi]-RADIANS({line_deg})"),
     Column("aside", "R sin t - e m", "{R}*SIN([t])-{e}"),
-    Column("cosine", "cos f", "{branch}*SQRT(1-([aside]/{L})^2)"),
+    Column("inside", "cos^2 f", "1-([aside]/{L})^2"),
+    state_column("inside"),
+    Column("cosine", "cos f", "{branch}*SQRT(IF([inside]<0,NA(),[inside]))"),
     Column("f", "f rad", "ATAN2([cosine],[aside]/{L})"),
     Column("f_rate", "f' rad/s", "{omega}*{R}*COS([t])/({L}*[cosine])"),
     Column(
@@ -58,13 +60,15 @@ def slider_crank_table(scene: Scene, group: Group, count: int, step_deg: float) 
     ends = group.outer1, group.inner
     x0, e = turned(less(slider.through_m, pivot), -slider.direction_rad)
     radius = span({pin: crank.points[pin] for pin in (scene.driver_pivot, group.outer1)})
+    length = span({pin: rod.points[pin] for pin in ends})
+    branch = scene.branch.get(group.branch_key, 1)
     inputs = (
-        Input("R", radius, "m", "length of the crank"),
-        Input("L", span({pin: rod.points[pin] for pin in ends}), "m", "length of the rod"),
+        Input("R", radius, "m", "length of the crank", "above 0", crank.name),
+        Input("L", length, "m", "length of the rod", "above 0", rod.name),
         Input("e", e, "m", "the line of the slider passes the pivot so far on its left"),
         Input("line_deg", math.degrees(slider.direction_rad), "deg", "direction of the line"),
         Input("X0", x0, "m", "X from which the displacement counts"),
-        Input("branch", scene.branch.get(group.branch_key, 1), "", "+1: along the line; -1"),
+        Input("branch", branch, "", "1: the rod points along the line; -1: against it", "1 or -1"),
         *drive_inputs(scene, group.outer1, step_deg),
     )
     return FormulaTable(inputs, COLUMNS, count, CHARTS)

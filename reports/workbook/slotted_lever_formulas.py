@@ -15,13 +15,15 @@ from analytic.structure.groups import Group
 from models.joints import less, turned
 from models.scene import Scene, span
 from reports.workbook.drive_inputs import DRIVE_COLUMNS, continued, drive_inputs
-from reports.workbook.formula_table import Column, FormulaTable, Input
+from reports.workbook.formula_table import Column, FormulaTable, Input, state_column
 
 COLUMNS = (
     *DRIVE_COLUMNS,
     Column("x", "C to B, x m", "{R}*COS([phi])-{ACx}"),
     Column("y", "C to B, y m", "{R}*SIN([phi])-{ACy}"),
-    Column("rho", "rho m", "{branch}*SQRT([x]^2+[y]^2-{o}^2)"),
+    Column("inside", "(rho/R)^2", "([x]^2+[y]^2-{o}^2)/{R}^2"),
+    state_column("inside"),
+    Column("rho", "rho m", "{branch}*{R}*SQRT(IF([inside]<0,NA(),[inside]))"),
     Column("line", "of the line rad", "ATAN2([x],[y])-ATAN2([rho],{o})"),
     continued("theta", "theta of the line rad", "line"),
     Column("turn", "phi - theta rad", "[phi]-[line]"),
@@ -55,13 +57,14 @@ def slotted_lever_table(scene: Scene, group: Group, count: int, step_deg: float)
     x, y = less(scene.ground[pivot], scene.ground[scene.driver_pivot])
     rho0, o = turned(less(slider.through_m, lever.points[pivot]), -slider.direction_rad)
     radius = span({pin: crank.points[pin] for pin in (scene.driver_pivot, slider.point)})
+    branch = scene.branch.get(group.branch_key, 1)
     inputs = (
-        Input("R", radius, "m", "length of the crank"),
+        Input("R", radius, "m", "length of the crank", "above 0", crank.name),
         Input("ACx", x, "m", "from the crank's pivot to the lever's, along x"),
         Input("ACy", y, "m", "and along y"),
         Input("o", o, "m", "the line is so far to the left of the lever's pivot"),
         Input("rho0", rho0, "m", "rho from which the displacement counts"),
-        Input("branch", scene.branch.get(group.branch_key, 1), "", "+1: B along the line; -1"),
+        Input("branch", branch, "", "1: B along the line from C; -1: against it", "1 or -1"),
         *drive_inputs(scene, slider.point, step_deg),
     )
     return FormulaTable(inputs, COLUMNS, count, CHARTS)

@@ -25,5 +25,6 @@ def add_value_charts(book: Workbook, sheet: str, columns: Sequence[str], rows: i
     for title, ending in KINDS:
         places = [k for k, name in enumerate(columns, 1) if name.endswith(ending)]
         if places:
-            add_chart(book, number, title, Curves(sheet, 1, places[:MOST_CURVES], rows))
+            pairs = [(1, place) for place in places[:MOST_CURVES]]
+            add_chart(book, number, title, Curves(sheet, pairs, rows))
             number += 1

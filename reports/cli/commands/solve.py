@@ -34,6 +34,7 @@ from reports.output.frame_file import ENDINGS, SHEET_ROWS, write_frame
 from reports.output.write import check_file, check_folder, write
 
 PAGE, WORKBOOK = ".html", ".xlsx"
+FAMILY_ENDINGS = (WORKBOOK, PAGE, ".svg", ".pdf")
 ON_SCREEN = 12
 IN_A_FILE = 360
 MOST_SAMPLES = 1_000_000
@@ -44,7 +45,8 @@ ENDLESS = 10**15
 def run_solve(request: SolveRequest, console: Console) -> None:
     """Show or write the reference. Raises CrankcheckError for what can not be asked."""
     if request.output is not None:
-        check_file(request.output, "-o", (*ENDINGS, PAGE), inputs=[find_scene(request.scene)])
+        endings = (*ENDINGS, PAGE) if request.family is None else FAMILY_ENDINGS
+        check_file(request.output, "-o", endings, inputs=[find_scene(request.scene)])
     scene = load_scene(request.scene)
     asked = elastic_choice(request)
     if request.family is not None:

@@ -1,4 +1,4 @@
-"""`crankcheck solve --family`: mechanisms that differ in one length, side by side in a workbook."""
+"""`crankcheck solve --family`: mechanisms that differ in one number, side by side."""
 
 from __future__ import annotations
 
@@ -8,14 +8,21 @@ from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
 from models.scene import Scene
-from reports.cli.commands.solve import instants_of
+from reports.cli.commands.solve import (
+    FAMILY_ENDINGS,
+    PAGE,
+    WORKBOOK,
+    elastic_choice,
+    instants_of,
+    refuse_times,
+)
 from reports.cli.showing import SolveRequest
 from reports.output.write import write
 from reports.workbook.beside_values import MOST_LIVE
 from reports.workbook.family import family
+from reports.workbook.family_curves import family_curves
+from reports.workbook.formula_table import FormulaTable
 from reports.workbook.live_workbook import formulas_of, live_workbook
-
-WORKBOOK = ".xlsx"
 
 
 def run_family(scene: Scene, request: SolveRequest, console: Console) -> None:
@@ -23,10 +30,19 @@ def run_family(scene: Scene, request: SolveRequest, console: Console) -> None:
     assert request.family is not None
     _check(scene, request)
     name, values = _values(request.family)
-    if request.output is None or request.output.suffix.lower() != WORKBOOK:
+    if request.output is None:
         raise CrankcheckError(
-            f"--family {request.family}: it is a workbook; give -o FILE{WORKBOOK}"
+            f"--family {request.family}: give a file for it, -o FILE{', FILE'.join(FAMILY_ENDINGS)}"
         )
+    content = _content(scene, request, _table(scene, request), name, values)
+    write(request.output, content)
+    rows = instants_of(scene, request).size
+    told = f"{request.output}: {len(values)} members of {scene.name}, {rows} rows"
+    console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
+
+
+def _table(scene: Scene, request: SolveRequest) -> FormulaTable:
+    """The formulas of a scene over the instants that are asked for. Raises CrankcheckError."""
     time_s = instants_of(scene, request)
     if time_s.size > MOST_LIVE:
         raise CrankcheckError(
@@ -40,10 +56,24 @@ def run_family(scene: Scene, request: SolveRequest, console: Console) -> None:
             f"--family: {scene.name} has no formulas of its own; a four-bar, a slider-crank or a "
             "slotted lever at constant speed has"
         )
-    origin = {"scene": scene.name, "source": scene.source, "family": request.family}
-    write(request.output, live_workbook(family(table, name, values), origin))
-    told = f"{request.output}: {len(values)} members of {scene.name}, {time_s.size} rows"
-    console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
+    return table
+
+
+def _content(
+    scene: Scene, request: SolveRequest, table: FormulaTable, name: str, values: list[float]
+) -> bytes | str:
+    """The file of the family, of the kind that its ending says."""
+    assert request.output is not None
+    ending = request.output.suffix.lower()
+    if ending == WORKBOOK:
+        origin = {"scene": scene.name, "source": scene.source, "family": str(request.family)}
+        return live_workbook(family(table, name, values), origin)
+    from reports.face.family_report import family_drawing, family_page_of  # slow to import
+
+    curves = family_curves(table, name, values)
+    if ending == PAGE:
+        return family_page_of(scene, curves)
+    return family_drawing(scene, curves, ending[1:])
 
 
 def _check(scene: Scene, request: SolveRequest) -> None:
@@ -56,11 +86,18 @@ def _check(scene: Scene, request: SolveRequest) -> None:
         )
     for option, given in (
         ("--at-deg", request.at_deg is not None),
+        ("--clockwise", request.clockwise),
+        ("--along", bool(request.along)),
         ("--forces", request.forces),
         ("--figures", request.figures is not None),
     ):
         if given:
-            raise CrankcheckError(f"--family with {option}: a family is a workbook of whole turns")
+            raise CrankcheckError(
+                f"--family with {option}: a family is position, velocity and acceleration over "
+                f"whole turns; leave {option} out"
+            )
+    refuse_times(scene, request)
+    elastic_choice(request).refuse_of_rigid(scene)
 
 
 def _values(text: str) -> tuple[str, list[float]]:
