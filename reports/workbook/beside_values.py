@@ -9,7 +9,7 @@ from typing import Any
 from models.array import Array
 from models.scene import Scene
 from reports.workbook.live_workbook import add_live, formulas_of
-from reports.workbook.value_charts import add_value_charts
+from reports.workbook.value_charts import add_value_charts, widen
 
 MOST_LIVE, MOST_DRAWN = 20_000, 100_000
 """Rows that a spreadsheet computes, and draws, while one looks on."""
@@ -17,7 +17,7 @@ MOST_LIVE, MOST_DRAWN = 20_000, 100_000
 
 def beside_values(scene: Scene, time_s: Array, columns: Sequence[str]) -> Callable[[Any], None]:
     """What puts formulas and charts into the workbook of a motion over ``time_s``, evenly spaced
-    from 0, whose sheet ``motion`` has the ``columns``."""
+    from 0, whose first sheet has the ``columns``."""
     count = time_s.size
     table = None
     if 1 < count <= MOST_LIVE:
@@ -25,9 +25,19 @@ def beside_values(scene: Scene, time_s: Array, columns: Sequence[str]) -> Callab
         table = formulas_of(scene, count, step)
 
     def put(book: Any) -> None:
+        values = book.worksheets[0]
+        widen(values)
         if table is not None:
             add_live(book, table)
         elif 1 < count <= MOST_DRAWN:
-            add_value_charts(book, "motion", columns, count)
+            add_value_charts(book, values.title, columns, count)
 
     return put
+
+
+def left_out(count: int) -> str:
+    """What a workbook of so many rows does not have, in words that end a sentence."""
+    if count <= MOST_LIVE:
+        return ""
+    charts = f", and charts of {MOST_DRAWN}" * (count > MOST_DRAWN)
+    return f"; values alone: formulas are of at most {MOST_LIVE} rows{charts}"

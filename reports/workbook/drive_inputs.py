@@ -10,6 +10,7 @@ from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.workbook.formula_table import Column, Input
 
+STEP_TOLD = "angle of the crank between two rows; above 30, angles may miss whole turns"
 DRIVE_COLUMNS = (
     Column("n", "n", "[n-1]+1", first="0"),
     Column("time", "time s", "[n]*RADIANS({step_deg})/ABS({omega})"),
@@ -31,7 +32,7 @@ def drive_inputs(scene: Scene, pin: str, step_deg: float) -> tuple[Input, ...]:
     return (
         Input("omega", law.speed_rad_s, "rad/s", "angular velocity of the crank", "not 0"),
         Input("start_deg", start, "deg", "angle of the crank at time 0"),
-        Input("step_deg", step_deg, "deg", "angle of the crank between two rows", "above 0"),
+        Input("step_deg", step_deg, "deg", STEP_TOLD, "above 0"),
     )
 
 

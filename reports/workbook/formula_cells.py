@@ -6,6 +6,7 @@ protected without a password: what may be changed is coloured and open.
 
 from __future__ import annotations
 
+import math
 import re
 
 import numpy as np
@@ -33,9 +34,13 @@ from reports.workbook.formula_table import ASSEMBLED, NAME, FormulaTable, Input
 INPUTS, TABLE = "inputs", "live"
 TAKEN = re.compile(r"[rc]|[a-z]{1,3}\d+", re.IGNORECASE)
 """Names that a spreadsheet takes for a row, a column, or a cell."""
-BOLD, SOFT, RED = Font(bold=True), Font(color="9AA3AD"), Font(color="C00000", bold=True)
+FACE = "Calibri"
+BOLD, SOFT = Font(name=FACE, bold=True), Font(color="9AA3AD")
+RED = Font(color="C00000", bold=True)
 OPEN, HEAD = PatternFill("solid", "FFF2CC"), PatternFill("solid", "E8ECF1")
 WIDTHS = (22, 16, 9, 62, 13)
+ON_A_PAGE = 20
+"""Columns that are printed side by side."""
 DIGITS, FEWEST, MOST = 7, 1e-4, 1e7
 """Significant digits that are shown, and sizes that are shown without a power of ten."""
 
@@ -60,7 +65,7 @@ def write_inputs(book: Workbook, table: FormulaTable) -> None:
     _append_outcome(sheet, table)
     for letter, width in zip("ABCDE", WIDTHS, strict=True):
         sheet.column_dimensions[letter].width = width
-    _finish(sheet, "A2")
+    _finish(sheet, "A2", len(WIDTHS))
 
 
 def _open(sheet: Worksheet, row: int, each: Input) -> None:
@@ -125,18 +130,20 @@ def write_columns(book: Workbook, table: FormulaTable) -> None:
         letter = table.letter(name)
         rule = FormulaRule([f'{letter}2<>"{ASSEMBLED}"'], font=RED)
         sheet.conditional_formatting.add(f"{letter}2:{letter}{table.count + 1}", rule)
-    _finish(sheet, "D2")
+    _finish(sheet, "D2", len(table.columns))
 
 
-def _finish(sheet: Worksheet, frozen: str) -> None:
-    """Heads that stand out and stay in sight; cells that are not open to be changed."""
+def _finish(sheet: Worksheet, frozen: str, columns: int) -> None:
+    """Heads that stand out and stay in sight, pages that can be read, and cells that can not be
+    changed by accident."""
     for cell in sheet[1]:
         cell.font, cell.fill = BOLD, HEAD
         cell.alignment = Alignment(wrap_text=True, vertical="top")
     sheet.freeze_panes = frozen
     sheet.sheet_properties.pageSetUpPr = PageSetupProperties(fitToPage=True)
     sheet.page_setup.orientation, sheet.page_setup.fitToHeight = "landscape", 0
-    sheet.print_title_rows = "1:1"
+    sheet.page_setup.fitToWidth = math.ceil(columns / ON_A_PAGE)
+    sheet.print_title_rows, sheet.row_dimensions[1].height = "1:1", 30
     sheet.protection.sheet = True
     sheet.protection.formatColumns = sheet.protection.formatCells = False  # these are allowed
 
@@ -150,7 +157,7 @@ def _number_format(values: Array) -> str:
     largest = float(np.nanmax(np.abs(values), initial=0.0, where=np.isfinite(values)))
     if not FEWEST < largest < MOST:
         return f"0.{'0' * (DIGITS - 1)}E+00"
-    return "0." + "0" * (DIGITS - 1 - int(np.floor(np.log10(largest))))
+    return "0." + "0" * (DIGITS - 1 - math.floor(math.log10(largest)))
 
 
 def _head(head: str, table: FormulaTable) -> str:

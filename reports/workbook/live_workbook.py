@@ -11,6 +11,8 @@ from analytic.structure.groups import Group
 from analytic.structure.mobility import analyse
 from models.laws import ConstantSpeed
 from models.scene import GROUND, Scene
+from reports.output.provenance import crankcheck_version
+from reports.output.write import clean
 from reports.workbook.charts import Curves, add_chart
 from reports.workbook.formula_cells import TABLE, write_columns, write_inputs
 from reports.workbook.formula_table import FormulaTable
@@ -67,8 +69,11 @@ def live_workbook(table: FormulaTable, origin: Mapping[str, str]) -> bytes:
     about = book.active
     assert about is not None
     about.title = "source"
-    for what, value in {"what": "value", **origin}.items():
-        about.append([what, value])
+    facts = {"what": "value", **origin, "crankcheck": crankcheck_version()}
+    for what, value in facts.items():
+        about.append([what, clean(value)])
+    for letter, width in zip("AB", (14, 90), strict=True):
+        about.column_dimensions[letter].width = width
     for row in about.iter_rows():
         for cell in row:
             cell.data_type = "s"  # a text that begins with "=" is no formula

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from openpyxl import Workbook  # type: ignore[import-untyped]  # ships no stubs
 
@@ -17,6 +18,8 @@ KINDS = (
     ("accelerations of sliders [m/s^2]", "_acceleration_m_s2"),
 )
 MOST_CURVES = 8
+MARGIN, NARROWEST = 2, 12
+"""Of the width of a column over that of its head, and the smallest [characters]."""
 
 
 def add_value_charts(book: Workbook, sheet: str, columns: Sequence[str], rows: int) -> None:
@@ -28,3 +31,10 @@ def add_value_charts(book: Workbook, sheet: str, columns: Sequence[str], rows: i
             pairs = [(1, place) for place in places[:MOST_CURVES]]
             add_chart(book, number, title, Curves(sheet, pairs, rows))
             number += 1
+
+
+def widen(sheet: Any) -> None:
+    """Columns as wide as their heads."""
+    for cell in sheet[1]:
+        width = max(len(str(cell.value)) + MARGIN, NARROWEST)
+        sheet.column_dimensions[cell.column_letter].width = width

@@ -233,10 +233,11 @@ def _write(path: Path, scene: Scene, motion: Motion, *, is_turn: bool) -> str:
         write(path, page_of(scene, with_forces=motion.forces is not None))
         return f"{path}: {scene.name} over one turn"
     origin = {"scene": scene.name, "source": scene.source}
-    frame, more = motion_frame(motion), None
+    frame, more, told = motion_frame(motion), None, ""
     if path.suffix.lower() == WORKBOOK and is_turn:
-        from reports.workbook.beside_values import beside_values
+        from reports.workbook.beside_values import beside_values, left_out
 
+        told = left_out(motion.time_s.size)
         more = beside_values(scene, motion.time_s, list(frame.columns))
     write_frame(path, frame, "motion", origin, more)
-    return f"{path}: {motion.time_s.size} samples of {scene.name}"
+    return f"{path}: {motion.time_s.size} samples of {scene.name}{told}"

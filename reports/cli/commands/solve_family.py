@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 from rich.console import Console
 
@@ -20,9 +21,13 @@ from reports.cli.showing import SolveRequest
 from reports.output.write import write
 from reports.workbook.beside_values import MOST_LIVE
 from reports.workbook.family import family
-from reports.workbook.family_curves import family_curves
-from reports.workbook.formula_table import FormulaTable
+from reports.workbook.family_curves import FamilyCurves, family_curves
 from reports.workbook.live_workbook import formulas_of, live_workbook
+from reports.workbook.scene_family import scene_curves, scene_family
+from reports.workbook.scene_family_workbook import scene_family_workbook
+
+LARGEST = 1e9
+"""Of any number of a mechanism [SI]."""
 
 
 def run_family(scene: Scene, request: SolveRequest, console: Console) -> None:
@@ -34,43 +39,37 @@ def run_family(scene: Scene, request: SolveRequest, console: Console) -> None:
         raise CrankcheckError(
             f"--family {request.family}: give a file for it, -o FILE{', FILE'.join(FAMILY_ENDINGS)}"
         )
-    content = _content(scene, request, _table(scene, request), name, values)
-    write(request.output, content)
-    rows = instants_of(scene, request).size
-    told = f"{request.output}: {len(values)} members of {scene.name}, {rows} rows"
-    console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
-
-
-def _table(scene: Scene, request: SolveRequest) -> FormulaTable:
-    """The formulas of a scene over the instants that are asked for. Raises CrankcheckError."""
     time_s = instants_of(scene, request)
     if time_s.size > MOST_LIVE:
         raise CrankcheckError(
-            f"--family {request.family}: {time_s.size} rows of formulas; a spreadsheet takes up to "
-            f"{MOST_LIVE} while one looks on: take fewer turns, or fewer steps in a turn"
+            f"--family {request.family}: {time_s.size} rows; a spreadsheet takes up to {MOST_LIVE} "
+            "of each member while one looks on: take fewer turns, or fewer steps in a turn"
         )
+    origin = {"scene": scene.name, "source": scene.source, "family": request.family}
+    is_workbook = request.output.suffix.lower() == WORKBOOK
     step_deg = math.degrees(float(time_s[1]) * scene.driver.law.peak_speed_rad_s)
     table = formulas_of(scene, time_s.size, step_deg)
-    if table is None:
-        raise CrankcheckError(
-            f"--family: {scene.name} has no formulas of its own; a four-bar, a slider-crank or a "
-            "slotted lever at constant speed has"
+    if table is not None and is_workbook:
+        content: bytes | str = live_workbook(family(table, name, values), origin)
+    elif table is not None:
+        content = _drawn(scene, request.output, family_curves(table, name, values))
+    else:
+        members = scene_family(scene, name, values, time_s)
+        content = (
+            scene_family_workbook(members, origin)
+            if is_workbook
+            else _drawn(scene, request.output, scene_curves(members))
         )
-    return table
+    write(request.output, content)
+    told = f"{request.output}: {len(values)} members of {scene.name}, {time_s.size} rows"
+    console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
 
 
-def _content(
-    scene: Scene, request: SolveRequest, table: FormulaTable, name: str, values: list[float]
-) -> bytes | str:
-    """The file of the family, of the kind that its ending says."""
-    assert request.output is not None
-    ending = request.output.suffix.lower()
-    if ending == WORKBOOK:
-        origin = {"scene": scene.name, "source": scene.source, "family": str(request.family)}
-        return live_workbook(family(table, name, values), origin)
+def _drawn(scene: Scene, path: Path, curves: FamilyCurves) -> bytes | str:
+    """The page, or the drawing, of a family."""
     from reports.face.family_report import family_drawing, family_page_of  # slow to import
 
-    curves = family_curves(table, name, values)
+    ending = path.suffix.lower()
     if ending == PAGE:
         return family_page_of(scene, curves)
     return family_drawing(scene, curves, ending[1:])
@@ -81,8 +80,8 @@ def _check(scene: Scene, request: SolveRequest) -> None:
     if scene.elastic or scene.is_free:
         bends = "has elastic links" if scene.elastic else "is let go"
         raise CrankcheckError(
-            f"--family {request.family}: {scene.name} {bends}; formulas are those of rigid links "
-            "and a crank at constant speed"
+            f"--family {request.family}: {scene.name} {bends}; members of a family have rigid "
+            "links, and follow a law of motion"
         )
     for option, given in (
         ("--at-deg", request.at_deg is not None),
@@ -107,6 +106,8 @@ def _values(text: str) -> tuple[str, list[float]]:
         values = [float(number) for number in numbers.split(",")] if equals else []
     except ValueError:
         values = []
-    if not values or not all(map(math.isfinite, values)):
-        raise CrankcheckError(f"--family {text}: write a name and numbers, such as L=3.5,2.5,2.2")
+    if not values or not all(abs(value) <= LARGEST for value in values):
+        raise CrankcheckError(
+            f"--family {text}: write a name and numbers up to {LARGEST:g}, such as L=3.5,2.5,2.2"
+        )
     return name.strip(), values

@@ -62,22 +62,3 @@ def test_what_can_not_be_drawn_is_refused(arguments: tuple[str, ...], told: str)
     assert result.exit_code != 0
     message = result.output + str(result.exception)
     assert told in " ".join(message.split())
-
-
-@pytest.mark.parametrize(
-    ("scene", "more", "told"),
-    [
-        ("fourbar-elastic", (), "has elastic links"),
-        ("fourbar-swing", (), "is let go"),
-        ("fourbar-lecture-1", ("--at-deg", "3"), "--family with --at-deg"),
-        ("fourbar-lecture-1", ("--forces",), "--family with --forces"),
-        ("shaper", (), "has no formulas of its own"),
-        ("fourbar-lecture-1", ("--turns", "100"), "36001 rows of formulas"),
-    ],
-)
-def test_a_family_of_what_has_none_is_refused(
-    scene: str, more: tuple[str, ...], told: str, tmp_path: Path
-) -> None:
-    asked = ["solve", scene, "--family", "BC=0.25,0.3", "-o", str(tmp_path / "f.xlsx"), *more]
-    result = CliRunner().invoke(app, asked)
-    assert told in " ".join((result.output + str(result.exception)).split())

@@ -1,14 +1,10 @@
-"""Workbooks of formulas, recalculated after changes, against the reference."""
+"""Tables of formulas and families of them, against the reference."""
 
 from __future__ import annotations
 
 import io
-import shutil
-import subprocess
 from dataclasses import replace
-from pathlib import Path
 
-import formulas
 import numpy as np
 import openpyxl
 import pytest
@@ -16,81 +12,10 @@ import pytest
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
-from models.motion import Motion
-from models.scene import Scene
 from reports.workbook.evaluated import evaluated
 from reports.workbook.family import family
-from reports.workbook.formula_table import FormulaTable
 from reports.workbook.live_workbook import formulas_of, live_workbook
-
-ROWS, STEP_DEG = 13, 27.5
-KINDS = ("fourbar-lecture-1", "slider-crank-offset", "slotted-lever")
-Columns = dict[str, np.ndarray]
-
-
-def live(name: str) -> tuple[Scene, FormulaTable]:
-    scene = load_scene(name)
-    table = formulas_of(scene, ROWS, STEP_DEG)
-    assert table is not None
-    return scene, table
-
-
-def scaled_links(scene: Scene, link: str, factor: float) -> Scene:
-    """The scene with a link longer by a factor."""
-    old = scene.links[link]
-    points = {name: (factor * x, factor * y) for name, (x, y) in old.points.items()}
-    return replace(scene, links=dict(scene.links) | {link: replace(old, points=points)})
-
-
-CHANGED = {
-    "fourbar-lecture-1": ("coupler", "BC"),
-    "slider-crank-offset": ("rod", "L"),
-    "slotted-lever": ("crank", "R"),
-}
-FACTOR = 1.125
-
-
-def changed(scene: Scene, table: FormulaTable) -> tuple[Scene, FormulaTable]:
-    """A length and the speed changed in both."""
-    link, name = CHANGED[scene.name]
-    longer = scaled_links(scene, link, FACTOR)
-    law = replace(longer.driver.law, speed_rad_s=7.0)
-    inputs = [
-        replace(each, value=each.value * FACTOR) if each.name == name
-        else replace(each, value=7.0) if each.name == "omega"
-        else each
-        for each in table.inputs
-    ]  # fmt: skip
-    faster = replace(longer, driver=replace(longer.driver, law=law))
-    return faster, replace(table, inputs=inputs)
-
-
-def held_to_the_reference(columns: Columns, scene: Scene) -> None:
-    """Every output of the columns is the reference's to 1e-12."""
-    motion = solve(scene, np.asarray(columns["time"], float), bound=False)
-    for name, exact in outputs(columns, scene, motion):
-        scale = max(1.0, float(np.abs(exact).max()))
-        assert np.asarray(columns[name], float) == pytest.approx(exact, abs=1e-12 * scale), name
-
-
-def outputs(columns: Columns, scene: Scene, motion: Motion) -> list[tuple[str, np.ndarray]]:
-    if "omega_bc" in columns:
-        names = {"bc": "coupler", "dc": "rocker"}
-        return [
-            (f"{kind}_{key}", getattr(motion.links[link], kind))
-            for key, link in names.items()
-            for kind in ("theta", "omega", "alpha")
-        ]
-    (slider,) = motion.sliders.values()
-    rates = ("s", slider.displacement), ("X_rate", slider.speed), ("X_gain", slider.acceleration)
-    if "X" in columns:
-        rod = motion.links["rod"]
-        return [*rates, ("omega_rod", rod.omega), ("alpha_rod", rod.alpha)]
-    lever = motion.links["lever"]
-    return [
-        ("s", slider.displacement), ("slide", slider.speed), ("gain", slider.acceleration),
-        ("theta", lever.theta), ("omega3", lever.omega), ("alpha3", lever.alpha),
-    ]  # fmt: skip
+from tests.worlds.live_tables import live
 
 
 @pytest.mark.parametrize("name", [n for n in shipped() if formulas_of(load_scene(n), 2, 1.0)])
@@ -105,50 +30,6 @@ def test_formulas_are_the_reference(name: str) -> None:
         assert min(float(np.abs(each - body.omega).max()) for each in found) < 1e-12 * 50
     for slider in motion.sliders.values():
         assert columns["s"] == pytest.approx(slider.displacement, abs=1e-12)
-
-
-@pytest.mark.parametrize("name", KINDS)
-def test_a_library_recalculates_a_changed_workbook_to_the_reference(
-    name: str, tmp_path: Path
-) -> None:
-    scene, table = live(name)
-    file = tmp_path / "live.xlsx"
-    write_changed(scene, table, file)
-    model = formulas.ExcelModel().loads(str(file)).finish()
-    solution = model.calculate()
-    columns = {}
-    for column in table.columns:
-        letter = table.letter(column.name)
-        cells = [f"'[{file.name}]LIVE'!{letter}{row}" for row in range(2, ROWS + 2)]
-        columns[column.name] = np.array([solution[cell].value[0, 0] for cell in cells])
-    held_to_the_reference(columns, changed(scene, table)[0])
-
-
-def write_changed(scene: Scene, table: FormulaTable, file: Path) -> None:
-    """The shipped workbook with two of its cells changed, as a user would."""
-    book = openpyxl.load_workbook(io.BytesIO(live_workbook(table, {"scene": scene.name})))
-    wanted = {each.name: each.value for each in changed(scene, table)[1].inputs}
-    for row in book["inputs"].iter_rows(min_row=2, max_row=1 + len(wanted)):
-        row[1].value = wanted[row[0].value]
-    book.save(file)
-
-
-@pytest.mark.skipif(shutil.which("soffice") is None, reason="apt-get install libreoffice-calc")
-def test_libreoffice_recalculates_changed_workbooks_to_the_reference(tmp_path: Path) -> None:
-    """One start of it, which takes seconds, for all: what a user's own program computes."""
-    files = []
-    for name in KINDS:
-        files.append(tmp_path / f"{name}.xlsx")
-        write_changed(*live(name), files[-1])
-    where = ["--headless", f"-env:UserInstallation={(tmp_path / 'profile').as_uri()}"]
-    convert = ["--convert-to", "xlsx", "--outdir", str(tmp_path / "out")]
-    subprocess.run(["soffice", *where, *convert, *map(str, files)], check=True, capture_output=True)
-    for name in KINDS:
-        scene, table = live(name)
-        sheet = openpyxl.load_workbook(tmp_path / "out" / f"{name}.xlsx", data_only=True)["live"]
-        rows = list(zip(*sheet.iter_rows(min_row=2, values_only=True), strict=True))
-        columns = {each.name: np.array(r) for each, r in zip(table.columns, rows, strict=True)}
-        held_to_the_reference(columns, changed(scene, table)[0])
 
 
 def test_the_paper_s_own_form_where_the_line_meets_the_crank() -> None:

@@ -1,0 +1,100 @@
+"""A family of any mechanism: scenes that differ in one number, each solved by the reference."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.kinematics import solve
+from models.array import Array
+from models.errors import CrankcheckError, ReachError, suggestion
+from models.laws import ConstantSpeed
+from models.motion import Motion
+from models.scene import GROUND, Scene, span
+from reports.workbook.family import check_values
+from reports.workbook.family_curves import KINDS, FamilyChart, FamilyCurves
+
+OMEGA = "omega"
+AXES = ("x", "y")
+
+
+@dataclass(frozen=True)
+class SceneFamily:
+    """The motions of scenes that differ in ``name``, each over the same share of its period."""
+
+    scene: Scene
+    name: str
+    unit: str
+    values: Sequence[float]
+    motions: Sequence[Motion]
+
+
+def scene_family(scene: Scene, name: str, values: Sequence[float], time_s: Array) -> SceneFamily:
+    """The members over the instants of the ``scene``; where they differ in speed each has its own.
+
+    Raises CrankcheckError for what the scene has not, and for a member that can not be assembled.
+    """
+    check_values(name, values)
+    turns = time_s / scene.driver.law.period_s
+    motions = []
+    members = [varied_scene(scene, name, value) for value in values]
+    for value, member in zip(values, members, strict=True):
+        try:
+            motions.append(solve(member, turns * member.driver.law.period_s, bound=False))
+        except ReachError as error:
+            raise CrankcheckError(
+                f"--family {name}={value:g}: this member cannot be assembled: {error}"
+            ) from None
+    return SceneFamily(scene, name, "rad/s" if name == OMEGA else "m", values, motions)
+
+
+def varied_scene(scene: Scene, name: str, value: float) -> Scene:
+    """The scene with the length of a link of two points, a coordinate of a pin on the ground, or
+    the speed of its driver set to ``value`` [m, rad/s]. Raises CrankcheckError."""
+    law = scene.driver.law
+    pin, _, axis = name.partition(".")
+    if name in scene.links and len(scene.links[name].points) == 2:
+        if value <= 0.0:
+            raise CrankcheckError(f"--family {name}={value:g}: a length; give numbers above 0")
+        link = scene.links[name]
+        factor = value / span(link.points)
+        points = {each: (factor * x, factor * y) for each, (x, y) in link.points.items()}
+        return replace(scene, links=dict(scene.links) | {name: replace(link, points=points)})
+    if pin in scene.ground and axis in AXES:
+        x, y = scene.ground[pin]
+        moved = (value, y) if axis == "x" else (x, value)
+        return replace(scene, ground=dict(scene.ground) | {pin: moved})
+    if name == OMEGA and isinstance(law, ConstantSpeed):
+        if value == 0.0:
+            raise CrankcheckError(f"--family {name}=0: a speed; give numbers that are not 0")
+        driver = replace(scene.driver, law=replace(law, speed_rad_s=value))
+        return replace(scene, driver=driver)
+    names = [each.name for each in scene.links.values() if len(each.points) == 2]
+    names += [f"{each}.{axis}" for each in scene.ground for axis in AXES]
+    names += [OMEGA] if isinstance(law, ConstantSpeed) else []
+    raise CrankcheckError(f"--family {name}: {suggestion(name, names, 'it has')}")
+
+
+def scene_curves(family: SceneFamily) -> FamilyCurves:
+    """The curves of what the mechanism drives: its last slider on the ground, else its last
+    link."""
+    scene, motions = family.scene, family.motions
+    sliders = [each.name for each in scene.sliders.values() if each.on == GROUND]
+    if sliders:
+        last = [motion.sliders[sliders[-1]] for motion in motions]
+        labels = "displacement [m]", "speed [m/s]", "acceleration [m/s²]"
+        series = [[each.displacement, each.speed, each.acceleration] for each in last]
+        name = sliders[-1]
+    else:
+        name = list(scene.links)[-1]
+        labels = "theta [rad]", "omega [rad/s]", "alpha [rad/s²]"
+        turned = [motion.links[name] for motion in motions]
+        series = [[each.theta, each.omega, each.alpha] for each in turned]
+    charts = [
+        FamilyChart(kind, f"{name}: {label}", [each[k] for each in series])
+        for k, (kind, label) in enumerate(zip(KINDS, labels, strict=True))
+    ]
+    angles = [np.degrees(motion.links[scene.driver.link].theta) for motion in motions]
+    return FamilyCurves(family.name, family.unit, family.values, angles, charts)
