@@ -10,7 +10,7 @@ from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.workbook.formula_table import Column, Input
 
-STEP_TOLD = "angle of the crank between two rows; above 30, angles may miss whole turns"
+STEP_TOLD = "angle of the crank between two rows; with over 30 turns may be lost"
 DRIVE_COLUMNS = (
     Column("n", "n", "[n-1]+1", first="0"),
     Column("time", "time s", "[n]*RADIANS({step_deg})/ABS({omega})"),

@@ -121,9 +121,12 @@ def write_columns(book: Workbook, table: FormulaTable) -> None:
     for place, column in enumerate(table.columns, 1):
         shape = _number_format(values[column.name])
         letter = table.letter(column.name)
-        sheet.column_dimensions[letter].width = 20 if column.name in table.states else 15
+        says = column.name in table.states
+        sheet.column_dimensions[letter].width = 20 if says else 15
         for (cell,) in sheet.iter_rows(min_row=2, min_col=place, max_col=place):
             cell.number_format = shape
+            if says:
+                cell.alignment = Alignment(horizontal="center")
     whole = f"A2:{table.letter(table.columns[-1].name)}{table.count + 1}"
     sheet.conditional_formatting.add(whole, FormulaRule(["ISNA(A2)"], font=SOFT))
     for name in table.states:

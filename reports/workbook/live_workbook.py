@@ -72,7 +72,7 @@ def live_workbook(table: FormulaTable, origin: Mapping[str, str]) -> bytes:
     facts = {"what": "value", **origin, "crankcheck": crankcheck_version()}
     for what, value in facts.items():
         about.append([what, clean(value)])
-    for letter, width in zip("AB", (14, 90), strict=True):
+    for letter, width in zip("AB", (14, 70), strict=True):
         about.column_dimensions[letter].width = width
     for row in about.iter_rows():
         for cell in row:
