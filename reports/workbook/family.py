@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -56,7 +56,7 @@ def check_values(name: str, values: Sequence[float]) -> None:
 
 def member_columns(
     table: FormulaTable, one: Input, values: Sequence[float]
-) -> list[Mapping[str, Array]]:
+) -> list[dict[str, Array]]:
     """The columns of each member, (rows,). Raises CrankcheckError for a member that has no
     position, or no rates, everywhere on the way of the crank."""
     found = []
