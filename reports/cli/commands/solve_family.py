@@ -40,10 +40,10 @@ def run_family(scene: Scene, request: SolveRequest, console: Console) -> None:
             f"--family {request.family}: give a file for it, -o FILE{', FILE'.join(FAMILY_ENDINGS)}"
         )
     time_s = instants_of(scene, request)
-    if time_s.size > MOST_LIVE:
+    if time_s.size * len(values) > MOST_LIVE:
         raise CrankcheckError(
-            f"--family {request.family}: {time_s.size} rows; a spreadsheet takes up to {MOST_LIVE} "
-            "of each member while one looks on: take fewer turns, or fewer steps in a turn"
+            f"--family {request.family}: {time_s.size} rows of {len(values)} members; at most "
+            f"{MOST_LIVE} of all together: take fewer turns, or fewer steps in a turn"
         )
     origin = {"scene": scene.name, "source": scene.source, "family": request.family}
     is_workbook = request.output.suffix.lower() == WORKBOOK

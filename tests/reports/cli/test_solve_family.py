@@ -41,7 +41,7 @@ def test_the_ending_says_what_is_written(
         ("fourbar-lecture-1", ("--along", "C:0"), "--family with --along"),
         ("fourbar-lecture-1", ("--steps", "9"), "--steps 9: fourbar-lecture-1 is driven"),
         ("fourbar-lecture-1", ("--modes", "2"), "--modes: fourbar-lecture-1 has no elastic links"),
-        ("fourbar-lecture-1", ("--turns", "100"), "36001 rows; a spreadsheet takes up to 20000"),
+        ("fourbar-lecture-1", ("--turns", "100"), "36001 rows of 2 members; at most 20000"),
         ("fourbar-lecture-1", ("--family", "BC=0.25,nan"), "write a name and numbers"),
         ("fourbar-lecture-1", ("--family", "BC"), "write a name and numbers"),
         ("fourbar-lecture-1", ("--family", "BC=0.25,0.01"), "BC=0.01: this member cannot be"),

@@ -12,6 +12,7 @@ import pytest
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
+from reports.workbook.beside_values import left_out
 from reports.workbook.evaluated import evaluated
 from reports.workbook.family import family
 from reports.workbook.live_workbook import formulas_of, live_workbook
@@ -99,3 +100,9 @@ def test_a_family_that_can_not_be_is_refused(name: str, values: list[float], tol
 def test_other_mechanisms_have_no_formulas() -> None:
     assert formulas_of(load_scene("shaper"), 3, 1.0) is None
     assert formulas_of(load_scene("scotch-yoke"), 3, 1.0) is None
+
+
+def test_a_workbook_of_very_many_rows_says_what_it_has_not() -> None:
+    assert left_out(20_000) == ""
+    assert left_out(20_001).endswith("formulas are of at most 20000 rows")
+    assert left_out(100_001).endswith("rows, and charts of 100000")

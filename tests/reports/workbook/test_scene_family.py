@@ -29,10 +29,12 @@ def test_members_are_the_reference_and_their_columns_and_charts_stand_in_a_workb
     scene = load_scene("sixbar-stephenson")
     family = scene_family(scene, "omega", [2.0, -5.0], TIMES)
     book = openpyxl.load_workbook(io.BytesIO(scene_family_workbook(family, {})))
+    turned_rad = TIMES[-1] * scene.driver.law.peak_speed_rad_s
     head, *rows = book["family"].iter_rows(values_only=True)
     for value in (2.0, -5.0):
         member = varied_scene(scene, "omega", value)
         times = [row[head.index(f"time_s, omega = {value:g}")] for row in rows]
+        assert times[-1] * abs(value) == pytest.approx(turned_rad)
         motion = solve(member, np.array(times))
         lever = [row[head.index(f"lever_alpha_rad_s2, omega = {value:g}")] for row in rows]
         assert lever == pytest.approx(motion.links["lever"].alpha)
