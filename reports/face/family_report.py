@@ -15,7 +15,7 @@ from reports.workbook.family_curves import KINDS, FamilyCurves
 def family_drawing(scene: Scene, curves: FamilyCurves, kind: str) -> bytes:
     """Three panels in one file of a kind of figures: svg or pdf."""
     title = _title(scene, curves)
-    notes = [f"{scene.source}.", *_notes(scene, curves)]
+    notes = [f"{scene.source}. {scene.note}".rstrip(), *_notes(scene, curves)]
     return saved(draw_family(curves, title, notes), kind, title)
 
 

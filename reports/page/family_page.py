@@ -22,4 +22,4 @@ def family_page(
         made="",
         first="family",
     )
-    return assembled(head, [family.build(curves, scene.source, notes, figures)])
+    return assembled(head, [family.build(scene, curves, notes, figures)])

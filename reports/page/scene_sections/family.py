@@ -5,12 +5,13 @@ from __future__ import annotations
 import base64
 from collections.abc import Mapping, Sequence
 
+from models.scene import Scene
 from reports.page.sections.section import Section
 from reports.workbook.family_curves import FamilyCurves, extremes
 
 
 def build(
-    curves: FamilyCurves, source: str, notes: Sequence[str], figures: Mapping[str, bytes]
+    scene: Scene, curves: FamilyCurves, notes: Sequence[str], figures: Mapping[str, bytes]
 ) -> Section:
     """The section; ``figures`` are SVG files by the kind of what they show."""
     return Section(
@@ -18,7 +19,7 @@ def build(
         title=f"Members over {curves.name}",
         template="scene_family.html",
         words={
-            "source": source,
+            "source": f"{scene.source}. {scene.note}".rstrip(),
             "name": curves.name,
             "labels": [chart.label for chart in curves.charts],
             "rows": extremes(curves),
