@@ -55,7 +55,7 @@ def rubbing_freedom(scene: Scene, limb: Limb, joint: str) -> Freedom | None:
 
 
 def friction_of(scene: Scene, limb: Limb, freedom: Freedom, writing: Writing) -> AttributeRow:
-    """The attributes of a joint that rubs, as stiff as the loops are; none for another.
+    """The attributes of a joint that rubs, as stiff as the step allows; none for another.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def friction_of(scene: Scene, limb: Limb, freedom: Freedom, writing: Writing) ->
                 "reference alone"
             )
         row: AttributeRow = {"frictionloss": one.size}
-        for key, value in writing.connect.items():
+        for key, value in (writing.rubbing or writing.connect).items():
             row[f"{key}friction"] = value
         return row
     return {}

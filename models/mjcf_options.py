@@ -20,7 +20,8 @@ class Writing:
     """What may be chosen about the text; what is left out is MuJoCo's own default.
 
     ``option`` and ``flag`` are attributes of the elements of that name, ``connect`` of every
-    ``equality/connect``. ``servo_gain`` [N m s/rad] replaces the flywheel by a velocity servo; a
+    ``equality/connect``, ``rubbing`` those of friction in joints, where they are others.
+    ``servo_gain`` [N m s/rad] replaces the flywheel by a velocity servo; a
     ``free`` crank has neither. The keyframe's velocities are those of ``delay_s`` after its
     positions.
     """
@@ -29,6 +30,7 @@ class Writing:
     option: Attributes = field(default_factory=dict)
     flag: Attributes = field(default_factory=dict)
     connect: Attributes = field(default_factory=dict)
+    rubbing: Attributes = field(default_factory=dict)
     flywheel_ratio: float = FLYWHEEL_RATIO
     servo_gain: float | None = None
     delay_s: float = 0.0

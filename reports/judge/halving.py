@@ -29,6 +29,9 @@ to it what their sums may be off by (`reports.compare.drive_rounding`)."""
 MOST_GROWTH = 1e3
 """A sensitivity of free motion from which on errors of phase cancel and add up as they like, and
 say nothing of an order."""
+SOLVED = 1e-5
+"""An error of free motion that does not shrink, of so small a share of its limit, is no floor of a
+model: where joints are nearly dependent an engine's solver leaves as much at any step."""
 BEHIND_DRIVE = 5.0
 """How far behind the rounding of the crank that of the other links may be."""
 
@@ -99,6 +102,7 @@ def followed(
         else (),
         cancels=errors.free is not None,
         known=beyond_engine(worst.quantity, errors),
+        solved=SOLVED * _limit(truth.scene, errors, tolerance, worst) if errors.free else 0.0,
     )
     if force is None:
         return Followed(of_places)
@@ -107,6 +111,12 @@ def followed(
         steps_s, pure(force), _share_words(force), exact, over=over(FORCES, exact)
     )
     return Followed(of_places, of_forces)
+
+
+def _limit(scene: Scene, errors: Errors, tolerance: Mapping[str, float], worst: Error) -> float:
+    """That of an error, 0 where it has none."""
+    limit = limits(scene, errors, tolerance).get(worst.tolerance)
+    return limit.number if limit else 0.0
 
 
 def _unit_words(worst: Error) -> str:

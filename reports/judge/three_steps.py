@@ -67,12 +67,14 @@ def convergence(
     copied: Sequence[str] = (),
     cancels: bool = False,
     known: float = 0.0,
+    solved: float = 0.0,
 ) -> Convergence:
     """Read three errors at dt, dt/2, dt/4 (see the module); ``rounding`` is what needs no step.
 
     Where errors of several kinds may cancel at one of the steps, as those of a phase, a floor is
     one only where the last halving leaves most of the error. An error up to ``known`` is no
-    engine's: the truth itself, or what it is compared with.
+    engine's: the truth itself, or what it is compared with. One up to ``solved`` that does not
+    shrink is what the engine's solver rounds.
 
     Raises
     ------
@@ -83,6 +85,8 @@ def convergence(
         raise ValueError(f"{len(error)} steps: a floor needs three")
     first, second, third = error
     trend, order, floor = _read(first, second, third, rounding)
+    if trend in ("grows", "does not shrink") and max(second, third) <= solved:
+        trend, order, floor = "at rounding", math.nan, math.nan
     if trend not in ("at rounding", "diverges", "grows") and max(second, third) <= known:
         trend, order, floor = "as the truth", math.nan, math.nan
     elif trend == "levels off" and floor <= known:

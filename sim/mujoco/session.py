@@ -24,10 +24,10 @@ from sim.mujoco.loading import Loading
 from sim.mujoco.reactions import reactions
 from sim.mujoco.settings import (
     INTEGRATORS,
-    OF_DRIVES,
     held_iterations,
     holds,
     integrator,
+    not_used,
     velocity_shift,
     writing,
 )
@@ -50,6 +50,9 @@ class MujocoSession(SteppedModel):
         self._closed = ", ".join(dict.fromkeys(c.point for c in tree.closures))
         with heard(self._warnings.append):
             model = compiled(build(scene, state, chosen, tree))
+        self._weights = model.body_invweight0.copy()
+        if chosen.free:
+            model.body_invweight0[:] *= float(settings["free_inverse_weights"])
         self._hold(model, keyframe=0)
         self._servo = chosen.servo_gain is not None
         self._controlled = has_control(scene, chosen)
@@ -71,7 +74,7 @@ class MujocoSession(SteppedModel):
         model = self._model
         names = [limb.body for limb in self._limbs]
         opt = model.opt
-        unused = OF_DRIVES if self._free else ()
+        unused = not_used(self._drive)
         settings: dict[str, SettingValue] = {
             name: value for name, value in self._settings.items() if name not in unused
         } | {
@@ -82,6 +85,8 @@ class MujocoSession(SteppedModel):
             **held_iterations(self._scene, self._settings, self._drive, int(opt.iterations)),
             "integrator": INTEGRATORS[int(opt.integrator)],
         }
+        if self._free:
+            settings["free_inverse_weights"] = self._share_of_weights()
         if model.neq:
             settings["solref_timeconst_s"] = float(model.eq_solref[0, 0])
             settings["solref_dampratio"] = float(model.eq_solref[0, 1])
@@ -99,6 +104,11 @@ class MujocoSession(SteppedModel):
             acceleration_shift=0.0,
             springs={tendon.spring.name: self._spring(tendon) for tendon in self._tendons},
         )
+
+    def _share_of_weights(self) -> float:
+        """Of the inverse weights as compiled, those that the bodies have now."""
+        share = float(self._model.body_invweight0.sum() / self._weights.sum())
+        return float(f"{share:.12g}")
 
     def record_forces(self, steps: int, every: int) -> Log:
         """As `record`, with the forces of `mj_forward` at each kept state."""

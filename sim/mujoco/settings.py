@@ -32,11 +32,21 @@ RANGES = {
     "solimp_width": (0.0, 1e9),
     "flywheel_ratio": (1.0, 1e15),
     "servo_gain": (1e-9, 1e15),
+    "free_timeconst_steps": (0.0, 1e9),
+    "free_inverse_weights": (1e-12, 1.0),
 }
 """What MuJoCo takes; it clips impedances to these without a word."""
-MORE_ITERATIONS = 20
+MORE_ITERATIONS = {"friction": 20, "springs": 20, "free_weights": 4}
+"""What causes need more iterations than pins as stiff as the compiled weights make them."""
 OF_DRIVES = ("flywheel_ratio", "servo_gain", "servo_integrator")
 """What a free crank does not have."""
+OF_FREE = ("free_timeconst_steps", "free_inverse_weights")
+"""What is given to a free crank alone."""
+
+FREE_STEPS, FREE_WEIGHTS = 32.0, 1e-8
+"""Time constant of the loop closures in steps, and the share of the bodies' inverse weights, where
+nothing drives. Weights of 1e-4, 1e-6, 1e-8 and time constants of 2 to 48 steps were run over 10 s
+of the shipped scenes at 1 ms: `docs/free.md` has what came of it."""
 
 AS_SHIPPED = Profile(
     "as-shipped",
@@ -61,6 +71,8 @@ AS_SHIPPED = Profile(
         "flywheel_ratio": Setting(mjcf_options.FLYWHEEL_RATIO, "the drive, not an engine default"),
         "servo_gain": Setting(1e3, "of the drive `servo`, over inertia scale times peak speed"),
         "servo_integrator": Setting("Euler", "default; takes the place of integrator under servo"),
+        "free_timeconst_steps": Setting(0.0, "not used: let go, loops close as they do driven"),
+        "free_inverse_weights": Setting(1.0, "default: mjModel.body_invweight0 as compiled"),
     },
 )
 TUNED = Profile(
@@ -96,6 +108,16 @@ TUNED = Profile(
             "a stiff servo explodes under explicit integrators, and implicitfast solves the loops "
             "for the acceleration before the servo acts; takes the place of integrator under servo",
         ),
+        "free_timeconst_steps": Setting(
+            FREE_STEPS,
+            "takes the place of solref_timeconst_steps of what is let go: loops that do not give "
+            "way need hardly be drawn back, and a gentle spring takes less from the energy",
+        ),
+        "free_inverse_weights": Setting(
+            FREE_WEIGHTS,
+            "of what is let go, body_invweight0 times this once compiled: how far loops give way "
+            "goes with it, and solimp alone can not lower it under 0.01 %; no MJCF says it",
+        ),
         "islands": Setting("disable", "one system of loops: 7 % faster, same numbers"),
         "contact": Setting("disable", "nothing touches: 15 % faster, same numbers"),
     },
@@ -117,6 +139,8 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf
         scale = inertia_scale(scene) * scene.driver.law.peak_speed_rad_s
         servo = float(settings["servo_gain"]) * scale
     dmin, dmax = float(settings["solimp_dmin"]), float(settings["solimp_dmax"])
+    solimp = (dmin, dmax, float(settings["solimp_width"]), 0.5, 2.0)
+    damping, driven = float(settings["solref_dampratio"]), holds(settings, dt_s, "prescribed")
     return mjcf_options.Writing(
         close=tuple(p.strip() for p in re.split("[+,]", str(settings["close"])) if p.strip()),
         option={
@@ -127,10 +151,8 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf
             "tolerance": float(held["tolerance"]),
         },
         flag={"island": str(settings["islands"]), "contact": str(settings["contact"])},
-        connect={
-            "solref": (float(held["solref_timeconst_s"]), float(settings["solref_dampratio"])),
-            "solimp": (dmin, dmax, float(settings["solimp_width"]), 0.5, 2.0),
-        },
+        connect={"solref": (float(held["solref_timeconst_s"]), damping), "solimp": solimp},
+        rubbing={"solref": (float(driven["solref_timeconst_s"]), damping), "solimp": solimp},
         flywheel_ratio=float(settings["flywheel_ratio"]),
         servo_gain=servo,
         delay_s=velocity_shift(settings, drive) * dt_s,
@@ -140,8 +162,8 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf
 
 def _iterations(scene: Scene, settings: Settings, drive: Drive) -> int:
     """Those of the settings, where nothing needs more."""
-    asked = int(settings["iterations"])
-    return max(asked, MORE_ITERATIONS) if _iterating(scene, settings, drive) else asked
+    asked, cause = int(settings["iterations"]), _iterating(scene, settings, drive)
+    return max(asked, MORE_ITERATIONS[cause]) if cause else asked
 
 
 def _iterating(scene: Scene, settings: Settings, drive: Drive) -> str:
@@ -149,18 +171,21 @@ def _iterating(scene: Scene, settings: Settings, drive: Drive) -> str:
 
     Friction: which of two signs it has makes the solver's problem more than quadratic. Springs: the
     integrator `discrete` solves inertia and stiffness together by conjugate gradients, as many of
-    them as there are iterations, and gives the run up where they do not converge.
+    them as there are iterations, and gives the run up where they do not converge. Lower weights of
+    what is let go: so stiff a problem keeps rounding of the first passes in its first reactions.
     """
     if scene.friction:
         return "friction"
-    return "springs" if scene.springs and integrator(settings, drive) == "discrete" else ""
+    if scene.springs and integrator(settings, drive) == "discrete":
+        return "springs"
+    return "free_weights" if drive == "free" and settings["free_inverse_weights"] != 1 else ""
 
 
 def held_iterations(
     scene: Scene, settings: Settings, drive: Drive, found: int
 ) -> dict[str, SettingValue]:
     """The iterations that a model was ``found`` with, as settings: those asked for, and beside them
-    those that friction or springs were given."""
+    those that friction, springs or lower weights were given."""
     cause = _iterating(scene, settings, drive)
     if cause and found == _iterations(scene, settings, drive):
         return {"iterations": int(settings["iterations"]), f"iterations_of_{cause}": found}
@@ -171,13 +196,25 @@ def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
     """The settings as MuJoCo is given them: what depends on step and drive worked out; without the
     pins that close the loops, which depend on the scene."""
     ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
-    steps = float(settings["solref_timeconst_steps"])
-    unused = ("close", *(OF_DRIVES if drive == "free" else ()))
+    steps = closing_steps(settings, drive)
+    unused = ("close", *not_used(drive))
     return {name: value for name, value in settings.items() if name not in unused} | {
         "integrator": integrator(settings, drive),
         "tolerance": tolerance / ratio if drive == "prescribed" else tolerance,
+        "solref_timeconst_steps": steps,
         "solref_timeconst_s": steps * dt_s if steps else float(settings["solref_timeconst_s"]),
     }
+
+
+def not_used(drive: Drive) -> tuple[str, ...]:
+    """The settings that a drive has no use for."""
+    return OF_DRIVES if drive == "free" else OF_FREE
+
+
+def closing_steps(settings: Settings, drive: Drive) -> float:
+    """Time constant of the loops in steps; 0 where it is told in seconds."""
+    own = float(settings["free_timeconst_steps"]) if drive == "free" else 0.0
+    return own or float(settings["solref_timeconst_steps"])
 
 
 def in_seconds(settings: Settings) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings, SettingValue
-from sim.mujoco.settings import AS_SHIPPED
+from sim.mujoco.settings import AS_SHIPPED, closing_steps
 from sim.snippets import SnippetWriter, Stepping
 
 IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
@@ -15,8 +15,6 @@ INSET = "  "
 LOOP_CLASS = "crankcheck-loop"
 """The default class of the connects that close the mechanism, and of nothing else."""
 WIDTH = 96
-FREE = ["Drive: none. All hinges start with the angles and speeds of the start."]
-"""What starts the runs that were let go."""
 
 
 def mujoco_snippet(
@@ -30,6 +28,7 @@ def mujoco_snippet(
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = defaults | dict(settings)
+    complete["solref_timeconst_steps"] = closing_steps(complete, drive)
     dt_s = stepping.dt_s
     connect = _connect(complete, defaults, dt_s)
     integrator = complete["servo_integrator" if drive == "servo" else "integrator"]
@@ -131,7 +130,7 @@ def _coarse(defaults: Settings, dt_s: float) -> list[str]:
 
 def _measured(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
     """What the measured runs had besides: settings for a model of nothing else, and the drive."""
-    driven = {"prescribed": _flywheel(complete), "servo": _servo(complete), "free": FREE}[drive]
+    driven = {"prescribed": _flywheel, "servo": _servo, "free": _free}[drive](complete)
     return [*_alone(complete, defaults, drive), *driven]
 
 
@@ -180,6 +179,18 @@ def _servo(complete: Settings) -> list[str]:
         f"{complete['servo_gain']:g} speed (sum over all bodies of mass L^2 + inertia), L the "
         "longest link."
     ]
+
+
+def _free(complete: Settings) -> list[str]:
+    """What starts the runs that were let go, and what no MJCF can say of them."""
+    share = _short(complete["free_inverse_weights"])
+    scaled = (
+        f"Once compiled, model.body_invweight0[:] *= {share}, in a model with nothing else in it; "
+        "else for the bodies of the mechanism alone: without it loops give way more, and with so "
+        "gentle a solref by far more."
+    )
+    start = "Drive: none. All hinges start with the angles and speeds of the start."
+    return [start, *([scaled] if share != "1" else [])]
 
 
 def _short(value: SettingValue) -> str:

@@ -116,7 +116,7 @@ def test_other_integrators_are_given_the_load_of_each_step() -> None:
 
 def ends(steps: int, stages: str) -> Array:
     """The angles of a four-bar after 0.6 s, with loops whose stiffness is not the step's."""
-    own = {"solref_timeconst_steps": 0, "solref_timeconst_s": 0.005}
+    own = {"free_timeconst_steps": 0, "solref_timeconst_steps": 0, "solref_timeconst_s": 0.005}
     settings = resolved(engine("mujoco").profiles["tuned"], own)
     scene = with_torque(FOURBAR, "rocker", Sine(0.5, 0.3, 0.7))
     dt_s, state = 0.6 / steps, solve(scene, np.zeros(1)).state()

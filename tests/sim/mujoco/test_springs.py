@@ -200,13 +200,14 @@ def left_over(scene: Scene, log: Log) -> float:
 
 @pytest.mark.parametrize("name", SCENES)
 def test_springs_are_no_reactions_and_nothing_drives_the_crank(name: str) -> None:
-    """Dampers by differences, which are good to the second order of the step."""
+    """Dampers by differences, which are good to the second order of the step; the torque to the
+    rounding of loops that do not give way."""
     scene = SCENES[name]
     log = opened(scene).record_forces(40, 1)
     assert left_over(scene, log) < 1e-5
     forces = acting(log)
     largest = max(float(np.abs(f).max()) for by in forces.pins.values() for f in by.values())
-    assert np.abs(forces.torque).max() < 1e-10 * largest * scene.longest_m
+    assert np.abs(forces.torque).max() < 5e-7 * largest * scene.longest_m
 
 
 def test_springs_of_a_driven_mechanism_are_borne_by_its_drive() -> None:
@@ -261,8 +262,8 @@ def test_the_text_runs_by_itself() -> None:
     assert own == pytest.approx(done.motion.links["crank"].theta[-1], abs=1e-9)
 
 
-def test_springs_dampers_and_motors_are_followed_to_second_order() -> None:
-    """That of the closing springs of the loop."""
+def test_springs_dampers_and_motors_are_followed_to_fourth_order() -> None:
+    """That of the steps; with inverse weights as compiled the give of the loop makes it second."""
     scene = let_go(FOURBAR, LineSpring("l", 30.0, 0.4, 0.1, ("B", "D")))
     motor = Load("motor", "crank", None, Polynomial((0.3, -0.05)), "omega")
     scene = replace(scene, loads={"motor": motor})
@@ -273,8 +274,8 @@ def test_springs_dampers_and_motors_are_followed_to_second_order() -> None:
         assert done.motion is not None
         off = done.motion.links["crank"].theta - true.law.at(done.motion.time_s)[0]
         errors.append(np.abs(off).max())
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.3)
-    assert errors[1] < 1e-6
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.3)
+    assert errors[1] < 1e-8
 
 
 TABLES = """
