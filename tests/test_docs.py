@@ -18,9 +18,9 @@ from tests.worlds.documents import blocks, commands, follows, ran, scripts, star
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE = (DOCS / "python.md").read_text(encoding="utf-8")
-OWN_LOG = (DOCS / "own-log.md").read_text(encoding="utf-8")
-OWN_ENGINE = (DOCS / "own-engine.md").read_text(encoding="utf-8")
-OWN_MODEL = (DOCS / "own-model.md").read_text(encoding="utf-8")
+OWN_LOG = (DOCS / "how-to" / "judge-my-log.md").read_text(encoding="utf-8")
+OWN_ENGINE = (DOCS / "how-to" / "add-an-engine.md").read_text(encoding="utf-8")
+OWN_MODEL = (DOCS / "how-to" / "own-model.md").read_text(encoding="utf-8")
 FORCES = (DOCS / "forces.md").read_text(encoding="utf-8")
 ELASTIC = (DOCS / "elastic.md").read_text(encoding="utf-8")
 FREE = (DOCS / "free.md").read_text(encoding="utf-8")
