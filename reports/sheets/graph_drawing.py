@@ -38,7 +38,7 @@ class DrawnGraphs:
         exact = self.range.exact(order, graph.x)
         return float(np.abs(graph.y - exact).max()) / self.sizes[order]
 
-    def engine_part(self, order: Order) -> float:
+    def own_part(self, order: Order) -> float:
         """What the log's graph is off that of the reference, over the size: the method is in
         both."""
         assert self.logged is not None

@@ -20,7 +20,7 @@ from reports.sheets.graph_sheet import CAPTION_MM, GraphSheet, Panel
 EXACT, DRAWN, RAY, LOGGED, FAINT = "#a3adb8", "#2e6f9e", "#b7791f", "#b23a48", "#e6e6e6"
 DASHED = (0, (4, 2))
 """Lines of a log, under which others are seen."""
-VALUES_APART_MM = 8.0
+VALUES_APART_MM = 6.0
 """Values beside a graph are so far from one another at least."""
 LABELS_APART_MM = 6.0
 """As are numbers of divisions."""
@@ -29,7 +29,7 @@ TANGENT = 0.35
 
 
 def draw_axes(axes: Axes, sheet: GraphSheet, panel: Panel, caption: str) -> None:
-    """Both axes of a graph, its divisions with their numbers, and values on the right."""
+    """Both axes of a graph, its divisions with their numbers, values on the right, and the pole."""
     box, top = panel.box, panel.box.bottom + panel.box.height
     text(axes, sheet.legend.left, top + CAPTION_MM - 3.2, caption, SMALL, color=QUIET)
     parts = sheet.drawn.parts
@@ -46,6 +46,10 @@ def draw_axes(axes: Axes, sheet: GraphSheet, panel: Panel, caption: str) -> None
     line(axes, panel.origin, end, linewidth=0.6)
     line(axes, np.array([box.left, box.bottom]), np.array([box.left, top]), linewidth=0.6)
     _write_values(axes, panel)
+    if not math.isnan(panel.pole_mm):
+        pole = panel.origin - np.array([panel.pole_mm, 0.0])
+        line(axes, pole, panel.origin, color=QUIET, linewidth=0.3)
+        text(axes, pole[0] - 2.6, pole[1] - 1.0, "P", SMALL)
 
 
 def _every(parts: int, width: float) -> int:
@@ -86,9 +90,6 @@ def draw_rays(
     axes = canvas.layer(f"rays-{panel.symbol}{layer}")
     slopes = drawn.slopes[0 if panel.order == 1 else 1]
     pole = panel.origin - np.array([panel.pole_mm, 0.0])
-    line(axes, pole, panel.origin, color=QUIET, linewidth=0.3)
-    text(axes, pole[0] - 2.6, pole[1] - 1.0, "P", SMALL)
-    artists = len(axes.lines)
     for k, (x, y) in enumerate(zip(sheet.along_mm(slopes.x), panel.height_mm(slopes.y),
                                    strict=True)):  # fmt: skip
         cut_off, carried = np.array([panel.box.left, y]), np.array([x, y])
@@ -98,7 +99,7 @@ def draw_rays(
         if sheet.drawn.by == "integration":
             foot = np.array([x, panel.axis_mm])
             line(axes, foot, carried, color=color, linewidth=0.35)
-    _clip(axes, panel, axes.lines[artists:], left=panel.pole_mm)
+    _clip(axes, panel, axes.lines, left=panel.pole_mm)
 
 
 def draw_graph(
@@ -139,13 +140,12 @@ def draw_own_rates(canvas: Canvas, sheet: GraphSheet, panel: Panel) -> None:
     log = sheet.drawn.log
     if log is None or panel.order == READ[sheet.drawn.by]:
         return
-    x = sheet.drawn.range.divisions(sheet.drawn.parts)
-    x = x[log.covers(panel.order, x)]
-    if not x.size:
+    rates = log.at_divisions(panel.order, sheet.drawn.parts)
+    if not rates.x.size:
         return
     axes = canvas.layer(f"own-{panel.symbol}")
-    y = panel.height_mm(log.at(panel.order, x))
-    axes.plot(sheet.along_mm(x), y, ls="", marker="D", ms=2.4, mfc="none", mec=LOGGED, mew=0.5)
+    x, y = sheet.along_mm(rates.x), panel.height_mm(rates.y)
+    axes.plot(x, y, ls="", marker="D", ms=2.4, mfc="none", mec=LOGGED, mew=0.5)
     _clip(axes, panel, axes.lines)
 
 

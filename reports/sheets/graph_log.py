@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import CubicSpline  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.drawings.graphical import ORDERS, Order
+from analytic.drawings.graphical import ORDERS, Order, Plotted
 from models.array import Array
 from models.errors import CrankcheckError, cut
 from reports.logs.channel import OwnLog, Reading
@@ -54,14 +54,15 @@ class GraphLog:
         rows = self.rows[order]
         return np.asarray(CubicSpline(rows.time_s, rows.values)(x))
 
-    def covers(self, order: Order, x: Array) -> Array:
-        """At which places there are readings of an order, (n,) of truths; rows are not gone
-        beyond."""
+    def at_divisions(self, order: Order, parts: int) -> Plotted:
+        """Readings of an order at those divisions that its rows reach; none of what it has not."""
+        x = self.range.divisions(parts)
         if order not in self.rows:
-            return np.zeros(x.shape, dtype=bool)
+            return Plotted(x[:0], x[:0])
         rows = self.rows[order].time_s
-        step = SAME_ROW * float(np.median(np.diff(rows)))
-        return np.asarray((x >= rows[0] - step) & (x <= rows[-1] + step))
+        slack = SAME_ROW * float(np.median(np.diff(rows)))
+        x = x[(x >= rows[0] - slack) & (x <= rows[-1] + slack)]
+        return Plotted(x, self.at(order, x))
 
     def how(self, order: Order, x: Array) -> str:
         """How readings at places come of the rows."""
@@ -86,6 +87,11 @@ def graph_log(path: Path, map_path: Path | None, whole: Range) -> GraphLog:
         A log that can not be read or has nothing of the quantity; one that is shorter than the
         period; one whose readings are not those of the scene.
     """
+    if whole.scene.elastic:
+        raise CrankcheckError(
+            f"--log: links of {whole.scene.name} bend, and graphs are those of rigid ones; "
+            "`crankcheck judge` holds the log to the elastic motion"
+        )
     if whole.truth is None:
         raise CrankcheckError(
             f"--log: the driver of {whole.scene.name} has no constant speed, and graphs over its "

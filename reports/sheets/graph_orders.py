@@ -71,7 +71,7 @@ def _lines(drawings: Sequence[DrawnGraphs]) -> list[ErrorLine]:
         errors = tuple(each.off(each.logged, order) for each in drawings if each.logged)
         found.append(ErrorLine("log", symbols[order], errors))
     for order in first.derived:
-        errors = tuple(each.engine_part(order) for each in drawings)
+        errors = tuple(each.own_part(order) for each in drawings)
         found.append(ErrorLine("its own part", symbols[order], errors))
     return found
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from matplotlib.axes import Axes
 
-from reports.figures.style import QUIET, TINY, cut, width_in
+from reports.figures.style import LARGE, QUIET, TINY, cut, width_in
 from reports.output.numbers import readable
 from reports.sheets.canvas import Canvas, line, text
 from reports.sheets.graph_drawing import READ, DrawnGraphs
@@ -30,7 +30,7 @@ from reports.sheets.paper import MM_PER_IN, Paper
 from reports.sheets.sheet_frame import write_head
 
 NAME_IN = 1.3
-"""How long the name of a log is in the legend at most [inch]."""
+"""How long the name of a log is in the title at most [inch]."""
 
 
 def laid_out(drawn: DrawnGraphs, paper: Paper) -> GraphSheet:
@@ -42,10 +42,7 @@ def draw_graphs(sheet: GraphSheet, note: str) -> Canvas:
     """The sheet, a layer for each graph and for the construction of each from the one before."""
     canvas, drawn = Canvas(sheet.paper), sheet.drawn
     frame = canvas.layer("frame")
-    of = drawn.range
-    span = "over a period" if not of.scene.is_free else f"over {of.end - of.start:g} s"
-    title = f"{of.scene.name}: {of.quantity.name} {span}, {drawn.parts} parts, by {drawn.by}"
-    write_head(frame, sheet.paper, title, note)
+    write_head(frame, sheet.paper, _title(drawn), note)
     _write_legend(frame, sheet)
     draw_table(frame, drawn, sheet.table)
     for panel in sheet.panels:
@@ -62,6 +59,15 @@ def draw_graphs(sheet: GraphSheet, note: str) -> Canvas:
     return canvas
 
 
+def _title(drawn: DrawnGraphs) -> str:
+    of = drawn.range
+    span = "a period" if not of.scene.is_free else f"{of.end - of.start:g} s"
+    if of.analogues:
+        span = f"the angle of {of.scene.driver.link}"
+    title = f"{of.scene.name}: {of.quantity.name} over {span}, {drawn.parts} parts, by {drawn.by}"
+    return f"{title}; log: {cut(drawn.log.name, NAME_IN, LARGE)}" if drawn.log else title
+
+
 def caption(sheet: GraphSheet, panel: Panel) -> str:
     """What stands above a graph: scale, axis, pole, and what it is off by."""
     drawn, order = sheet.drawn, panel.order
@@ -72,6 +78,8 @@ def caption(sheet: GraphSheet, panel: Panel) -> str:
         words.append(f"H = {panel.pole_mm:g} mm")
     told = ", ".join(words)
     if order == READ[drawn.by]:
+        if drawn.logged is not None:
+            told += f"; log off by up to {share(drawn.off(drawn.logged, order))}"
         return told
     if drawn.by == "integration":
         start = drawn.reference.graphs[order].y[0]
@@ -79,11 +87,11 @@ def caption(sheet: GraphSheet, panel: Panel) -> str:
     told += f"; off by up to {share(drawn.off(drawn.reference, order))}"
     if drawn.logged is not None:
         told += (
-            f"; of the log up to {share(drawn.off(drawn.logged, order))}, the engine's part "
-            f"{share(drawn.engine_part(order))}"
+            f"; log by up to {share(drawn.off(drawn.logged, order))}, its own part "
+            f"{share(drawn.own_part(order))}"
         )
         own = own_rates_off(drawn, order)
-        told += f", its own {panel.symbol} {share(own)}" if own is not None else ""
+        told += f", as logged {share(own)}" if own is not None else ""
     return told
 
 
@@ -94,11 +102,10 @@ def _write_legend(axes: Axes, sheet: GraphSheet) -> None:
     text(axes, box.left, base, _along(sheet), TINY, color=QUIET)
     entries = [("exact", EXACT, 1.6, ""), (f"by {drawn.by}", DRAWN, 0.8, "o")]
     if drawn.log is not None:
-        name = cut(drawn.log.name, NAME_IN, TINY)
-        entries.append((f"{name} by {drawn.by}", LOGGED, 0.8, "o"))
+        entries.append((f"log by {drawn.by}", LOGGED, 0.8, "o"))
         if any(each in drawn.log.rows for each in drawn.derived):
-            entries.append((f"what {name} says itself", LOGGED, 0.0, "D"))
-    x = box.left + box.width
+            entries.append(("as logged", LOGGED, 0.0, "D"))
+    x = box.left + box.width - 1.0
     for words, color, width, marker in reversed(entries):
         x -= width_in(words, TINY) * MM_PER_IN
         text(axes, x, base, words, TINY, color=QUIET)

@@ -160,7 +160,9 @@ def _reach(drawn: DrawnGraphs, order: Order, axis: float) -> tuple[float, float]
     low, high = float(both.min()), float(both.max())
     if drawn.logged is not None:
         most = BEYOND * (high - low)
-        logged = drawn.logged.graphs[order].y - axis
+        assert drawn.log is not None
+        own = drawn.log.at_divisions(order, drawn.parts).y
+        logged = np.concatenate([drawn.logged.graphs[order].y, own]) - axis
         low = max(min(low, float(logged.min())), low - most)
         high = min(max(high, float(logged.max())), high + most)
     if high - low < STILL * drawn.sizes[order]:

@@ -26,11 +26,10 @@ def own_rates_off(drawn: DrawnGraphs, order: Order) -> float | None:
     """What a log's own rate is off by at the divisions, over the size; None where it has none."""
     if drawn.log is None:
         return None
-    x = drawn.range.divisions(drawn.parts)
-    x = x[drawn.log.covers(order, x)]
-    if not x.size:
+    rates = drawn.log.at_divisions(order, drawn.parts)
+    if not rates.x.size:
         return None
-    off = drawn.log.at(order, x) - drawn.range.exact(order, x)
+    off = rates.y - drawn.range.exact(order, rates.x)
     return float(np.abs(off).max()) / drawn.sizes[order]
 
 
@@ -49,18 +48,18 @@ def told_log(drawn: DrawnGraphs) -> list[str]:
     assert drawn.logged is not None
     symbols, order = drawn.range.symbols, READ[drawn.by]
     parts = listed([
-        f"{symbols[each]} {share(drawn.engine_part(each))}" for each in drawn.derived
+        f"{symbols[each]} {share(drawn.own_part(each))}" for each in drawn.derived
     ])  # fmt: skip
     how = drawn.log.how(order, drawn.logged.graphs[order].x)
     lines = [
         f"{drawn.log.name}: {told_errors(drawn, drawn.logged)}; of that its own error, beside the "
         f"drawing of the reference: {parts}",
-        f"{symbols[order]} is read {how}",
+        f"{symbols[order]} is read {how}, and off by up to {share(drawn.off(drawn.logged, order))}",
     ]
     own = [(each, own_rates_off(drawn, each)) for each in drawn.derived]
     said = [f"{symbols[each]} off by up to {share(off)}" for each, off in own if off is not None]
     if said:
-        lines.append(f"its own rates, at the divisions: {', '.join(said)}")
+        lines.append(f"as logged, at the divisions: {', '.join(said)}")
     return lines
 
 

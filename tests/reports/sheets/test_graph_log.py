@@ -54,16 +54,16 @@ def drawn(path: Path, parts: int = 24, by: Method = "chords") -> DrawnGraphs:
 
 def test_an_exact_log_is_drawn_as_the_reference_is(write: Write) -> None:
     graphs = drawn(write(time_s=EVEN, rocker_theta_rad=ROCKER.exact(0, EVEN)))
-    assert graphs.engine_part(1) < 1e-12
+    assert graphs.own_part(1) < 1e-12
     assert graphs.off(graphs.logged, 1) == pytest.approx(graphs.off(graphs.reference, 1))
-    assert told_log(graphs)[1] == "phi is read at its rows"
+    assert told_log(graphs)[1] == "phi is read at its rows, and off by up to 0 %"
 
 
 def test_the_error_of_the_engine_is_told_apart_from_that_of_the_method(write: Write) -> None:
     theta = ROCKER.exact(0, EVEN) + ripple(EVEN)
     graphs = drawn(write(time_s=EVEN, rocker_theta_rad=theta), parts=96)
     # of a ripple so short the chords of 96 parts show nearly all: 7e-3 rad/s of 6.1
-    assert graphs.engine_part(1) == pytest.approx(7e-3 / graphs.sizes[1], rel=0.02)
+    assert graphs.own_part(1) == pytest.approx(7e-3 / graphs.sizes[1], rel=0.02)
     assert graphs.off(graphs.reference, 1) == pytest.approx(5e-4, rel=0.05)
 
 
@@ -72,7 +72,7 @@ def test_readings_are_taken_between_rows_and_between_turns(write: Write) -> None
     degrees = np.degrees(ROCKER.exact(0, t))
     wrapped = (degrees + 60.0) % 360.0  # a rocker of 94 to 154 deg, and its encoder's zero
     graphs = drawn(write(time_s=t, rocker_deg=wrapped - 60.0))
-    assert graphs.engine_part(0) < 1e-8
+    assert graphs.own_part(0) < 1e-8
     assert "by cubic splines between its rows, 0.00139 s apart" in told_log(graphs)[1]
 
 
@@ -80,14 +80,14 @@ def test_a_crank_that_loses_its_turns_goes_on(write: Write) -> None:
     of = over_period(LECTURE, "crank", "time", None)
     angle = np.mod(of.exact(0, EVEN), math.tau)
     log = graph_log(write(time_s=EVEN, crank_theta_rad=angle), None, of)
-    assert drawn_graphs(of, "chords", 12, log).engine_part(0) < 1e-12
+    assert drawn_graphs(of, "chords", 12, log).own_part(0) < 1e-12
 
 
 def test_a_log_that_begins_later_is_drawn_from_there(write: Write) -> None:
     t = 0.3 + EVEN
     graphs = drawn(write(time_s=t, rocker_theta_rad=ROCKER.exact(0, t)))
     assert (graphs.range.start, graphs.range.end) == pytest.approx((0.3, 0.3 + PERIOD))
-    assert graphs.engine_part(2) < 1e-9
+    assert graphs.own_part(2) < 1e-9
 
 
 def test_own_rates_and_rays_of_the_log_are_layers_of_their_own(write: Write) -> None:
@@ -101,17 +101,15 @@ def test_own_rates_and_rays_of_the_log_are_layers_of_their_own(write: Write) -> 
     for layer in ("rays-omega-log", "graph-epsilon-log", "own-omega"):
         assert f'id="layer-{layer}"' in drawing
     assert 'id="layer-own-epsilon"' not in drawing  # which it has not
-    assert "what run says itself" in drawing
-    assert told_log(graphs)[-1].startswith(
-        "its own rates, at the divisions: omega off by up to 0.1"
-    )
+    assert "as logged" in drawing
+    assert told_log(graphs)[-1].startswith("as logged, at the divisions: omega off by up to 0.1")
 
 
 def test_an_accelerometer_is_integrated_from_the_exact_start(write: Write) -> None:
     alpha = ROCKER.exact(2, EVEN) + ripple(EVEN, 2)
     graphs = drawn(write(time_s=EVEN, rocker_alpha_rad_s2=alpha), parts=96, by="integration")
     # the ripple's rate starts at 7e-3 rad/s, which the exact constant leaves out
-    assert graphs.engine_part(1) == pytest.approx(2 * 7e-3 / graphs.sizes[1], rel=0.02)
+    assert graphs.own_part(1) == pytest.approx(2 * 7e-3 / graphs.sizes[1], rel=0.02)
 
 
 @pytest.mark.parametrize(
