@@ -22,8 +22,8 @@ DASHED = (0, (4, 2))
 """Lines of a log, under which others are seen."""
 VALUES_APART_MM = 6.0
 """Values beside a graph are so far from one another at least."""
-LABELS_APART_MM = 6.0
-"""As are numbers of divisions."""
+LABELS_APART_MM = 6.5
+"""As are numbers of divisions, or angles."""
 TANGENT = 0.35
 """How far a tangent is drawn to either side, in parts."""
 
@@ -32,16 +32,15 @@ def draw_axes(axes: Axes, sheet: GraphSheet, panel: Panel, caption: str) -> None
     """Both axes of a graph, its divisions with their numbers, values on the right, and the pole."""
     box, top = panel.box, panel.box.bottom + panel.box.height
     text(axes, sheet.legend.left, top + CAPTION_MM - 3.2, caption, SMALL, color=QUIET)
-    parts = sheet.drawn.parts
-    along = np.linspace(box.left, box.left + box.width, parts + 1)
-    every = _every(parts, box.width)
+    along = np.linspace(box.left, box.left + box.width, sheet.drawn.parts + 1)
+    names, every = _names(sheet), _every(sheet)
     for k, x in enumerate(along):
         line(axes, np.array([x, box.bottom]), np.array([x, top]), color=FAINT, linewidth=0.3)
         half = np.array([0.0, 0.7])
         at = np.array([x, panel.axis_mm])
         line(axes, at - half, at + half, linewidth=0.4)
         if k % every == 0:
-            text(axes, x, box.bottom - 2.6, str(k), TINY, ha="center", color=QUIET)
+            text(axes, x, box.bottom - 2.6, names[k], TINY, ha="center", color=QUIET)
     end = np.array([box.left + box.width + 2.0, panel.axis_mm])
     line(axes, panel.origin, end, linewidth=0.6)
     line(axes, np.array([box.left, box.bottom]), np.array([box.left, top]), linewidth=0.6)
@@ -52,9 +51,17 @@ def draw_axes(axes: Axes, sheet: GraphSheet, panel: Panel, caption: str) -> None
         text(axes, pole[0] - 2.6, pole[1] - 1.0, "P", SMALL)
 
 
-def _every(parts: int, width: float) -> int:
-    """Which divisions have their numbers."""
-    least = LABELS_APART_MM * parts / width
+def _names(sheet: GraphSheet) -> list[str]:
+    """What stands below the divisions: their numbers, or the angles of the driver."""
+    of, parts = sheet.drawn.range, sheet.drawn.parts
+    if of.over == "time":
+        return [str(k) for k in range(parts + 1)]
+    return [f"{each:.4g}" for each in np.round(of.driver_deg(of.divisions(parts)), 2) + 0.0]
+
+
+def _every(sheet: GraphSheet) -> int:
+    """Which divisions have theirs."""
+    least = LABELS_APART_MM * sheet.drawn.parts / sheet.panels[0].box.width
     return next((k for k in (1, 2, 3, 4, 6, 12, 24) if k >= least), 36)
 
 

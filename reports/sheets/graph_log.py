@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -65,21 +66,27 @@ class GraphLog:
         return Plotted(x, self.at(order, x))
 
     def how(self, order: Order, x: Array) -> str:
-        """How readings at places come of the rows."""
+        """How readings at places come of the rows, and what that adds: what the spline through the
+        exact values at the rows is off by."""
         rows = self.rows[order].time_s
         step = float(np.median(np.diff(rows)))
         after = np.clip(np.searchsorted(rows, x), 1, rows.size - 1)
         nearest = np.minimum(np.abs(rows[after] - x), np.abs(rows[after - 1] - x))
         if np.all(nearest <= SAME_ROW * step):
             return "at its rows"
-        return f"by cubic splines between its rows, {step:.3g} s apart"
+        exact = CubicSpline(rows, self.range.exact(order, rows))(x)
+        off = float(np.abs(exact - self.range.exact(order, x)).max()) / self.range.sizes()[order]
+        return (
+            f"by cubic splines between its rows, {step:.3g} s apart, which add up to "
+            f"{100 * off:.2g} %"
+        )
 
 
 def graph_log(path: Path, map_path: Path | None, whole: Range) -> GraphLog:
     """The readings that a log has of the quantity of a range, over a period of it.
 
-    The period is the first that the log covers: from the start of the motion on, or from the log's
-    own first row, where that comes later.
+    The period is the first whole one that the log covers, or, where it covers none, the one that
+    begins with its first row; what is let go is drawn from its start on.
 
     Raises
     ------
@@ -107,7 +114,7 @@ def graph_log(path: Path, map_path: Path | None, whole: Range) -> GraphLog:
             f"{path}: no column is of {whole.quantity.name}; it has readings of {cut(names, 200)}"
         )
     first = held[min(held)]
-    moved = whole.moved(max(whole.start, float(first.instants[0])))
+    moved = _first_period(first, whole)
     _refuse_short(path, first, moved)
     rows = {
         order: some
@@ -146,15 +153,25 @@ def _reading(log: OwnLog, whole: Range, order: Order) -> Reading | None:
     return min(of_it, key=lambda each: bool(each.channel.relative_to), default=None)
 
 
+def _first_period(reading: Reading, whole: Range) -> Range:
+    """The first period of those of the driver within the rows, or that from the first row on."""
+    first, last = (float(reading.instants[at]) for at in (0, -1))
+    lasts = whole.end - whole.start
+    if first <= whole.start or whole.scene.is_free:
+        return whole
+    start = math.ceil(first / lasts - SAME_ROW) * lasts
+    return whole.moved(start if start + lasts <= last * (1.0 + SAME_ROW) else first)
+
+
 def _refuse_short(path: Path, reading: Reading, moved: Range) -> None:
-    """Refuse a log that ends before the period does. Raises CrankcheckError."""
+    """Refuse a log that begins after the period, or ends before it. Raises CrankcheckError."""
     start, end = (float(reading.instants[at]) for at in (0, -1))
-    if end < moved.end - SAME_ROW * (moved.end - moved.start):
-        lasts = moved.end - moved.start
+    lasts = moved.end - moved.start
+    if start > moved.start + SAME_ROW * lasts or end < moved.end - SAME_ROW * lasts:
         raise CrankcheckError(
             f"{path}: readings of {moved.quantity.name} from {start:.6g} s to {end:.6g} s; a "
-            f"graph takes {lasts:.6g} s of them, from {moved.start:.6g} s to {moved.end:.6g} s: "
-            "log a period at least"
+            f"graph takes those from {moved.start:.6g} s to {moved.end:.6g} s: log {lasts:.6g} s "
+            "or more"
         )
 
 

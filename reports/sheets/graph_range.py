@@ -27,7 +27,7 @@ from reports.sheets.graph_quantity import Quantity, quantity_of
 Over = Literal["time", "angle"]
 OVERS: tuple[Over, ...] = get_args(Over)
 DENSE = 721
-TRIFLE = 1e-6
+TRIFLE = 1e-3
 """What is a smaller share of what its integral asks for is none: errors are over sizes above 0."""
 STILL = 1e-9
 """What moves by less [rad, longest links] stands still."""

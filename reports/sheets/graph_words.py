@@ -13,7 +13,7 @@ from reports.output.numbers import listed
 from reports.sheets.graph_drawing import READ, DrawnGraphs
 from reports.sheets.graph_table import degrees, numbers, written
 
-NOTHING = 1e-12
+NOTHING = 1e-9
 """What is off by a smaller share is rounding."""
 
 
@@ -51,10 +51,11 @@ def told_log(drawn: DrawnGraphs) -> list[str]:
         f"{symbols[each]} {share(drawn.own_part(each))}" for each in drawn.derived
     ])  # fmt: skip
     how = drawn.log.how(order, drawn.logged.graphs[order].x)
+    read_off = share(drawn.off(drawn.logged, order))
     lines = [
         f"{drawn.log.name}: {told_errors(drawn, drawn.logged)}; of that its own error, beside the "
         f"drawing of the reference: {parts}",
-        f"{symbols[order]} is read {how}, and off by up to {share(drawn.off(drawn.logged, order))}",
+        f"{symbols[order]} is read {how}; it is off by up to {read_off}",
     ]
     own = [(each, own_rates_off(drawn, each)) for each in drawn.derived]
     said = [f"{symbols[each]} off by up to {share(off)}" for each, off in own if off is not None]

@@ -56,7 +56,7 @@ def test_an_exact_log_is_drawn_as_the_reference_is(write: Write) -> None:
     graphs = drawn(write(time_s=EVEN, rocker_theta_rad=ROCKER.exact(0, EVEN)))
     assert graphs.own_part(1) < 1e-12
     assert graphs.off(graphs.logged, 1) == pytest.approx(graphs.off(graphs.reference, 1))
-    assert told_log(graphs)[1] == "phi is read at its rows, and off by up to 0 %"
+    assert told_log(graphs)[1] == "phi is read at its rows; it is off by up to 0 %"
 
 
 def test_the_error_of_the_engine_is_told_apart_from_that_of_the_method(write: Write) -> None:
@@ -73,7 +73,9 @@ def test_readings_are_taken_between_rows_and_between_turns(write: Write) -> None
     wrapped = (degrees + 60.0) % 360.0  # a rocker of 94 to 154 deg, and its encoder's zero
     graphs = drawn(write(time_s=t, rocker_deg=wrapped - 60.0))
     assert graphs.own_part(0) < 1e-8
-    assert "by cubic splines between its rows, 0.00139 s apart" in told_log(graphs)[1]
+    assert (
+        "by cubic splines between its rows, 0.00139 s apart, which add up to" in told_log(graphs)[1]
+    )
 
 
 def test_a_crank_that_loses_its_turns_goes_on(write: Write) -> None:
@@ -88,6 +90,24 @@ def test_a_log_that_begins_later_is_drawn_from_there(write: Write) -> None:
     graphs = drawn(write(time_s=t, rocker_theta_rad=ROCKER.exact(0, t)))
     assert (graphs.range.start, graphs.range.end) == pytest.approx((0.3, 0.3 + PERIOD))
     assert graphs.own_part(2) < 1e-9
+
+
+def test_of_a_log_that_begins_later_a_whole_period_of_the_driver_is_preferred(
+    write: Write,
+) -> None:
+    t = 0.3 + np.arange(0, 1441) * PERIOD / 720
+    graphs = drawn(write(time_s=t, rocker_theta_rad=ROCKER.exact(0, t)))
+    assert (graphs.range.start, graphs.range.end) == pytest.approx((PERIOD, 2 * PERIOD))
+
+
+def test_what_is_let_go_is_drawn_from_its_start_on(write: Write) -> None:
+    of = over_period(load_scene("fourbar-swing"), "rocker", "time", 0.5)
+    t = np.linspace(0.0, 0.6, 601)
+    log = write(time_s=t, rocker_theta_rad=of.exact(0, np.minimum(t, 0.5)))
+    assert drawn_graphs(of, "chords", 50, graph_log(log, None, of)).own_part(0) < 1e-9
+    late = write(time_s=t[100:], rocker_theta_rad=of.exact(0, np.minimum(t[100:], 0.5)))
+    with pytest.raises(CrankcheckError, match=r"those from 0 s to 0\.5 s"):
+        graph_log(late, None, of)
 
 
 def test_own_rates_and_rays_of_the_log_are_layers_of_their_own(write: Write) -> None:
@@ -137,7 +157,10 @@ def refusals() -> Sequence[tuple[dict[str, Array], str]]:
     theta, other = ROCKER.exact(0, EVEN), ROCKER.exact(0, EVEN + 0.2)
     short = EVEN <= 0.4
     return [
-        ({"time_s": EVEN[short], "rocker_theta_rad": theta[short]}, "log a period at least"),
+        (
+            {"time_s": EVEN[short], "rocker_theta_rad": theta[short]},
+            "to 0.628319 s: log 0.628319 s or more",
+        ),
         ({"time_s": EVEN, "rocker_theta_rad": other}, "another mechanism, speed, start or unit"),
         ({"time_s": EVEN, "lever_theta_rad": theta}, "no column is of scene"),
         ({"time_s": EVEN, "crank_theta_rad": 0.5 * np.pi + 10.0 * EVEN}, "no column is of rocker"),
