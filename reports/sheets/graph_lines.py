@@ -11,11 +11,12 @@ from matplotlib.patches import Rectangle
 
 from analytic.drawings.graphical import Plotted, ThreeGraphs
 from analytic.drawings.paper_scale import round_scale
-from reports.figures.style import INK, QUIET, SMALL, TINY
+from reports.figures.style import INK, QUIET, SMALL, TINY, cut, width_in
 from reports.output.numbers import readable
 from reports.sheets.canvas import Canvas, line, text
 from reports.sheets.graph_drawing import READ
 from reports.sheets.graph_sheet import CAPTION_MM, GraphSheet, Panel
+from reports.sheets.paper import MM_PER_IN
 
 EXACT, DRAWN, RAY, LOGGED, FAINT = "#a3adb8", "#2e6f9e", "#b7791f", "#b23a48", "#e6e6e6"
 DASHED = (0, (4, 2))
@@ -31,7 +32,10 @@ TANGENT = 0.35
 def draw_axes(axes: Axes, sheet: GraphSheet, panel: Panel, caption: str) -> None:
     """Both axes of a graph, its divisions with their numbers, values on the right, and the pole."""
     box, top = panel.box, panel.box.bottom + panel.box.height
-    text(axes, sheet.legend.left, top + CAPTION_MM - 3.2, caption, SMALL, color=QUIET)
+    room = (box.left + box.width - sheet.legend.left) / MM_PER_IN
+    size = SMALL if width_in(caption) <= room else TINY
+    words = cut(caption, room, size)
+    text(axes, sheet.legend.left, top + CAPTION_MM - 3.2, words, size, color=QUIET)
     along = np.linspace(box.left, box.left + box.width, sheet.drawn.parts + 1)
     names, every = _names(sheet), _every(sheet)
     for k, x in enumerate(along):

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import itertools
 
+import numpy as np
 from matplotlib.axes import Axes
 
+from models.errors import CrankcheckError
 from reports.figures.style import QUIET, SIZE, logarithmic, styled
 from reports.sheets.canvas import Canvas
 from reports.sheets.graph_lines import DRAWN, LOGGED, RAY
@@ -18,10 +20,13 @@ AROUND_MM = (18.0, 14.0)
 """Left of the diagram and below it, for numbers and names [mm]."""
 LOOKS = {"reference": (DRAWN, "-"), "log": (LOGGED, "--"), "its own part": (RAY, ":")}
 MARKERS = ("o", "s")
+GUIDE = 0.5
+"""How far below the first line the slope of order 2 stands, as a share."""
 
 
 def draw_errors(errors: GraphErrors, paper: Paper, note: str) -> Canvas:
-    """A line for each graph that was drawn, of the reference and of a log."""
+    """A line for each graph that was drawn, of the reference and of a log. Raises CrankcheckError
+    where all are right to rounding."""
     canvas = Canvas(paper)
     frame = canvas.layer("frame")
     of = errors.range
@@ -42,7 +47,12 @@ def draw_errors(errors: GraphErrors, paper: Paper, note: str) -> Canvas:
 
 
 def _draw(axes: Axes, errors: GraphErrors) -> None:
-    seen = [max(error, NOTHING) for each in errors.lines for error in each.errors]
+    seen = [error for each in errors.lines for error in each.errors if error > NOTHING]
+    if not seen:
+        raise CrankcheckError(
+            f"{errors.range.quantity.name} of {errors.range.scene.name} is drawn right with any "
+            "number of divisions: there are no errors to draw"
+        )
     with styled():
         logarithmic(axes, "x", 0.8 * min(errors.divisions), 1.25 * max(errors.divisions))
         logarithmic(axes, "y", 0.5 * min(seen), 2.0 * max(seen))
@@ -56,6 +66,9 @@ def _draw(axes: Axes, errors: GraphErrors) -> None:
                 errors.divisions, each.errors, color=color, ls=style, marker=next(markers),
                 ms=3.0, label=told,
             )  # fmt: skip
+        counts = np.array(errors.divisions[:1] + errors.divisions[-1:], dtype=float)
+        slope = errors.lines[0].errors[0] * GUIDE * (counts[0] / counts) ** 2
+        axes.plot(counts, slope, color=QUIET, lw=0.6, label="slope of order 2")
         axes.set_xlabel("parts of the period", size=SIZE, color=QUIET)
         axes.set_ylabel("largest error over the size", size=SIZE, color=QUIET)
         axes.legend(loc="best", frameon=True)

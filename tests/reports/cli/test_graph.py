@@ -43,6 +43,16 @@ def test_orders_are_fitted_and_the_log_of_an_engine_ends_in_its_own_error(tmp_pa
     assert "reference, omega: order 1.99" in sheet.read_text(encoding="utf-8")
 
 
+def test_of_what_turns_evenly_there_are_no_errors_to_draw(tmp_path: Path) -> None:
+    sheet = tmp_path / "orders.svg"
+    result = crankcheck(
+        "graph", "fourbar-lecture-1", "--of", "crank", "--divisions", "12,24", "-o", str(sheet)
+    )
+    assert result.exit_code == 2
+    assert "no errors to draw" in result.output
+    assert not sheet.exists()
+
+
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [

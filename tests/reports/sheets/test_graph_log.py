@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from analytic.drawings.graphical import Method
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
+from reports.figures.style import styled
 from reports.sheets.graph_drawing import DrawnGraphs, drawn_graphs
 from reports.sheets.graph_log import graph_log
 from reports.sheets.graph_orders import graph_errors
@@ -123,6 +126,20 @@ def test_own_rates_and_rays_of_the_log_are_layers_of_their_own(write: Write) -> 
     assert 'id="layer-own-epsilon"' not in drawing  # which it has not
     assert "as logged" in drawing
     assert told_log(graphs)[-1].startswith("as logged, at the divisions: omega off by up to 0.1")
+
+
+def test_no_words_of_a_small_sheet_stand_on_others(write: Write) -> None:
+    theta, omega = (ROCKER.exact(order, EVEN) + ripple(EVEN, order) for order in (0, 1))
+    log = write(time_s=EVEN, rocker_theta_rad=theta, rocker_omega_rad_s=omega)
+    figure = draw_graphs(laid_out(drawn(log), Paper.of("180x120")), "a source").figure
+    with styled():
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+    texts = [text for axes in figure.axes for text in axes.texts]
+    boxes = [text.get_window_extent(canvas.get_renderer()).padded(-1.0) for text in texts]
+    for one, other in itertools.combinations(range(len(texts)), 2):
+        assert not boxes[one].overlaps(boxes[other]), (texts[one], texts[other])
+    assert all(box.x0 > 0.0 and box.x1 < figure.bbox.width for box in boxes)
 
 
 def test_an_accelerometer_is_integrated_from_the_exact_start(write: Write) -> None:
