@@ -1,4 +1,4 @@
-"""Differentiation and integration of a graph with ruler and pole, and what they are off by.
+"""Differentiation and integration of a graph with ruler and pole: the points that are plotted.
 
 ::
 
@@ -16,85 +16,96 @@ Scales mu are units to the millimetre, the pole distance H is millimetres of pap
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 
 from models.array import Array
 
-
-@dataclass(frozen=True)
-class Differentiated:
-    """The derivative of a graph at ``x`` (n,): ``y`` (n,), and the ordinates that the rays cut off
-    on the axis [mm], (n,), at the scale ``scale`` [unit of y to the mm]."""
-
-    x: Array
-    y: Array
-    ordinates_mm: Array
-    scale: float
+Method = Literal["chords", "tangents", "integration"]
+METHODS: tuple[Method, ...] = get_args(Method)
+Order = Literal[0, 1, 2]
+ORDERS: tuple[Order, ...] = get_args(Order)
+Readings = Callable[[Order, Array], Array]
+"""What a graph is plotted from: a quantity (0), its rate (1) or the rate of that (2) at places."""
 
 
 @dataclass(frozen=True)
-class Integrated:
-    """The integral of a graph at the ends of its parts, ``x`` and ``y`` (n + 1,), from 0 on; the
-    mean ordinates that made it (n,), and its scale [unit of Y to the mm]."""
+class Plotted:
+    """Points of a graph at ``x`` (n,), rising: ``y`` (n,)."""
 
     x: Array
     y: Array
-    mean_ordinates: Array
-    scale: float
 
 
-def by_chords(x: Array, y: Array, pole_mm: float, scale_x: float, scale_y: float) -> Differentiated:
-    """The derivative in the middles of the parts, of second order there.
+@dataclass(frozen=True)
+class ThreeGraphs:
+    """A quantity, its rate and the rate of that, two of them drawn from the third.
 
-    Parameters
-    ----------
-    x, y : Array
-        The divisions of the graph and its values there, (n + 1,), x rising.
-    pole_mm : float
-        The distance H of the pole from the axis [mm].
-    scale_x, scale_y : float
-        mu_x and mu_Y of the graph [unit to the mm].
+    ``slopes`` are what rays from the poles of the second and third graph cut off on their axes:
+    those of the chords (tangents, steps) of the graph of the order before.
     """
-    slopes = np.diff(y) / np.diff(x)
-    return _with_rays(0.5 * (x[1:] + x[:-1]), slopes, pole_mm, scale_x, scale_y)
+
+    graphs: tuple[Plotted, Plotted, Plotted]
+    slopes: tuple[Plotted, Plotted]
 
 
-def by_tangents(
-    x: Array, y: Array, pole_mm: float, scale_x: float, scale_y: float
-) -> Differentiated:
+def by_chords(graph: Plotted) -> Plotted:
+    """The derivative in the middles of the parts, of second order there."""
+    return Plotted(_middles(graph.x), np.diff(graph.y) / np.diff(graph.x))
+
+
+def by_tangents(graph: Plotted) -> Plotted:
     """The derivative at the divisions between the ends, the tangent there being that of the
-    parabola through a division and its neighbours; of second order. As `by_chords`."""
-    left, right = np.diff(x)[:-1], np.diff(x)[1:]
-    chords = np.diff(y) / np.diff(x)
-    slopes = (right * chords[:-1] + left * chords[1:]) / (left + right)
-    return _with_rays(x[1:-1], slopes, pole_mm, scale_x, scale_y)
+    parabola through a division and its neighbours; of second order."""
+    left, right = np.diff(graph.x)[:-1], np.diff(graph.x)[1:]
+    chords = np.diff(graph.y) / np.diff(graph.x)
+    return Plotted(graph.x[1:-1], (right * chords[:-1] + left * chords[1:]) / (left + right))
 
 
-def _with_rays(
-    x: Array, slopes: Array, pole_mm: float, scale_x: float, scale_y: float
-) -> Differentiated:
-    """The slopes as what the rays cut off on the axis."""
-    scale = scale_y / (pole_mm * scale_x)
-    return Differentiated(x, slopes, slopes / scale, scale)
+def integrated(x: Array, mean_ordinates: Array, start: float) -> Plotted:
+    """The integral at the divisions ``x`` (n + 1,), from ``start`` at the first on, of second order
+    where the mean ordinates of the parts (n,) are those in their middles."""
+    steps = mean_ordinates * np.diff(x)
+    return Plotted(x, start + np.concatenate([[0.0], np.cumsum(steps)]))
 
 
-def integrate(
-    x: Array, middles: Array, pole_mm: float, scale_x: float, scale_y: float
-) -> Integrated:
-    """The integral from the first division on, of second order.
+def three_graphs(
+    method: Method, x: Array, readings: Readings, start: tuple[float, float]
+) -> ThreeGraphs:
+    """A quantity and both of its rates, as drawn.
 
     Parameters
     ----------
+    method : Method
+        By chords or tangents the quantity is read at the divisions, and differentiated twice; by
+        integration the second rate is, in the middles of the parts, and is integrated twice.
     x : Array
         The divisions (n + 1,), rising.
-    middles : Array
-        The values of the graph in the middles of the parts (n,): their mean ordinates, as far as
-        the graph is straight there.
-    pole_mm, scale_x, scale_y : float
-        As in `by_chords`.
+    readings : Readings
+        What is read; of order 0, or, for integration, of order 2.
+    start : (float, float)
+        Quantity and rate at the first division: the constants of integration.
     """
-    steps = middles * np.diff(x)
-    y = np.concatenate([[0.0], np.cumsum(steps)])
-    return Integrated(x, y, middles, pole_mm * scale_x * scale_y)
+    if method == "integration":
+        second = Plotted(_middles(x), readings(2, _middles(x)))
+        first = integrated(x, second.y, start[1])
+        # The mean ordinate of a part of the first integral is that of its chord.
+        means = Plotted(second.x, 0.5 * (first.y[1:] + first.y[:-1]))
+        return ThreeGraphs((integrated(x, means.y, start[0]), first, second), (means, second))
+    differentiated = by_chords if method == "chords" else by_tangents
+    graph = Plotted(x, readings(0, x))
+    first = differentiated(graph)
+    second = differentiated(first)
+    return ThreeGraphs((graph, first, second), (first, second))
+
+
+def derivative_scale(pole_mm: float, scale_x: float, scale_y: float) -> float:
+    """mu_y = mu_Y / (H mu_x) of a derivative, from the scales of the graph and H [mm]."""
+    return scale_y / (pole_mm * scale_x)
+
+
+def _middles(x: Array) -> Array:
+    return 0.5 * (x[1:] + x[:-1])

@@ -92,28 +92,6 @@ def positions(request: PositionsRequest) -> int:
     return verb.run_positions(request, terminal())
 
 
-@dataclass(frozen=True)
-class GraphRequest:
-    """What `graph` was asked for, as given."""
-
-    scene: SceneName
-    of: Annotated[
-        str, typer.Option("--of", metavar="NAME", help="A link, a slider, or a coordinate: C.x.")
-    ]
-    output: Output
-    divisions: Annotated[int, typer.Option(min=4, max=720, help="Parts of the period.")] = 24
-    paper: PaperSize = "A4"
-
-
-@command
-def graph(request: GraphRequest) -> int:
-    """Draw an angle, a displacement or a coordinate over a period, and differentiate it twice with
-    ruler and pole, beside the exact curves."""
-    from reports.cli.commands import sheets as verb
-
-    return verb.run_graph(request, terminal())
-
-
 @command
 def polygon(request: PolygonRequest) -> int:
     """Draw the velocity and the acceleration polygon of a position, group by group, to scale.

@@ -1,4 +1,4 @@
-"""`crankcheck positions` and `crankcheck graph`: sheets drawn to scale."""
+"""`crankcheck positions`: a sheet drawn to scale."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ from rich.console import Console
 
 from models.errors import harmless
 from models.files import find_scene, load_scene
-from reports.cli.drawing_sheets import GraphRequest, PositionsRequest
+from reports.cli.drawing_sheets import PositionsRequest
 from reports.output.write import check_file, write
 from reports.sheets.canvas import Canvas
-from reports.sheets.graph_sheet import draw_graphs, graphs
 from reports.sheets.paper import Paper
 from reports.sheets.position_sheet import draw_positions, positions
 from reports.sheets.sheet_note import sheet_note
@@ -26,19 +25,6 @@ def run_positions(request: PositionsRequest, console: Console) -> int:
     sheet = positions(scene, request.divisions, paper)
     told = f"{request.divisions} positions of {scene.name}, K_l = {sheet.scale:g} m/mm"
     save_sheet(console, draw_positions(sheet, sheet_note(scene)), request.output, told)
-    return 0
-
-
-def run_graph(request: GraphRequest, console: Console) -> int:
-    """Draw graphs. Raises CrankcheckError for what can not be asked."""
-    paper = _checked(request.scene, request.output, request.paper)
-    scene = load_scene(request.scene)
-    sheet = graphs(scene, request.of, request.divisions, paper)
-    parts = ", ".join(
-        f"{graph.symbol} off by up to {100 * graph.off:.2g} %" for graph in sheet.graphs[1:]
-    )
-    told = f"{request.of} of {scene.name} in {request.divisions} parts; {parts}"
-    save_sheet(console, draw_graphs(sheet, sheet_note(scene)), request.output, told)
     return 0
 
 

@@ -2,58 +2,91 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
-from analytic.drawings.graphical import by_chords, by_tangents, integrate
+from analytic.drawings.graphical import (
+    Method,
+    Order,
+    Plotted,
+    by_chords,
+    by_tangents,
+    derivative_scale,
+    integrated,
+    three_graphs,
+)
 from analytic.kinematics import solve
+from models.array import Array
 from models.files import load_scene
 
-DIVISIONS = (12, 24, 48, 96)
+DIVISIONS = (24, 48, 96, 192)
+FIELDS = ("theta", "omega", "alpha")
+LECTURE = load_scene("fourbar-lecture-1")
 
 
-def errors(method: str) -> list[float]:
-    """The largest error of the rocker's rate over its largest, by the number of divisions."""
-    scene = load_scene("fourbar-lecture-1")
-    period, found = scene.driver.law.period_s, []
+def rocker(order: Order, x: Array) -> Array:
+    link = solve(LECTURE, x, links="rocker", points=(), sliders=(), bound=False).links["rocker"]
+    return getattr(link, FIELDS[order])
+
+
+def errors(method: Method, order: Order) -> list[float]:
+    """The largest error of the rocker's angle or rate, by the number of divisions."""
+    found = []
     for count in DIVISIONS:
-        x = np.linspace(0.0, period, count + 1)
-        middles = 0.5 * (x[1:] + x[:-1])
-        rocker = solve(scene, x, links="rocker", points=(), sliders=()).links["rocker"]
-        if method == "integral":
-            between = solve(scene, middles, links="rocker", points=(), sliders=()).links["rocker"]
-            drawn = integrate(x, between.omega, 20.0, 0.01, 0.1).y
-            exact = rocker.theta - rocker.theta[0]
-        else:
-            differentiate = by_chords if method == "chords" else by_tangents
-            got = differentiate(x, rocker.theta, 20.0, 0.01, 0.1)
-            drawn = got.y
-            exact = solve(scene, got.x, links="rocker", points=(), sliders=()).links["rocker"].omega
-        found.append(float(np.abs(drawn - exact).max() / np.abs(exact).max()))
+        x = np.linspace(0.0, LECTURE.driver.law.period_s, count + 1)
+        start = (float(rocker(0, x[:1])[0]), float(rocker(1, x[:1])[0]))
+        graph = three_graphs(method, x, rocker, start).graphs[order]
+        found.append(float(np.abs(graph.y - rocker(order, graph.x)).max()))
     return found
 
 
-@pytest.mark.parametrize("method", ["chords", "tangents", "integral"])
-def test_errors_fall_with_the_square_of_the_divisions(method: str) -> None:
-    slope = -float(np.polyfit(np.log(DIVISIONS), np.log(errors(method)), 1)[0])
-    assert slope == pytest.approx(2.0, abs=0.15)
+def fitted(divisions: Sequence[int], found: Sequence[float]) -> float:
+    return -float(np.polyfit(np.log(divisions), np.log(found), 1)[0])
+
+
+@pytest.mark.parametrize(
+    ("method", "order", "within"),
+    [
+        ("chords", 1, 0.02),
+        ("chords", 2, 0.1),
+        ("tangents", 1, 0.06),
+        ("tangents", 2, 0.2),
+        ("integration", 1, 0.02),
+        ("integration", 0, 0.02),
+    ],
+)
+def test_errors_fall_with_the_square_of_the_divisions(
+    method: Method, order: Order, within: float
+) -> None:
+    assert fitted(DIVISIONS, errors(method, order)) == pytest.approx(2.0, abs=within)
 
 
 def test_a_straight_graph_is_differentiated_to_rounding_and_a_parabola_by_tangents() -> None:
     x = np.array([0.0, 1.0, 3.0, 4.0, 8.0])
-    assert by_chords(x, 3.0 * x - 1.0, 10.0, 1.0, 1.0).y == pytest.approx(3.0)
-    tangents = by_tangents(x, x**2, 10.0, 1.0, 1.0)
+    assert by_chords(Plotted(x, 3.0 * x - 1.0)).y == pytest.approx(3.0)
+    tangents = by_tangents(Plotted(x, x**2))
+    assert tangents.x == pytest.approx(x[1:-1])
     assert tangents.y == pytest.approx(2.0 * x[1:-1])
 
 
-def test_scales_are_those_of_the_book() -> None:
-    x = np.linspace(0.0, 1.0, 5)
-    drawn = by_chords(x, x**2, pole_mm=25.0, scale_x=0.01, scale_y=0.02)
-    assert drawn.scale == pytest.approx(0.02 / (25.0 * 0.01))
-    assert drawn.ordinates_mm * drawn.scale == pytest.approx(drawn.y)
-    # a ray over the pole distance has the slope of the chord on paper
-    on_paper = (np.diff(x**2) / 0.02) / (np.diff(x) / 0.01)
-    assert drawn.ordinates_mm / 25.0 == pytest.approx(on_paper)
-    total = integrate(x, 0.5 * (x[1:] + x[:-1]), pole_mm=25.0, scale_x=0.01, scale_y=0.02)
-    assert total.scale == pytest.approx(25.0 * 0.01 * 0.02)
-    assert total.y[-1] == pytest.approx(0.5)
+def test_what_was_differentiated_is_integrated_back_from_its_start() -> None:
+    x = np.array([0.0, 1.0, 3.0, 4.0, 8.0])
+    y = np.array([2.0, -1.0, 5.0, 5.5, 0.0])
+    assert integrated(x, by_chords(Plotted(x, y)).y, start=2.0).y == pytest.approx(y)
+
+
+def test_constants_of_integration_are_those_of_the_start() -> None:
+    x = np.linspace(0.0, 2.0, 5)
+    drawn = three_graphs("integration", x, lambda _, at: np.full_like(at, 3.0), (7.0, -1.0))
+    assert drawn.graphs[1].y == pytest.approx(-1.0 + 3.0 * x)
+    assert drawn.graphs[0].y == pytest.approx(7.0 - x + 1.5 * x**2)
+
+
+def test_a_ray_over_the_pole_distance_has_the_slope_of_the_chord_on_paper() -> None:
+    graph = Plotted(np.linspace(0.0, 1.0, 5), np.linspace(0.0, 1.0, 5) ** 2)
+    mu_x, mu_y, pole = 0.01, 0.02, 25.0
+    ordinates = by_chords(graph).y / derivative_scale(pole, mu_x, mu_y)
+    on_paper = (np.diff(graph.y) / mu_y) / (np.diff(graph.x) / mu_x)
+    assert ordinates / pole == pytest.approx(on_paper)

@@ -1,68 +1,176 @@
-"""The sheet of graphs: rays parallel to chords, and what is refused."""
+"""The sheet of graphs: construction on paper, what fits, and what is refused."""
 
 from __future__ import annotations
 
+import itertools
+import math
 import re
+from functools import cache
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
+from analytic.drawings.graphical import METHODS, Method
+from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
-from reports.sheets.graph_sheet import GraphSheet, draw_graphs, graphs
+from reports.sheets.graph_drawing import drawn_graphs
+from reports.sheets.graph_page import caption, draw_graphs, laid_out
+from reports.sheets.graph_range import Over, over_period
+from reports.sheets.graph_scales import POLES_MM, graph_scales
+from reports.sheets.graph_sheet import GraphSheet
+from reports.sheets.graph_table import table_cells
 from reports.sheets.paper import Paper
 
-A4 = Paper.of("A4")
 SVG = "{http://www.w3.org/2000/svg}"
+MM_PER_POINT = 25.4 / 72.0
 
 
-def sheet_of(name: str, of: str, divisions: int = 24) -> GraphSheet:
-    return graphs(load_scene(name), of, divisions, A4)
+@cache
+def sheet_of(
+    name: str, of: str, by: Method = "chords", divisions: int = 24, over: Over = "time",
+    paper: str = "A4",
+) -> GraphSheet:  # fmt: skip
+    ranged = over_period(load_scene(name), of, over, None)
+    return laid_out(drawn_graphs(ranged, by, divisions), Paper.of(paper))
 
 
-def test_a_ray_over_the_pole_distance_is_parallel_to_its_chord_on_paper() -> None:
-    sheet = sheet_of("fourbar-lecture-1", "rocker")
-    drawing = ElementTree.fromstring(draw_graphs(sheet, "").saved("svg", "graphs"))
-    slopes = []
-    for k in range(sheet.divisions):
-        group = next(g for g in drawing.iter(f"{SVG}g") if g.get("id") == f"chord-phi-{k}")
-        path = group.find(f"{SVG}path").get("d")
-        x0, y0, x1, y1 = map(float, re.findall(r"-?\d+\.?\d*", path))
-        slopes.append(-(y1 - y0) / (x1 - x0))
-    rate = sheet.graphs[1]
-    assert rate.rays_mm / rate.pole_mm == pytest.approx(slopes, abs=2e-4)
+@cache
+def drawing_of(by: Method) -> ElementTree.Element:
+    sheet = sheet_of("fourbar-lecture-1", "rocker", by, 12)
+    return ElementTree.fromstring(draw_graphs(sheet, "").saved("svg", "graphs"))
 
 
-def test_twice_as_many_parts_are_four_times_as_near() -> None:
-    coarse, fine = (sheet_of("fourbar-lecture-1", "rocker", n) for n in (36, 72))
-    for one, other in zip(coarse.graphs[1:], fine.graphs[1:], strict=True):
-        assert one.off / other.off == pytest.approx(4.0, rel=0.15)
-
-
-@pytest.mark.parametrize(("name", "of"), [("slider-crank-offset", "C"), ("shaper", "E.y")])
-def test_sliders_and_coordinates_are_drawn_within_their_graphs(name: str, of: str) -> None:
-    sheet = sheet_of(name, of)
-    for graph in sheet.graphs:
-        assert np.abs(graph.exact / graph.scale).max() < 30.0
-        assert graph.off < 0.15  # of the shaper's quick return in 24 parts
-    part = float(sheet.dense_s[-1]) / sheet.divisions / sheet.scale_x
-    assert part == pytest.approx(round(part))  # whole millimetres
-
-
-def test_what_is_let_go_has_no_period_to_draw() -> None:
-    with pytest.raises(CrankcheckError, match="let go, and has no period"):
-        sheet_of("fourbar-swing", "rocker")
+def slopes(drawing: ElementTree.Element, name: str) -> Array:
+    """Rise over run of the numbered lines of an SVG."""
+    groups = {group.get("id"): group for group in drawing.iter(f"{SVG}g")}
+    names = itertools.takewhile(groups.__contains__, (f"{name}-{k}" for k in itertools.count()))
+    paths = [groups[each].find(f"{SVG}path").get("d") for each in names]
+    ends = np.array([[float(n) for n in re.findall(r"-?\d+\.?\d*", path)] for path in paths])
+    return -(ends[:, 3] - ends[:, 1]) / (ends[:, 2] - ends[:, 0])
 
 
 @pytest.mark.parametrize(
-    ("of", "divisions", "told"),
+    ("by", "line", "ray"),
     [
-        ("roker", 24, "did you mean rocker"),
-        ("C.z", 24, "--of C.z"),
-        ("rocker", 720, r"at most \d+ fit, or take larger paper"),
+        ("chords", "chord-phi", "ray-omega"),
+        ("tangents", "tangent-omega", "ray-epsilon"),
+        ("integration", "step-omega", "ray-epsilon"),
+        ("integration", "step-phi", "ray-omega"),
     ],
 )
-def test_what_can_not_be_drawn_is_refused(of: str, divisions: int, told: str) -> None:
+def test_rays_are_parallel_on_paper_to_what_is_drawn_of_them(
+    by: Method, line: str, ray: str
+) -> None:
+    drawing = drawing_of(by)
+    rays = slopes(drawing, ray)
+    assert len(rays) >= 8
+    # lines of 10 mm are written to a millionth of a point
+    assert slopes(drawing, line) == pytest.approx(rays, abs=1e-5)
+
+
+def test_scales_of_integration_are_those_of_the_problem_book() -> None:
+    sheet = sheet_of("fourbar-lecture-1", "rocker", "integration", 12)
+    second, first, value = sheet.panels
+    assert (second.order, first.order, value.order) == (2, 1, 0)
+    assert first.scale == pytest.approx(second.pole_mm * sheet.scale_x * second.scale)
+    assert value.scale == pytest.approx(first.pole_mm * sheet.scale_x * first.scale)
+    assert math.isnan(value.pole_mm)
+    assert "from 4.67615 rad/s on (exact)" in caption(sheet, first)
+
+
+@pytest.mark.parametrize("by", METHODS)
+@pytest.mark.parametrize("heights", [(1.0, 6.0, 90.0), (1.0, 1e-3, 1e-6), (1e-6, 10.0, 4e3)])
+def test_graphs_of_any_heights_fit_with_one_scale_round(
+    by: Method, heights: tuple[float, float, float]
+) -> None:
+    scales = graph_scales(by, heights, 0.003, 45.0)
+    high = np.array(heights) / scales.units_per_mm
+    assert high.max() <= 45.0 * (1.0 + 1e-8)
+    read = 2 if by == "integration" else 0
+    assert f"{scales.units_per_mm[read]:.1e}"[:3] in ("1.0", "2.0", "5.0")
+    assert {pole for pole in scales.poles_mm if not math.isnan(pole)} <= set(POLES_MM)
+
+
+@pytest.mark.parametrize(
+    ("name", "of", "by", "paper"),
+    [
+        ("slider-crank-offset", "C", "chords", "A4"),
+        ("shaper", "E.y", "tangents", "A3"),
+        ("whitworth", "lever", "integration", "A5"),
+        ("fourbar-lecture-1", "crank", "integration", "A4"),
+    ],
+)
+def test_graphs_and_table_stay_within_their_boxes(
+    name: str, of: str, by: Method, paper: str
+) -> None:
+    sheet = sheet_of(name, of, by, paper=paper)
+    for panel in sheet.panels:
+        exact = sheet.drawn.range.exact(panel.order, sheet.drawn.range.dense)
+        high = panel.height_mm(np.concatenate([exact, sheet.drawn.reference.graphs[panel.order].y]))
+        assert panel.box.bottom - 0.01 <= high.min()
+        assert high.max() <= panel.box.bottom + panel.box.height + 0.01
+    assert sheet.table.left + sheet.table.width <= sheet.paper.width - 8.0
+    part = sheet.panels[0].box.width / sheet.drawn.parts
+    assert 2.0 * part == pytest.approx(round(2.0 * part))  # half millimetres of a ruler
+
+
+def test_the_table_has_division_angle_and_value() -> None:
+    no, degrees, phi = table_cells(sheet_of("fourbar-lecture-1", "rocker").drawn)
+    assert (no[2], degrees[2], phi[2]) == ("0", "90.00", "1.9085")
+    assert (no[-1], degrees[-1], phi[-1]) == ("24", "450.00", "1.9085")
+    no, degrees, _ = table_cells(sheet_of("fourbar-lecture-1", "rocker", "integration").drawn)
+    assert (no[2], degrees[2], len(no)) == ("0.5", "97.50", 26)
+
+
+def test_over_the_angle_of_a_steady_driver_rates_are_rates() -> None:
+    time, angle = (
+        sheet_of("fourbar-lecture-1", "rocker", over=over).drawn for over in ("time", "angle")
+    )
+    assert angle.range.units == time.range.units
+    assert angle.reference.graphs[2].y == pytest.approx(time.reference.graphs[2].y)
+    assert angle.range.shown == pytest.approx(math.degrees(10.0))
+
+
+def test_over_the_angle_of_another_driver_rates_are_analogues() -> None:
+    sheet = sheet_of("fourbar-double-rocker", "rocker", over="angle")
+    of = sheet.drawn.range
+    assert (of.symbols[1], of.units[1]) == ("phi'", "rad/rad")
+    assert np.degrees([of.start, of.end]) == pytest.approx([27.0, 57.0])
+    # its rate over that of the driver, at an instant in the middle of the swing
+    at = over_period(load_scene("fourbar-double-rocker"), "rocker", "time", None)
+    driver = at.scene.driver.law.at(np.zeros(1))
+    assert of.exact(1, driver[0]) == pytest.approx(at.exact(1, np.zeros(1)) / driver[1])
+    assert sheet.drawn.off(sheet.drawn.reference, 1) < 0.002
+
+
+def test_what_is_let_go_is_drawn_for_a_duration() -> None:
+    scene = load_scene("fourbar-swing")
+    drawn = drawn_graphs(over_period(scene, "rocker", "time", 0.5), "chords", 96)
+    assert drawn.range.end == 0.5
+    assert drawn.off(drawn.reference, 1) < 0.01
+
+
+@pytest.mark.parametrize(
+    ("scene", "of", "over", "duration", "told"),
+    [
+        ("fourbar-lecture-1", "roker", "time", None, "did you mean rocker"),
+        ("fourbar-lecture-1", "C.z", "time", None, "--of C.z"),
+        ("fourbar-lecture-1", "D.x", "time", None, "stands still"),
+        ("fourbar-lecture-1", "rocker", "time", 2.0, "drawn over its period of 0.628319 s"),
+        ("fourbar-swing", "rocker", "time", None, "let go, and has no period.*--duration"),
+        ("fourbar-swing", "rocker", "angle", 1.0, "may turn back; use --over time"),
+        ("fourbar-swing", "rocker", "time", math.nan, "give seconds above 0"),
+    ],
+)
+def test_what_can_not_be_drawn_is_refused(
+    scene: str, of: str, over: Over, duration: float | None, told: str
+) -> None:
     with pytest.raises(CrankcheckError, match=told):
-        sheet_of("fourbar-lecture-1", of, divisions)
+        over_period(load_scene(scene), of, over, duration)
+
+
+def test_more_parts_than_paper_has_room_for_are_refused() -> None:
+    with pytest.raises(CrankcheckError, match=r"at most \d+ fit, or take larger paper"):
+        sheet_of("fourbar-lecture-1", "rocker", divisions=120)

@@ -1,0 +1,118 @@
+"""`crankcheck graph`: graphs differentiated and integrated with ruler and pole."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.console import Console
+
+from analytic.drawings.graphical import METHODS, Method
+from models.errors import CrankcheckError, shown
+from models.files import find_scene, load_scene
+from reports.cli.commands.sheets import ENDINGS, save_sheet
+from reports.cli.graph_sheets import GraphRequest
+from reports.output.write import check_file
+from reports.sheets.graph_drawing import DrawnGraphs, drawn_graphs
+from reports.sheets.graph_log import graph_log
+from reports.sheets.graph_orders import GraphErrors, graph_errors, show_errors, told_floor
+from reports.sheets.graph_orders_sheet import draw_errors
+from reports.sheets.graph_page import draw_graphs, laid_out
+from reports.sheets.graph_range import OVERS, Over, over_period
+from reports.sheets.graph_words import show_graphs, tell, told_errors, told_log
+from reports.sheets.paper import Paper
+from reports.sheets.sheet_note import sheet_note
+
+LEAST_PARTS, MOST_PARTS, MOST_COUNTS = 4, 1440, 12
+
+
+def run_graph(request: GraphRequest, console: Console) -> int:
+    """Show or draw graphs. Raises CrankcheckError for what can not be asked."""
+    paper = Paper.of(request.paper)
+    divisions = counts(request.divisions)
+    by, over = _method(request.by), _over(request.over)
+    if request.map is not None and request.log is None:
+        raise CrankcheckError(f"--map {request.map}: it is of a log; give --log as well")
+    if request.output is not None:
+        read = [find_scene(request.scene), request.log, request.map]
+        check_file(request.output, "-o", ENDINGS, inputs=read)
+    scene = load_scene(request.scene)
+    of = over_period(scene, request.of, over, request.duration_s)
+    log = None
+    if request.log is not None:
+        log = graph_log(request.log, request.map, of)
+        of = log.range
+    if len(divisions) > 1:
+        _tell_errors(request, console, graph_errors(of, by, divisions, log), paper)
+    else:
+        _tell_graphs(request, console, drawn_graphs(of, by, divisions[0], log), paper)
+    return 0
+
+
+def _tell_graphs(request: GraphRequest, console: Console, drawn: DrawnGraphs, paper: Paper) -> None:
+    """Draw the sheet, or show the table; then what both are off by."""
+    of = drawn.range
+    told = (
+        f"{of.quantity.name} of {of.scene.name} in {drawn.parts} parts{_by(drawn.by)}; "
+        f"{told_errors(drawn, drawn.reference)}"
+    )
+    if request.output is None:
+        show_graphs(console, drawn)
+        tell(console, told)
+    else:
+        canvas = draw_graphs(laid_out(drawn, paper), sheet_note(of.scene))
+        save_sheet(console, canvas, request.output, told)
+    if drawn.logged is not None:
+        for line in told_log(drawn):
+            tell(console, line)
+
+
+def _tell_errors(
+    request: GraphRequest, console: Console, errors: GraphErrors, paper: Paper
+) -> None:
+    """Show the errors, and draw them where a file is given."""
+    of = errors.range
+    if request.output is not None:
+        told = f"errors of {of.quantity.name} of {of.scene.name} over divisions{_by(errors.by)}"
+        canvas = draw_errors(errors, paper, sheet_note(of.scene))
+        save_sheet(console, canvas, request.output, told)
+    show_errors(console, errors)
+    if errors.log is not None:
+        tell(console, told_floor(errors))
+
+
+def _by(method: Method) -> str:
+    return "" if method == "chords" else f" by {method}"
+
+
+def counts(text: str) -> Sequence[int]:
+    """Numbers of divisions, rising. Raises CrankcheckError."""
+    words = text.split(",")
+    if not all(word.strip().isdecimal() for word in words):
+        raise CrankcheckError(
+            f"--divisions {shown(text)}: give whole numbers, such as 24, or 12,24,48"
+        )
+    found = [int(word) for word in words]
+    if not all(LEAST_PARTS <= each <= MOST_PARTS for each in found):
+        raise CrankcheckError(
+            f"--divisions {shown(text)}: a period has {LEAST_PARTS} to {MOST_PARTS} parts"
+        )
+    if len(found) > MOST_COUNTS or found != sorted(set(found)):
+        raise CrankcheckError(
+            f"--divisions {shown(text)}: give up to {MOST_COUNTS} numbers, each above the one "
+            "before"
+        )
+    return found
+
+
+def _method(text: str) -> Method:
+    for name in METHODS:
+        if text == name:
+            return name
+    raise CrankcheckError(f"--by {shown(text)}: unknown; use {', '.join(METHODS)}")
+
+
+def _over(text: str) -> Over:
+    for name in OVERS:
+        if text == name:
+            return name
+    raise CrankcheckError(f"--over {shown(text)}: unknown; use {' or '.join(OVERS)}")

@@ -1,0 +1,109 @@
+"""How the errors of drawn graphs fall with the number of divisions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from rich.console import Console
+
+from analytic.drawings.graphical import Method
+from reports.output.columns import plain_table
+from reports.results.fits.curves import straight
+from reports.sheets.graph_drawing import DrawnGraphs, drawn_graphs
+from reports.sheets.graph_log import GraphLog
+from reports.sheets.graph_range import Range
+from reports.sheets.graph_words import NOTHING, share
+
+LEAST_FALL = 2
+"""Errors above rounding that an order takes."""
+
+
+@dataclass(frozen=True)
+class ErrorLine:
+    """Errors over the size, one for each number of divisions; ``of`` is whose, ``symbol`` of
+    what."""
+
+    of: str
+    symbol: str
+    errors: tuple[float, ...]
+
+    def order(self, divisions: Sequence[int]) -> float | None:
+        """The power of the length of a part that they fall with; None for errors of rounding."""
+        some = [(n, error) for n, error in zip(divisions, self.errors, strict=True)
+                if error > NOTHING]  # fmt: skip
+        if len(some) < LEAST_FALL:
+            return None
+        counts, errors = np.array(some).T
+        return straight(1.0 / counts, errors).order
+
+
+@dataclass(frozen=True)
+class GraphErrors:
+    """Lines of errors over the numbers of divisions: of the reference, of a log where there is one,
+    and of that the part that is its own."""
+
+    range: Range
+    by: Method
+    divisions: tuple[int, ...]
+    lines: tuple[ErrorLine, ...]
+    log: GraphLog | None
+
+
+def graph_errors(
+    of: Range, by: Method, divisions: Sequence[int], log: GraphLog | None
+) -> GraphErrors:
+    """Draw with each number of divisions. Raises CrankcheckError as `drawn_graphs`."""
+    drawings = [drawn_graphs(of, by, parts, log) for parts in divisions]
+    return GraphErrors(of, by, tuple(divisions), tuple(_lines(drawings)), log)
+
+
+def _lines(drawings: Sequence[DrawnGraphs]) -> list[ErrorLine]:
+    first, found = drawings[0], list[ErrorLine]()
+    symbols = first.range.symbols
+    for order in first.derived:
+        errors = tuple(each.off(each.reference, order) for each in drawings)
+        found.append(ErrorLine("reference", symbols[order], errors))
+    if first.log is None:
+        return found
+    for order in first.derived:
+        errors = tuple(each.off(each.logged, order) for each in drawings if each.logged)
+        found.append(ErrorLine("log", symbols[order], errors))
+    for order in first.derived:
+        errors = tuple(each.own_part(order) for each in drawings)
+        found.append(ErrorLine("its own part", symbols[order], errors))
+    return found
+
+
+def show_errors(console: Console, errors: GraphErrors) -> None:
+    """Print the table, a row for each number of divisions, and the fitted orders under it."""
+    table = plain_table(gap=2)
+    table.add_column("\nparts", justify="right")
+    for each in errors.lines:
+        table.add_column(f"{each.of}\n{each.symbol}", justify="right")
+    for k, count in enumerate(errors.divisions):
+        table.add_row(str(count), *(share(each.errors[k]) for each in errors.lines))
+    if len(errors.divisions) > 1:
+        table.add_row("order", *(order_words(each, errors.divisions) for each in errors.lines))
+    console.print(table)
+
+
+def order_words(line: ErrorLine, divisions: Sequence[int]) -> str:
+    """The fitted order; that of what does not fall is none."""
+    order = line.order(divisions)
+    return "-" if order is None or line.of == "its own part" else f"{order:.2f}"
+
+
+def told_floor(errors: GraphErrors) -> str:
+    """Where the errors of the log end."""
+    assert errors.log is not None
+    own = ", ".join(
+        f"{each.symbol} {share(each.errors[-1])}"
+        for each in errors.lines
+        if each.of == "its own part"
+    )
+    return (
+        f"finer parts bring the errors of {errors.log.name} down to its own, beside the drawing of "
+        f"the reference: {own} in {errors.divisions[-1]} parts"
+    )

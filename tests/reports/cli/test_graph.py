@@ -1,0 +1,74 @@
+"""`crankcheck graph`: the table, errors over divisions, an engine's log, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from reports.cli import app
+
+
+def crankcheck(*arguments: str) -> Result:
+    return CliRunner().invoke(app, [*arguments])
+
+
+def graph(*arguments: str) -> Result:
+    return crankcheck("graph", "fourbar-lecture-1", "--of", "rocker", *arguments)
+
+
+def test_without_a_file_the_table_is_shown() -> None:
+    told = graph("--divisions", "8").output.splitlines()
+    assert told[0].split() == [
+        *("no.", "crank", "deg", "phi", "rad", "omega", "rad/s", "exact"),
+        *("epsilon", "rad/s²", "exact"),
+    ]
+    assert told[2].split()[:3] == ["0.5", "112.50", "4.9897"]
+    assert told[-1].endswith("in 8 parts; omega off by up to 5.4 %, epsilon off by up to 11 %")
+
+
+def test_orders_are_fitted_and_the_log_of_an_engine_ends_in_its_own_error(tmp_path: Path) -> None:
+    # That an engine's log goes through: `run` writes it, and names and instants are its own.
+    log, sheet = tmp_path / "run.csv", tmp_path / "orders.svg"
+    options = ("--engine", "pymunk", "--profile", "as-shipped", "--turns", "1", "-o", str(log))
+    assert crankcheck("run", "fourbar-lecture-1", *options).exit_code == 0
+    result = graph("--divisions", "24,48,96", "--log", str(log), "-o", str(sheet))
+    assert result.exit_code == 0
+    first, *_, last, floor = (line.split() for line in result.output.splitlines())
+    assert first[0] == f"{sheet}:"
+    assert (last[0], last[1]) == ("order", "1.99")
+    assert float(last[3]) < 1.0  # of the log, in 96 parts: its own error is most of it
+    assert "down to its own" in " ".join(floor)
+    assert "reference, omega: order 1.99" in sheet.read_text(encoding="utf-8")
+
+
+def test_of_what_turns_evenly_there_are_no_errors_to_draw(tmp_path: Path) -> None:
+    sheet = tmp_path / "orders.svg"
+    result = crankcheck(
+        "graph", "fourbar-lecture-1", "--of", "crank", "--divisions", "12,24", "-o", str(sheet)
+    )
+    assert result.exit_code == 2
+    assert "no errors to draw" in result.output
+    assert not sheet.exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("--divisions", "3"), "a period has 4 to 1440 parts"),
+        (("--divisions", "12,"), "give whole numbers"),
+        (("--divisions", "-12"), "give whole numbers"),
+        (("--divisions", "24,12"), "each above the one before"),
+        (("--by", "ruler"), "use chords, tangents, integration"),
+        (("--over", "crank"), "use time or angle"),
+        (("--map", "map.toml"), "give --log as well"),
+        (("--log", "nowhere.csv"), "nowhere.csv"),
+        (("-o", "graph.png"), "use .svg, .pdf"),
+        (("--paper", "B9"), "no size; use A5"),
+    ],
+)
+def test_what_can_not_be_asked_is_refused(arguments: tuple[str, ...], told: str) -> None:
+    result = graph(*arguments)
+    assert result.exit_code == 2
+    assert told in result.output
