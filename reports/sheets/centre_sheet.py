@@ -39,7 +39,7 @@ ROW_MM, SAMPLE_MM = 4.0, 7.0
 FAR = 1.5
 """Centres that are further from the mechanism than so many times its size are told, not drawn."""
 POLE, INFLECTION, STILL = "#d1495b", "#2e6f9e", "#3a7d44"
-FIXED, MOVING, THEOREM = "#b7791f", "#6b4e9b", "#9aa5b1"
+FIXED, MOVING, THEOREM = "#b7791f", "#6b4e9b", "#a9b3bf"
 CENTRE_MM, CENTRE_SIZE = 0.8, 7.0
 """Radius of a centre's circle, and the type of its name [point]."""
 GAP = 3.0
@@ -231,7 +231,7 @@ def _centres(axes: Axes, sheet: CentreSheet) -> None:
             for pair in pairs:
                 other = sheet.centres[pair].place
                 if other is not None and sheet.is_near(other):
-                    line(axes, here, sheet.at(other), color=THEOREM, linewidth=0.4)
+                    line(axes, here, sheet.at(other), color=THEOREM, linewidth=0.5)
         axes.add_patch(Round(tuple(here), CENTRE_MM, fc="white", ec=POLE, lw=0.8, zorder=7))
     if sheet.circles is not None and sheet.is_near(sheet.circles.acceleration_pole):
         there = sheet.at(sheet.circles.acceleration_pole)

@@ -13,7 +13,7 @@ from reports.figures.style import styled
 from reports.sheets.paper import MM_PER_IN
 
 PIXEL_MM = 0.2
-TINT, FAINT = 0.08, 0.45
+TINT, FAINT = 0.08, 0.36
 """What is less dark than the first counts as blank (the inside of a plate is paper with a tint),
 and less dark than the second as a faint line, which may be interrupted."""
 

@@ -9,14 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import lru_cache
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Rectangle
+from matplotlib.textpath import TextPath
 
 from models.array import Array
-from reports.figures.style import INK, POINTS, QUIET, width_in
+from reports.figures.style import FONT, INK, POINTS, QUIET
 from reports.sheets.canvas import Canvas, line, text
 from reports.sheets.ink import Ink, ink_of
 from reports.sheets.paper import MM_PER_IN, Box
@@ -32,17 +34,19 @@ LED_MM = 2.6
 AROUND = 32
 FRONT = 8
 """Letters lie over everything in their layer."""
-DARK_COST, FAINT_COST, AIRY_COST, LED_COST, COVER_COST = 60.0, 6.0, 0.2, 1.5, 1e4
+DARK_COST, FAINT_COST, AIRY_COST, LED_COST = 60.0, 6.0, 0.2, 1.5
 """Costs, against a millimetre off: of a square millimetre of dark or of faint lines under a text,
-of one of any close by, of a leading line, and of lying over another text."""
+of one of any close by, and of a leading line."""
+COVER_COST, CROSS_COST = 1e4, 30.0
+"""Costs of lying over another text or off the box, and over a place on a line that leads to one."""
 LOOKED_AT = 600
 """So many of the places that are best but for other texts are looked at."""
 LEADING = np.linspace(0.0, 1.0, 12)
 """Shares of a leading line at which it is looked at."""
 GROUND_MM = 0.2
 """A text that interrupts faint lines has so much blank around it."""
-BLANK_MM2 = 0.01
-"""Less ink than this under a text is none."""
+ROUNDING = 1e-6
+"""Ink [mm²] that is the rounding of sums."""
 
 
 @dataclass(frozen=True)
@@ -58,9 +62,21 @@ class Letter:
 
     @property
     def half(self) -> Array:
-        """Half the width and height of the letters themselves [mm]."""
-        tall = 0.76 * self.size / POINTS
-        return 0.5 * MM_PER_IN * np.array([width_in(self.text, self.size), tall])
+        """Half the width and height of what is printed [mm]."""
+        low, high = _printed(self.text, self.size)
+        return (high - low) / 2
+
+    def base(self, middle: Array) -> Array:
+        """Where the base line begins of a text whose print has its middle at a place [mm]."""
+        low, high = _printed(self.text, self.size)
+        return np.asarray(middle - (low + high) / 2)
+
+
+@lru_cache(maxsize=1024)
+def _printed(words: str, size: float) -> tuple[Array, Array]:
+    """The corners of a text's outlines, from where its base line begins [mm]."""
+    outline = TextPath((0.0, 0.0), words, size, prop=FontProperties(family=FONT)).get_extents()
+    return MM_PER_IN / POINTS * outline.min, MM_PER_IN / POINTS * outline.max
 
 
 def together(at: Mapping[str, Array], within_mm: float) -> dict[str, Array]:
@@ -84,11 +100,10 @@ def write_letters(canvas: Canvas, axes: Axes, letters: Iterable[Letter], box: Bo
     for letter in letters:
         middle, anchor = _best(letter, dark, faint, taken, box)
         half = letter.half
-        if faint.within(middle[None], half)[0] > BLANK_MM2:
+        if faint.within(middle[None], half + GROUND_MM)[0] > ROUNDING:
             _interrupt(axes, middle, half + GROUND_MM)
-        # capitals and figures stand on the base line
-        look: dict[str, Any] = {"ha": "center", "color": letter.color, "zorder": FRONT}
-        text(axes, middle[0], middle[1] - half[1], letter.text, letter.size, **look)
+        x, y = letter.base(middle)
+        text(axes, x, y, letter.text, letter.size, color=letter.color, zorder=FRONT)
         taken.append((middle, half))
         if (lead := _lead(letter, middle, anchor)) is not None:
             line(axes, *lead, color=QUIET, linewidth=0.3)
@@ -116,21 +131,22 @@ def _best(
     cost = (
         away
         + LED_COST * (away > LED_MM)
-        + DARK_COST * (over + 0.5 * (over > 0.0))
+        + DARK_COST * (over + 0.5 * (over > ROUNDING))
         + FAINT_COST * faint.within(middles, half + GROUND_MM)
         + AIRY_COST * (dark.within(middles, half + AIRY_MM) + faint.within(middles, half + AIRY_MM))
         + COVER_COST * outside.sum(axis=1)
     )
     few = np.argsort(cost, kind="stable")[:LOOKED_AT]
-    covered = np.zeros(len(few), dtype=bool)
+    covered = np.zeros(len(few))
     # along the line that would lead to it, too
     ways = anchors[few, None] + LEADING[:, None] * (middles - anchors)[few, None]
     for middle, size in taken:
-        covered |= np.all(np.abs(middles[few] - middle) < clear + size, axis=1)
+        here = np.all(np.abs(middles[few] - middle) < clear + size, axis=1)
+        covered += (COVER_COST if size.any() else CROSS_COST) * here
         if size.any():
             across = np.all(np.abs(ways - middle) < size, axis=2).any(axis=1)
-            covered |= across & (away[few] > LED_MM)
-    best = few[int(np.argmin(cost[few] + COVER_COST * covered))]
+            covered += COVER_COST * (across & (away[few] > LED_MM))
+    best = few[int(np.argmin(cost[few] + covered))]
     return middles[best], anchors[best]
 
 

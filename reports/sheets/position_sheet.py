@@ -39,7 +39,7 @@ LEAST_WAY_MM = 0.1
 """A point with a shorter way stands still."""
 ARC_MM, DOT_MM = 4.0, 0.45
 """Half the length of the arcs of the construction, and the radius of a position's mark."""
-FAINT, LOCI = "#9aa5b1", "#b7791f"
+FAINT, LOCI = "#a9b3bf", "#b7791f"
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ def _arc(axes: Axes, centre: Array, through: Array) -> None:
     radius = float(np.hypot(*away))
     angle, half = math.degrees(math.atan2(away[1], away[0])), math.degrees(ARC_MM / radius)
     ends = {"theta1": angle - half, "theta2": angle + half}
-    axes.add_patch(Arc(tuple(centre), 2 * radius, 2 * radius, color=INK, lw=0.4, **ends))
+    axes.add_patch(Arc(tuple(centre), 2 * radius, 2 * radius, color=INK, lw=0.5, **ends))
 
 
 def _letters(sheet: PositionSheet) -> list[Letter]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -159,9 +160,8 @@ def _slots(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]) 
 def _along_bar(placement: PlacedMechanism, places: Mapping[str, Array], name: str) -> bool:
     """Whether a slider runs along the bar of its guide, which is drawn through its block then."""
     slider = placement.scene.sliders[name]
-    ends = [
-        places[point] - places[slider.point] for point in placement.scene.links[slider.on].points
-    ]
+    points = placement.scene.links[slider.on].points
+    ends = [places[point] - places[slider.point] for point in points]
     across = quarter_turn(placement.along(name))
     return max(abs(float(end @ across)) for end in ends) < 0.5 * SLOT_MM
 
@@ -169,7 +169,7 @@ def _along_bar(placement: PlacedMechanism, places: Mapping[str, Array], name: st
 def _travels(placement: PlacedMechanism, names: list[str]) -> dict[str, tuple[float, float]]:
     """How far sliders go to both sides of where they are [m]."""
     scene, here = placement.scene, placement.driver.theta
-    angles = np.append(np.linspace(*range_about(scene, here), TRAVEL), here)
+    angles = np.append(np.linspace(*range_about(scene, here), TRAVEL)[1:-1], here)
     ones = np.ones_like(angles)
     motion = solve_driven(
         scene, angles, ones, 0.0 * ones, links=(), points=(), sliders=names, bound=False
@@ -199,17 +199,8 @@ def _turning(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]
     off_foot = abs((ahead + 90.0 + 180.0) % 360.0 - 180.0)
     start, end = (near, far) if off_foot > FOOT_DEG + (far - near) / 2 else (-far, -near)
     ends = [theta + sense * start, theta + sense * end]
-    axes.add_patch(
-        Arc(
-            tuple(middle),
-            2 * radius,
-            2 * radius,
-            theta1=min(ends),
-            theta2=max(ends),
-            color=INK,
-            lw=0.8,
-        )
-    )
+    look: dict[str, Any] = {"theta1": min(ends), "theta2": max(ends), "color": INK, "lw": 0.8}
+    axes.add_patch(Arc(tuple(middle), 2 * radius, 2 * radius, **look))
     heads = [(ends[1], sense)]
     if isinstance(scene.driver.law, Oscillating):
         heads.append((ends[0], -sense))
