@@ -34,8 +34,8 @@ NEAR_MM = 0.5
 """Centres that stand nearer have their names in one label."""
 COLUMN_MM, POLYGON_MM = 46.0, 42.0
 """Width of the column on the right, and of the polygon of centres, which is at its top."""
-ROW_MM, SAMPLE_MM = 4.0, 7.0
-"""A line of the column, and the sample of a curve before its name."""
+ROW_MM, SAMPLE_MM, CURVE_ROWS = 4.0, 7.0, 7.5
+"""A line of the column, the sample of a curve before its name; lines that tell poles and curves."""
 FAR = 1.5
 """Centres that are further from the mechanism than so many times its size are told, not drawn."""
 POLE, INFLECTION, STILL = "#d1495b", "#2e6f9e", "#3a7d44"
@@ -78,7 +78,8 @@ class CentreSheet:
 def centres_of(drawn: DrawnPolygons, link: str, paper: Paper) -> CentreSheet:
     """The sheet of a position; ``link`` is "" for the centres alone.
 
-    Raises CrankcheckError for a link that the scene has not, or that does not turn.
+    Raises CrankcheckError for a link that the scene has not, or that does not turn, and for paper
+    on which not all fits.
     """
     placement = drawn.placement
     if drawn.undetermined:
@@ -94,8 +95,23 @@ def centres_of(drawn: DrawnPolygons, link: str, paper: Paper) -> CentreSheet:
             raise CrankcheckError(f"--link {link}: no such link; there are {known}")
         circles = curvature_circles(drawn.rates[link], link)
         ways = _ways(drawn, link)
+    _check_room(drawn, paper, rows_of_curves=CURVE_ROWS if link else 0.0)
     scale, middle = _frame(drawn, centres, circles, paper)
     return CentreSheet(drawn, centres, link, circles, ways, scale, middle, paper)
+
+
+def _check_room(drawn: DrawnPolygons, paper: Paper, rows_of_curves: float) -> None:
+    """Refuse paper on which the column on the right does not fit."""
+    bodies = len(body_numbers(drawn))
+    column = _boxes(paper)[1]
+    needed = POLYGON_MM + ROW_MM * (bodies + rows_of_curves + 1.0)
+    if column.height < needed:
+        tall = math.ceil(paper.height - column.height + needed)
+        raise CrankcheckError(
+            f"--paper {paper.width:g}x{paper.height:g}: too low for the names of {bodies} bodies"
+            + (" and of the curves" if rows_of_curves else "")
+            + f"; {paper.width:g}x{tall} would do"
+        )
 
 
 def _ways(drawn: DrawnPolygons, link: str) -> Centrodes:

@@ -24,6 +24,11 @@ def range_about(scene: Scene, theta: float) -> tuple[float, float]:
     raise CrankcheckError(f"{scene.name}: can not be assembled at {math.degrees(theta):g} deg")
 
 
+def sense_of_law(scene: Scene) -> float:
+    """1 of a driver that starts counter-clockwise, -1 of one that starts clockwise."""
+    return math.copysign(1.0, float(scene.driver.law.at(np.zeros(1))[1][0]))
+
+
 def range_of_law(scene: Scene) -> tuple[float, float]:
     """What the driver swings through, or reaches from its start [rad]. Raises as `range_about`."""
     law = scene.driver.law

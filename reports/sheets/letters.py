@@ -76,7 +76,8 @@ class Letter:
 def _printed(words: str, size: float) -> tuple[Array, Array]:
     """The corners of a text's outlines, from where its base line begins [mm]."""
     outline = TextPath((0.0, 0.0), words, size, prop=FontProperties(family=FONT)).get_extents()
-    return MM_PER_IN / POINTS * outline.min, MM_PER_IN / POINTS * outline.max
+    low, high = np.array(outline.min), np.array(outline.max)
+    return MM_PER_IN / POINTS * low, MM_PER_IN / POINTS * high
 
 
 def together(at: Mapping[str, Array], within_mm: float) -> dict[str, Array]:

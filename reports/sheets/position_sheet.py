@@ -24,7 +24,7 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.figures.style import INK, QUIET
 from reports.sheets.canvas import Canvas, line
-from reports.sheets.driver_range import range_of_law
+from reports.sheets.driver_range import range_of_law, sense_of_law
 from reports.sheets.letters import NUMBER, Letter, write_letters
 from reports.sheets.paper import Box, Paper
 from reports.sheets.scheme import draw_scheme, point_letters, symbol_radius
@@ -72,9 +72,10 @@ def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
     """
     start = float(scene.driver.law.at(np.zeros(1))[0][0])
     low, high = range_of_law(scene)
+    sense = sense_of_law(scene)
     whole = high - low >= math.tau - 1e-9
     if whole:
-        angles = start + math.tau * np.arange(divisions) / divisions
+        angles = start + sense * math.tau * np.arange(divisions) / divisions
         dense = np.linspace(start, start + math.tau, LOCUS)
     else:
         angles, dense = np.linspace(low, high, divisions), np.linspace(low, high, LOCUS)
@@ -84,7 +85,7 @@ def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
     box = inner_box(paper)
     room = np.array([box.width, box.height]) - 2 * PADDING
     scale = max(round_scale(s, r) for s, r in zip(size, room, strict=True) if s > 0.0)
-    placement = PlacedMechanism.of(scene, DriverState(float(angles[0]), 1.0))
+    placement = PlacedMechanism.of(scene, DriverState(float(angles[0]), sense))
     sheet = PositionSheet(scene, placement, angles, points, loci, scale, corner + size / 2, paper)
     _check_apart(sheet, divisions)
     return sheet

@@ -45,8 +45,8 @@ def draw_scheme(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Arr
     for name, slider in scene.sliders.items():
         along = placement.along(name)
         if slider.link is not None and slider.on == GROUND:
-            corners = [places[point] for point in scene.links[slider.link].points]
-            _rails(axes, np.mean(corners, axis=0), along)
+            bar = [places[point] for point in scene.links[slider.link].points]
+            _rails(axes, np.mean(bar, axis=0), along)
             continue
         _block(axes, places[slider.point], along)
         if slider.on == GROUND:

@@ -88,6 +88,15 @@ def test_labels_of_a_drawn_sheet_are_clear() -> None:
     assert overlaps(draw_centres(centres_of(drawn, "coupler", A4), "note").figure) == []
 
 
+def test_paper_too_low_for_the_bodies_of_a_sheet_is_refused_with_what_would_do() -> None:
+    drawn = draw_polygons(load_scene("sixbar-watt"), DriverState(1.0, 1.0))
+    with pytest.raises(
+        CrankcheckError, match="180x120: .* 6 bodies and of the curves; 180x131 would do"
+    ):
+        centres_of(drawn, "coupler", SMALLEST)
+    assert centres_of(drawn, "coupler", Paper.of("180x131")).scale > 0.0
+
+
 @pytest.mark.slow  # two sheets for each scene: a second each
 @pytest.mark.parametrize("name", shipped())
 def test_labels_of_positions_are_clear(name: str) -> None:
