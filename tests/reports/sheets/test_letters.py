@@ -91,7 +91,7 @@ def test_labels_of_a_drawn_sheet_are_clear() -> None:
 def test_paper_too_low_for_the_bodies_of_a_sheet_is_refused_with_what_would_do() -> None:
     drawn = draw_polygons(load_scene("sixbar-watt"), DriverState(1.0, 1.0))
     with pytest.raises(
-        CrankcheckError, match="180x120: .* 6 bodies and of the curves; 180x131 would do"
+        CrankcheckError, match=r"180x120: .* 6 bodies and of the curves; 180x131 would do"
     ):
         centres_of(drawn, "coupler", SMALLEST)
     assert centres_of(drawn, "coupler", Paper.of("180x131")).scale > 0.0
