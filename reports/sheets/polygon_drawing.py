@@ -16,10 +16,9 @@ from analytic.drawings.polygon import Polygon, Quantity, Vector
 from analytic.drawings.vector_equation import Kind
 from models.array import Array
 from models.errors import CrankcheckError
-from reports.drawing.lettering import Label, place
-from reports.figures.style import INK, POINTS, SIZE, TINY, width_in
+from reports.figures.style import INK, SIZE, TINY, width_in
 from reports.sheets.canvas import Canvas, arrow, line, text
-from reports.sheets.letters import together
+from reports.sheets.letters import Letter, together, write_letters
 from reports.sheets.paper import MM_PER_IN, Box
 
 PADDING_MM = 9.0
@@ -44,8 +43,8 @@ WORDS: dict[Kind, str] = {
 }
 IMAGE = "#8a94a0"
 POLES: dict[Quantity, str] = {"velocity": "pᵥ", "acceleration": "pₐ"}
-NEAR_MM = 0.3
-"""Images that stand nearer have their letters in one label."""
+NODE_MM, NEAR_MM = 0.55, 0.3
+"""Radius of a crossing; images that stand nearer than the second have one label."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +105,9 @@ def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
         for vector in step.vectors:
             _draw_vector(drawn, vector, axes, quantity)
         for at in step.nodes.values():
-            axes.add_patch(Circle(tuple(drawn.at(at)), 0.55, fc="white", ec=INK, lw=0.7, zorder=6))
+            axes.add_patch(
+                Circle(tuple(drawn.at(at)), NODE_MM, fc="white", ec=INK, lw=0.7, zorder=6)
+            )
     axes = canvas.layer(f"{quantity}-images")
     for image in drawn.polygon.images.values():
         corners = np.array([drawn.at(v) for v in image.values()])
@@ -115,8 +116,8 @@ def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
                 Patch(corners, closed=len(corners) > 2, fill=False, ec=IMAGE, lw=0.6, zorder=1)
             )
     axes = canvas.layer(f"{quantity}-letters")
-    _letters(axes, drawn, box)
     _legend(axes, drawn.polygon, box)
+    write_letters(canvas, axes, _letters(drawn), box)
 
 
 def _draw_vector(drawn: DrawnPolygon, vector: Vector, axes: Axes, quantity: str) -> None:
@@ -149,38 +150,15 @@ def _legend(axes: Axes, polygon: Polygon, box: Box) -> None:
         x += MM_PER_IN * width_in(told, TINY) + 3.0
 
 
-def _letters(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
-    """The letters of the images and the pole, clear of lines and of one another."""
+def _letters(drawn: DrawnPolygon) -> list[Letter]:
+    """The letters of the images and the pole."""
     polygon = drawn.polygon
     prime = "'" if polygon.quantity == "acceleration" else ""
     at: dict[str, Array] = {POLES[polygon.quantity]: drawn.pole}
     for image in polygon.images.values():
         at |= {lower_case(name) + prime: drawn.at(v) for name, v in image.items() if np.any(v)}
     at |= {lower_case(name) + prime: drawn.at(v) for name, v in polygon.nodes.items()}
-    corner = np.array([box.left, box.bottom])
-    joined = together(at, NEAR_MM)
-    names, spots = list(joined), list(joined.values())
-    labels = [
-        Label(
-            name, (width_in(name, SIZE), SIZE / POINTS), ((spot - corner) / MM_PER_IN)[None], 0.03
-        )
-        for name, spot in zip(names, spots, strict=True)
-    ]
-    dots = [_sampled(drawn.at(v.start), drawn.at(v.end)) for v in polygon.vectors]
-    heavy = (np.vstack([*dots, *(s[None] for s in spots)]) - corner) / MM_PER_IN
-    obstacles = np.column_stack([heavy, np.full(len(heavy), 0.01)])
-    frame = (box.width / MM_PER_IN, box.height / MM_PER_IN)
-    crossing = [each for v in polygon.vectors if (each := _direction(drawn, v)) is not None]
-    light = np.vstack([np.zeros((0, 2)), *(_sampled(*each) for each in crossing)])
-    centres = place(labels, obstacles, (light - corner) / MM_PER_IN, frame)
-    for label, (x, y) in zip(labels, centres, strict=True):
-        at_x, at_y = corner + MM_PER_IN * np.array([x, y])
-        text(axes, at_x, at_y, label.text, SIZE, ha="center", va="center")
-
-
-def _sampled(start: Array, end: Array) -> Array:
-    """Points along a line [mm], closely."""
-    return np.linspace(start, end, max(int(np.hypot(*(end - start))), 1) + 1)
+    return [Letter(name, spot, NODE_MM, SIZE) for name, spot in together(at, NEAR_MM).items()]
 
 
 def lower_case(name: str) -> str:

@@ -32,7 +32,7 @@ from reports.sheets.canvas import Canvas, text
 from reports.sheets.letters import write_letters
 from reports.sheets.paper import Box, Paper
 from reports.sheets.polygon_drawing import DrawnPolygon, draw_polygon, fitted, frame_of
-from reports.sheets.scheme import bars, draw_scheme
+from reports.sheets.scheme import draw_scheme, point_letters
 from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 
 GAP = 4.0
@@ -120,7 +120,7 @@ def draw_sheet(sheet: PolygonSheet, note: str) -> Canvas:
     canvas = Canvas(sheet.paper)
     axes = canvas.layer("frame")
     _frame(axes, sheet, note)
-    _scheme(canvas.layer("scheme"), sheet)
+    _scheme(canvas, sheet)
     _table(canvas.layer("table"), sheet)
     draw_polygon(canvas, sheet.velocity, sheet.boxes["velocity"])
     draw_polygon(canvas, sheet.acceleration, sheet.boxes["acceleration"])
@@ -148,11 +148,15 @@ def _frame(axes: Axes, sheet: PolygonSheet, note: str) -> None:
         )
 
 
-def _scheme(axes: Axes, sheet: PolygonSheet) -> None:
-    points, box = sheet.drawn.placement.points, sheet.boxes["scheme"]
-    places = {n: box.middle + (p - sheet.middle) / sheet.length_scale for n, p in points.items()}
-    draw_scheme(axes, sheet.drawn.placement, places)
-    write_letters(axes, places, bars(sheet.drawn.placement, places), box, (0.05, 0.03))
+def _scheme(canvas: Canvas, sheet: PolygonSheet) -> None:
+    axes = canvas.layer("scheme")
+    placement, box = sheet.drawn.placement, sheet.boxes["scheme"]
+    places = {
+        name: box.middle + (at - sheet.middle) / sheet.length_scale
+        for name, at in placement.points.items()
+    }
+    draw_scheme(axes, placement, places)
+    write_letters(canvas, axes, point_letters(placement, places), box)
 
 
 def _table(axes: Axes, sheet: PolygonSheet) -> None:
