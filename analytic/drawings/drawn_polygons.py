@@ -51,7 +51,11 @@ def draw_polygons(scene: Scene, driver: DriverState) -> DrawnPolygons:
     Where two directions of a group are parallel (a limit position, a change point) it and what
     hangs on it is left out and named. Raises as `analytic.kinematics.solve`.
     """
-    placement = PlacedMechanism.of(scene, driver)
+    return polygons_of(PlacedMechanism.of(scene, driver))
+
+
+def polygons_of(placement: PlacedMechanism) -> DrawnPolygons:
+    """As `draw_polygons`, of a mechanism that stands already."""
     table = _Table(placement)
     table.draw_driver()
     undetermined = [said for part in placement.structure.order if (said := table.draw(part))]

@@ -16,7 +16,7 @@ from models.errors import ReachError
 from reports.sheets.polygon_sheet import PolygonSheet, draw_sheet, over_positions
 from reports.sheets.sheet_note import sheet_note
 
-ANIMATED = ".gif"
+ANIMATED, PAGE = ".gif", ".html"
 ENDINGS = (".svg", ".pdf", ANIMATED)
 FRAMES, FRAME_S, STEP_S, LAST_S = 48, 0.1, 1.2, 3.0
 DPI = 100
