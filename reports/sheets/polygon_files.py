@@ -17,7 +17,7 @@ from reports.sheets.polygon_sheet import PolygonSheet, draw_sheet, over_position
 from reports.sheets.sheet_note import sheet_note
 
 ANIMATED, PAGE = ".gif", ".html"
-ENDINGS = (".svg", ".pdf", ANIMATED)
+ENDINGS = (".svg", ".pdf", ANIMATED, PAGE)
 FRAMES, FRAME_S, STEP_S, LAST_S = 48, 0.1, 1.2, 3.0
 DPI = 100
 

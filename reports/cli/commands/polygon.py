@@ -34,7 +34,13 @@ def run_polygon(request: PolygonRequest, console: Console) -> int:
         show_polygons(console, sheet)
         return 0
     ending = request.output.suffix.lower()
-    write(request.output, turning_file(sheet) if request.turn else polygon_file(sheet, ending))
+    if ending == PAGE:
+        from reports.sheets.polygon_page import polygon_page  # the page's machinery, for it alone
+
+        raw: str | bytes = polygon_page(placement, steady=request.omega is not None)
+    else:
+        raw = turning_file(sheet) if request.turn else polygon_file(sheet, ending)
+    write(request.output, raw)
     told = f"{request.output}: {_told(sheet, request)}"
     console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
     _tell_undetermined(console, sheet.drawn)
@@ -93,7 +99,9 @@ def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
     name = sheet.drawn.placement.scene.name
     ending = request.output.suffix.lower() if request.output is not None else ""
     if request.turn or ending == PAGE:
-        return f"velocities and accelerations of {name} over a turn"
+        is_free = sheet.drawn.placement.scene.is_free and request.omega is None
+        course = "its motion" if is_free else "a turn"
+        return f"velocities and accelerations of {name} over {course}"
     at_deg = AT_DEG if request.at_deg is None else request.at_deg
     of = f"at {at_deg:g} deg" if request.at_s is None else f"at {request.at_s:g} s"
     beside = f", {request.log} beside" if request.log is not None else ""
