@@ -37,17 +37,32 @@ class Similarity:
 
 def similarity(drawn: DrawnPolygons, link: str, quantity: Quantity) -> Similarity:
     """That of a link that was drawn, of its velocities or accelerations."""
-    polygon = drawn.velocity if quantity == "velocity" else drawn.acceleration
     factor = _factor(drawn.rates[link], quantity)
-    places = np.array(list(drawn.placement.scene.links[link].points.values()))
-    reach = max(float(np.ptp(places, axis=0).max()), 0.0)
-    largest = max(
-        [float(np.hypot(*end)) for image in polygon.images.values() for end in image.values()],
-        default=0.0,
-    )
-    if abs(factor) * reach <= POINT * largest:
+    if _is_rounding(drawn, link, quantity, abs(factor)):
         return Similarity(0.0, 0.0)
     return Similarity(abs(factor), cmath.phase(factor))
+
+
+def link_rates(drawn: DrawnPolygons, link: str) -> tuple[float, float]:
+    """omega [rad/s] and alpha [rad/s^2] of a link that was drawn, 0 where no more than rounding is
+    left of them."""
+    body = drawn.rates[link]
+    rates: tuple[tuple[float, Quantity], ...] = (
+        (body.omega, "velocity"),
+        (body.alpha, "acceleration"),
+    )
+    omega, alpha = (
+        0.0 if _is_rounding(drawn, link, quantity, abs(rate)) else rate for rate, quantity in rates
+    )
+    return omega, alpha
+
+
+def _is_rounding(drawn: DrawnPolygons, link: str, quantity: Quantity, scale: float) -> bool:
+    """Whether an image of the link at a scale [1/s or 1/s^2] is as small as the rounding."""
+    polygon = drawn.velocity if quantity == "velocity" else drawn.acceleration
+    places = np.array([*drawn.placement.scene.links[link].points.values()])
+    reach = float(np.hypot(*np.ptp(places, axis=0)))
+    return scale * reach <= POINT * polygon.largest
 
 
 def _factor(body: BodyRates, quantity: Quantity) -> complex:

@@ -33,6 +33,8 @@ from reports.own_log.free_log import known_log
 from reports.quantities.moving import Order
 
 REPORTED, DIFFERENCED = "as the log reports them", "by central differences of logged positions"
+ELSEWHERE = 0.1
+"""What points are off by at most in the first row of a log of the scene, of its longest link."""
 ORDERS: Mapping[Quantity, Order] = {"velocity": 1, "acceleration": 2}
 
 
@@ -82,9 +84,25 @@ class LogInstants:
         if log.scene.is_free:
             log, free = known_log(log, 0.0, {})
             angle = free.at(log.time_s).links[log.scene.driver.link].theta
-            return LogInstants(log, free, angle)
-        truth = Truth(log.scene, bound=False)
-        return LogInstants(log, truth, log.scene.driver.law.at(log.time_s)[0])
+            instants = LogInstants(log, free, angle)
+        else:
+            angle = log.scene.driver.law.at(log.time_s)[0]
+            instants = LogInstants(log, Truth(log.scene, bound=False), angle)
+        instants.refuse_another()
+        return instants
+
+    def refuse_another(self) -> None:
+        """Raises CrankcheckError for a log whose points do not begin where those of its scene do:
+        an engine begins there, however far it comes from it."""
+        scene = self.log.scene
+        off = {name: each[0] for name, each in self._errors(0, slice(0, 2)).items()}
+        far = max(off, key=lambda name: float(np.hypot(*off[name])), default="")
+        if far and not np.hypot(*off[far]) <= ELSEWHERE * scene.longest_m:
+            raise CrankcheckError(
+                f"{self.log.source}: in its first row, t = {self.log.time_s[0]:.6g} s, {far} is "
+                f"{np.hypot(*off[far]):.3g} m off where {scene.name} has it: it is of another "
+                "scene, speed or start; name its own, or count times from the start of the motion"
+            )
 
     def at_angle(self, at_deg: float) -> LoggedInstant:
         """At the sample that is nearest to an angle of the driver [deg], when it passes it for the

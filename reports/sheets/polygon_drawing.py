@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle
-from matplotlib.patches import Polygon as Patch
 
 from analytic.drawings.polygon import Polygon, Vector
 from analytic.drawings.vector_equation import Kind
+from models.array import Array
 from reports.figures.style import INK, TINY, width_in
 from reports.sheets.canvas import Canvas, arrow, line, text
 from reports.sheets.magnified_errors import draw_errors
@@ -35,6 +37,8 @@ WORDS: dict[Kind, str] = {
     "sliding": "sliding",
 }
 IMAGE = "#8a94a0"
+COVERED_MM = 0.1
+"""A line of an image that is nearer to a vector is covered by it."""
 
 
 def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
@@ -46,19 +50,35 @@ def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
             _draw_vector(drawn, vector, axes, quantity)
         for at in step.nodes.values():
             axes.add_patch(Circle(tuple(drawn.at(at)), 0.55, fc="white", ec=INK, lw=0.7, zorder=6))
-    axes = canvas.layer(f"{quantity}-images")
-    for image in drawn.polygon.images.values():
-        corners = np.array([drawn.at(v) for v in image.values()])
-        if len(corners) > 1:
-            axes.add_patch(
-                Patch(corners, closed=len(corners) > 2, fill=False, ec=IMAGE, lw=0.6, zorder=1)
-            )
+    if edges := [*_image_lines(drawn)]:
+        axes = canvas.layer(f"{quantity}-images")
+        for start, end in edges:
+            line(axes, start, end, color=IMAGE, linewidth=0.6)
     if drawn.logged is not None:
         axes = canvas.layer(f"{quantity}-log")
         draw_errors(axes, drawn.logged, drawn.polygon.images.values(), f"{quantity}-error")
     axes = canvas.layer(f"{quantity}-letters")
     write_images(axes, drawn, box)
     _legend(axes, drawn.polygon, box)
+
+
+def _image_lines(drawn: DrawnPolygon) -> Iterator[tuple[Array, Array]]:
+    """The edges of the images of links [mm], without those that a vector lies on."""
+    vectors = [(drawn.at(vector.start), drawn.at(vector.end)) for vector in drawn.polygon.vectors]
+    for image in drawn.polygon.images.values():
+        corners = [drawn.at(end) for end in image.values()]
+        edges = [*itertools.pairwise(corners)]
+        if len(corners) > 2:
+            edges.append((corners[-1], corners[0]))
+        for a, b in edges:
+            apart = [
+                min(
+                    np.hypot(*(a - s)) + np.hypot(*(b - e)), np.hypot(*(b - s)) + np.hypot(*(a - e))
+                )
+                for s, e in vectors
+            ]
+            if min(apart, default=COVERED_MM) >= COVERED_MM:
+                yield a, b
 
 
 def _draw_vector(drawn: DrawnPolygon, vector: Vector, axes: Axes, quantity: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from reports.drawing.true_motion import true_motion
 
 AT_DEG = 90.0
 """The angle where nothing is said."""
+REST = 1e-12
+"""A speed [rad/s] that is less than so much of the root of the acceleration is rounding."""
 
 
 def placed_at_angle(
@@ -48,6 +51,9 @@ def placed_at_time(scene: Scene, at_s: float) -> PlacedMechanism:
     and forces have it. Raises CrankcheckError for a time at which it does not move."""
     motion = _motion_at(scene, time_at(scene, at_s))
     placed = PlacedMechanism.standing(scene, motion)
+    driver = placed.driver
+    if abs(driver.omega) < REST * math.sqrt(abs(driver.alpha)):  # it is let go from rest
+        placed = replace(placed, driver=replace(driver, omega=0.0))
     if not (placed.driver.omega or placed.driver.alpha):
         turns = "swings" if isinstance(scene.driver.law, Oscillating) else "moves"
         raise CrankcheckError(

@@ -30,7 +30,12 @@ def write_images(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
     polygon = drawn.polygon
     prime = "'" if polygon.quantity == "acceleration" else ""
     at: dict[str, Array] = {POLES[polygon.quantity]: drawn.pole}
-    at |= {lower_case(n) + prime: drawn.at(v) for n, v in polygon.ends.items() if np.any(v)}
+    nodes = polygon.nodes
+    at |= {
+        lower_case(name) + prime: drawn.at(end)
+        for name, end in polygon.ends.items()
+        if np.any(end) or name in nodes  # the ground's points are the pole
+    }
     if drawn.logged is not None:
         at |= {lower_case(n) + prime + STAR: tip for n, tip in drawn.logged.tips.items()}
     joined = together(at, NEAR_MM)

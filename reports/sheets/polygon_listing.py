@@ -10,13 +10,14 @@ from rich.table import Table
 
 from analytic.drawings.drawn_polygons import QUANTITIES
 from analytic.drawings.polygon import UNITS
+from analytic.drawings.similarity import link_rates
 from models.array import Array
 from models.errors import harmless
 from reports.output.columns import plain_table
 from reports.output.numbers import readable
-from reports.sheets.image_words import drawn_links, image_words
 from reports.sheets.polygon_on_paper import DrawnPolygon
 from reports.sheets.polygon_sheet import PolygonSheet
+from reports.sheets.polygon_words import at_rest, doubts, drawn_links, image_words
 
 
 def show_polygons(console: Console, sheet: PolygonSheet) -> None:
@@ -26,10 +27,12 @@ def show_polygons(console: Console, sheet: PolygonSheet) -> None:
         quantity, unit = drawn.polygon.quantity, UNITS[drawn.polygon.quantity]
         _say(console, f"\n{quantity} polygon, {readable(drawn.scale)} {unit} to the mm")
         console.print(_vectors(drawn))
+        if drawn.polygon.largest == 0.0:
+            _say(console, at_rest(quantity))
         _show_log(console, drawn, sheet)
     _show_links(console, sheet)
-    for told in sheet.drawn.undetermined:
-        _say(console, f"not drawn: {told}")
+    for told in doubts(sheet.drawn):
+        _say(console, told)
 
 
 def _say(console: Console, words: str) -> None:
@@ -39,11 +42,12 @@ def _say(console: Console, words: str) -> None:
 def _heading(sheet: PolygonSheet) -> str:
     placement, log = sheet.drawn.placement, sheet.log
     scene, driver = placement.scene, placement.driver
-    at_time = f", t = {log.time_s:.9g} s in {log.source}" if log is not None else ""
+    at_time = f", t = {sheet.time_s:.9g} s" if sheet.time_s is not None else ""
+    at_time += f" in {log.source}" if log is not None else ""
     alpha = f", {driver.alpha:g} rad/s^2" if driver.alpha else ""
     rigid = "; its elastic links are taken as rigid" if scene.elastic else ""
     return (
-        f"{scene.name}: {scene.driver.link} at {math.degrees(driver.theta) % 360.0:g} deg"
+        f"{scene.name}: {scene.driver.link} at {round(math.degrees(driver.theta), 9) % 360.0:g} deg"
         f"{at_time}, {driver.omega:g} rad/s{alpha}{rigid}"
     )
 
@@ -53,9 +57,10 @@ def _vectors(drawn: DrawnPolygon) -> Table:
     for head in ("vector", UNITS[drawn.polygon.quantity], "mm", "towards deg", "found"):
         table.add_column(head, justify="left" if head in ("vector", "found") else "right")
     for vector in drawn.polygon.vectors:
+        size = drawn.size_of(vector)
         table.add_row(
-            vector.name, f"{vector.size:.7g}", f"{vector.size / drawn.scale:.2f}",
-            _towards(vector.value),
+            vector.name, f"{size:.7g}", f"{size / drawn.scale:.2f}",
+            _towards(vector.value if size else np.zeros(2)),
             f"by crossing, {vector.direction}" if vector.direction else "known",
         )  # fmt: skip
     return table
@@ -97,8 +102,7 @@ def _show_links(console: Console, sheet: PolygonSheet) -> None:
     for head in ("link", "omega rad/s", "alpha rad/s^2"):
         rates.add_column(head, justify="left" if head == "link" else "right")
     for name in drawn_links(sheet.drawn):
-        body = sheet.drawn.rates[name]
-        rates.add_row(name, f"{body.omega:.7g}", f"{body.alpha:.7g}")
+        rates.add_row(name, *(f"{rate:.7g}" for rate in link_rates(sheet.drawn, name)))
     console.print("", rates, sep="\n")
     images = plain_table(gap=2)
     for head in ("image of", "in velocities", "in accelerations"):

@@ -9,6 +9,7 @@ import numpy as np
 
 from analytic.drawings.paper_scale import round_scale
 from analytic.drawings.polygon import Polygon, Vector
+from analytic.drawings.similarity import POINT
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.sheets.magnified_errors import MagnifiedErrors
@@ -34,6 +35,10 @@ class DrawnPolygon:
     def at(self, vector: Array) -> Array:
         """Where the end of a vector from the pole stands [mm]."""
         return np.asarray(self.pole + vector / self.scale)
+
+    def size_of(self, vector: Vector) -> float:
+        """How long a vector is [its unit], 0 where that is the rounding of a crossing."""
+        return vector.size if vector.size > POINT * self.polygon.largest else 0.0
 
     def beside(
         self, errors: Mapping[str, Array], way: str, box: Box, scale: float | None = None

@@ -2,32 +2,27 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
-from analytic.drawings.drawn_polygons import QUANTITIES, DrawnPolygons, polygons_of
+from analytic.drawings.drawn_polygons import QUANTITIES, DrawnPolygons
 from analytic.drawings.placed_mechanism import PlacedMechanism
 from analytic.drawings.polygon import UNITS, Polygon, Quantity
-from analytic.drawings.similarity import similarity
+from analytic.drawings.similarity import link_rates
 from models.array import Array
-from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.free.kept_motion import kept_motion
 from reports.describe.law import describe_law
 from reports.drawing.moving import drawing
 from reports.drawing.packed import packed
-from reports.drawing.shape import turn_of
 from reports.output.numbers import count
 from reports.output.provenance import crankcheck_version
 from reports.page.build import Head, assembled
-from reports.page.scene_sections.free import instants
 from reports.page.sections.section import Section
-from reports.sheets.image_words import drawn_links
+from reports.sheets.polygon_course import PolygonCourse
 from reports.sheets.polygon_letters import POLES, lower_case
+from reports.sheets.polygon_words import drawn_links
 
 INSTANTS, MOST = 181, 721
 """Over the turn, both ends included; and at most of a free motion."""
@@ -41,15 +36,8 @@ def polygon_page(placement: PlacedMechanism, *, steady: bool = False) -> str:
 
     Raises CrankcheckError where the driver goes through no turn.
     """
-    scene = placement.scene
-    if steady:
-        law = ConstantSpeed(placement.driver.theta, placement.driver.omega)
-        scene = replace(scene, driver=replace(scene.driver, law=law))
-    samples = INSTANTS
-    if scene.is_free:
-        samples = min(instants(kept_motion(scene, scene.driver.law.period_s)), MOST)
-    motion = turn_of(scene, samples)
-    drawn = [polygons_of(PlacedMechanism.standing(scene, motion, sample=n)) for n in range(samples)]
+    course = PolygonCourse.of(placement, INSTANTS, MOST, steady=steady)
+    scene, motion, drawn = course.scene, course.motion, course.drawn
     section = Section(
         anchor="polygons",
         title="Polygons over the motion" if scene.is_free else "Polygons over a turn",
@@ -62,7 +50,7 @@ def polygon_page(placement: PlacedMechanism, *, steady: bool = False) -> str:
         },
         embedded={
             "drawing": drawing(scene, motion.time_s, motion) | _until(scene, motion),
-            "home": _nearest(motion, placement),
+            "home": course.nearest,
             "lasts_ms": LASTS_MS,
             "polygons": [_embedded(drawn, quantity) for quantity in QUANTITIES],
             "links": _links(drawn),
@@ -78,15 +66,6 @@ def polygon_page(placement: PlacedMechanism, *, steady: bool = False) -> str:
 def _until(scene: Scene, motion: Motion) -> dict[str, object]:
     """Of what is let go the time that it is drawn for [s]: its slider is one of times."""
     return {"until_s": float(motion.time_s[-1])} if scene.is_free else {}
-
-
-def _nearest(motion: Motion, placement: PlacedMechanism) -> int:
-    """The sample in which the mechanism stands and moves most like the placement."""
-    link, driver = placement.scene.driver.link, placement.driver
-    moved = motion.links[link]
-    off = np.abs((moved.theta - driver.theta + math.pi) % math.tau - math.pi)
-    other_way = np.sign(moved.omega) * np.sign(driver.omega) < 0.0
-    return int(np.argmin(off + math.pi * other_way))
 
 
 def _missing(drawn: Sequence[DrawnPolygons]) -> str:
@@ -161,9 +140,5 @@ def _links(drawn: Sequence[DrawnPolygons]) -> dict[str, object]:
         for number, name in enumerate(names):
             if name not in each.rates:
                 continue
-            body = each.rates[name]
-            still = similarity(each, name, "velocity").is_point
-            steady = still and similarity(each, name, "acceleration").is_point
-            rows[2 * number, at] = 0.0 if still else body.omega
-            rows[2 * number + 1, at] = 0.0 if steady else body.alpha
+            rows[2 * number : 2 * number + 2, at] = link_rates(each, name)
     return {"names": names, "rows": packed(rows)}

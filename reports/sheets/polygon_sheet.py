@@ -35,18 +35,21 @@ from reports.sheets.paper import MM_PER_IN, Box, Paper
 from reports.sheets.polygon_drawing import draw_polygon
 from reports.sheets.polygon_on_paper import DrawnPolygon, fitted, frame_of
 from reports.sheets.polygon_table import draw_table, link_rows, vector_rows
+from reports.sheets.polygon_words import at_rest, doubts
 from reports.sheets.scheme import bars, draw_scheme
 from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 
 GAP = 4.0
 LEFT_SHARE, SCHEME_SHARE = 0.38, 0.5
 SCHEME_PADDING = 9.0
+DOUBT = "#a52a16"
 
 
 @dataclass(frozen=True)
 class PolygonSheet:
     """What is on the sheet: the polygons, each with its scale; the scale of lengths [m/mm], and
-    what stands in the middle of the scheme [m]; the log that is drawn beside, if there is one."""
+    what stands in the middle of the scheme [m]; the log that is drawn beside, if there is one; the
+    time [s], where it is known."""
 
     drawn: DrawnPolygons
     velocity: DrawnPolygon
@@ -56,6 +59,7 @@ class PolygonSheet:
     boxes: dict[str, Box]
     paper: Paper
     log: LoggedInstant | None = None
+    time_s: float | None = None
 
     def place(self, at: Array) -> Array:
         """Where a place [m] stands in the scheme [mm]."""
@@ -72,10 +76,15 @@ class PolygonSheet:
 
 
 def laid_out(
-    drawn: DrawnPolygons, paper: Paper, k: float | None = None, log: LoggedInstant | None = None
+    drawn: DrawnPolygons,
+    paper: Paper,
+    k: float | None = None,
+    log: LoggedInstant | None = None,
+    time_s: float | None = None,
 ) -> PolygonSheet:
     """The polygons on paper, at the finest round scales that fit; with ``k`` at the book's, the
-    crank's vectors k times as long as the drawn crank; with the images of a ``log`` beside them.
+    crank's vectors k times as long as the drawn crank; with the images of a ``log`` beside them, or
+    of an instant that is named by its time [s].
     Raises CrankcheckError for too small paper.
     """
     boxes = _boxes(paper)
@@ -99,7 +108,9 @@ def laid_out(
         )
         for polygon, scale in zip((drawn.velocity, drawn.acceleration), scales, strict=True)
     )
-    return PolygonSheet(drawn, velocity, acceleration, length_scale, middle, boxes, paper, log)
+    return PolygonSheet(
+        drawn, velocity, acceleration, length_scale, middle, boxes, paper, log, time_s
+    )
 
 
 def _scheme_frame(places: Array, box: Box) -> tuple[float, Array]:
@@ -165,8 +176,8 @@ def draw_sheet(sheet: PolygonSheet, note: str) -> Canvas:
 def heading(sheet: PolygonSheet) -> str:
     """The mechanism, and how its driver stands and moves."""
     scene, driver = sheet.drawn.placement.scene, sheet.drawn.placement.driver
-    angle = math.degrees(driver.theta) % 360.0
-    at_time = f" (t = {sheet.log.time_s:.6g} s)" if sheet.log is not None else ""
+    angle = round(math.degrees(driver.theta), 9) % 360.0
+    at_time = f" (t = {sheet.time_s:.6g} s)" if sheet.time_s is not None else ""
     alpha = f", alpha {readable(driver.alpha)} rad/s²" if driver.alpha else ""
     rigid = "; its elastic links taken as rigid" if scene.elastic else ""
     return (
@@ -190,6 +201,20 @@ def _frame(axes: Axes, sheet: PolygonSheet, note: str) -> None:
         if told := _logged(sheet).get(name):
             room = (box.width - 3.0) / MM_PER_IN
             text(axes, x, y - 2.8, cut(told, room, TINY), TINY, color=LOGGED)
+    _doubts(axes, sheet)
+
+
+def _doubts(axes: Axes, sheet: PolygonSheet) -> None:
+    """What could not be drawn, above the legend of each polygon; and which is one point."""
+    for drawn in (sheet.velocity, sheet.acceleration):
+        box = sheet.boxes[drawn.polygon.quantity]
+        told = doubts(sheet.drawn)
+        if drawn.polygon.largest == 0.0:
+            told.append(at_rest(drawn.polygon.quantity))
+        for number, words in enumerate(reversed(told), 1):
+            room = (box.width - 3.0) / MM_PER_IN
+            at = box.bottom + 1.8 + 2.8 * number
+            text(axes, box.left + 1.5, at, cut(words, room, TINY), TINY, color=DOUBT)
 
 
 def _logged(sheet: PolygonSheet) -> dict[str, str]:

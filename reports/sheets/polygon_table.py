@@ -10,15 +10,16 @@ from matplotlib.axes import Axes
 
 from analytic.drawings.drawn_polygons import QUANTITIES, DrawnPolygons
 from analytic.drawings.polygon import SYMBOLS, UNITS
+from analytic.drawings.similarity import link_rates
 from models.errors import CrankcheckError
 from reports.figures.style import POINTS, QUIET, TINY, width_in
 from reports.output.numbers import readable
 from reports.sheets.canvas import text
-from reports.sheets.image_words import drawn_links, image_words
 from reports.sheets.magnified_errors import LOGGED, STAR
 from reports.sheets.paper import MM_PER_IN, Box, Paper
 from reports.sheets.polygon_letters import lower_case
 from reports.sheets.polygon_on_paper import DrawnPolygon
+from reports.sheets.polygon_words import drawn_links, image_words
 
 ROW, GAP = 1.9, 3.0
 """The height of a row, in that of its letters; the room between columns [mm]."""
@@ -52,7 +53,8 @@ def vector_rows(drawn: DrawnPolygon) -> Iterator[Row]:
     unit = UNITS[quantity].replace("^2", "²")
     yield Row("velocities" if quantity == "velocity" else "accelerations", kept=1)
     for each in drawn.polygon.vectors:
-        yield Row(each.name, f"{each.size / drawn.scale:.2f} mm", f"{readable(each.size)} {unit}")
+        size = drawn.size_of(each)
+        yield Row(each.name, f"{size / drawn.scale:.2f} mm", f"{readable(size)} {unit}")
     if drawn.logged is None:
         return
     ends = drawn.polygon.ends
@@ -74,10 +76,8 @@ def link_rows(drawn: DrawnPolygons) -> Iterator[Row]:
     """How the links turn, and what their images are."""
     yield Row("links, and their images", kept=3)
     for name in drawn_links(drawn):
-        body = drawn.rates[name]
-        yield Row(
-            f"{name}:", "", f"{readable(body.omega)} rad/s, {readable(body.alpha)} rad/s²", kept=2
-        )
+        omega, alpha = link_rates(drawn, name)
+        yield Row(f"{name}:", "", f"{readable(omega)} rad/s, {readable(alpha)} rad/s²", kept=2)
         for quantity in QUANTITIES:
             words = image_words(drawn, name, quantity).replace("^2", "²").replace(" deg", "°")
             yield Row(f"{SYMBOLS[quantity]}:", "", words, indent_mm=2.0)

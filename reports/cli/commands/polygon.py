@@ -18,6 +18,7 @@ from reports.sheets.polygon_files import ANIMATED, ENDINGS, PAGE, polygon_file, 
 from reports.sheets.polygon_instant import AT_DEG, placed_at_angle, placed_at_time
 from reports.sheets.polygon_listing import show_polygons
 from reports.sheets.polygon_sheet import PolygonSheet, laid_out
+from reports.sheets.polygon_words import doubts
 
 MOST_K = 1e3
 
@@ -29,21 +30,23 @@ def run_polygon(request: PolygonRequest, console: Console) -> int:
     scene = load_scene(request.scene)
     log = _logged(scene, request)
     placement = log.placement if log is not None else _placed(scene, request)
-    sheet = laid_out(polygons_of(placement), paper, request.k, log)
+    time_s = request.at_s if log is None else log.time_s
+    sheet = laid_out(polygons_of(placement), paper, request.k, log, time_s)
     if request.output is None:
         show_polygons(console, sheet)
         return 0
     ending = request.output.suffix.lower()
+    steady = request.omega is not None
     if ending == PAGE:
         from reports.sheets.polygon_page import polygon_page  # the page's machinery, for it alone
 
-        raw: str | bytes = polygon_page(placement, steady=request.omega is not None)
+        raw: str | bytes = polygon_page(placement, steady=steady)
     else:
-        raw = turning_file(sheet) if request.turn else polygon_file(sheet, ending)
+        raw = turning_file(sheet, steady=steady) if request.turn else polygon_file(sheet, ending)
     write(request.output, raw)
     told = f"{request.output}: {_told(sheet, request)}"
     console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
-    _tell_undetermined(console, sheet.drawn)
+    _tell_doubts(console, sheet.drawn)
     return 0
 
 
@@ -111,6 +114,6 @@ def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
     )
 
 
-def _tell_undetermined(console: Console, drawn: DrawnPolygons) -> None:
-    for told in drawn.undetermined:
-        console.print(f"not drawn: {told}", highlight=False, markup=False, soft_wrap=True)
+def _tell_doubts(console: Console, drawn: DrawnPolygons) -> None:
+    for told in doubts(drawn):
+        console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)

@@ -103,8 +103,9 @@ def test_the_same_sheet_has_the_same_bytes() -> None:
 def test_an_animation_has_a_frame_for_each_layer_that_is_drawn() -> None:
     sheet = sheet_of("fourbar-lecture-1", 1.0, "A5")
     with Image.open(io.BytesIO(polygon_file(sheet, ".gif"))) as picture:
-        # nothing; the table; driver, group, image, letters of each polygon
-        assert picture.n_frames == 1 + 1 + 2 * 4
+        # nothing; the table; driver, group, letters of each polygon; images of accelerations, as
+        # those of velocities are the vectors themselves
+        assert picture.n_frames == 1 + 1 + 2 * 3 + 1
 
 
 @pytest.mark.slow  # 48 sheets: what it finds beside the others is that the scales stay

@@ -1,4 +1,4 @@
-"""What is said of the images of links, on a sheet and on the terminal."""
+"""What is said of polygons, on a sheet and on the terminal: images of links, doubts, rest."""
 
 from __future__ import annotations
 
@@ -21,6 +21,17 @@ def image_words(drawn: DrawnPolygons, link: str, quantity: Quantity) -> str:
         return f"one point, {REASONS[quantity]}"
     turned = f"turned by {math.degrees(image.turn_rad):.4g} deg"
     return f"similar, {readable(image.scale)} {RATES[quantity]}, {turned}"
+
+
+def at_rest(quantity: Quantity) -> str:
+    """What is said of a polygon that is one point."""
+    return f"at rest: every {quantity} is 0"
+
+
+def doubts(drawn: DrawnPolygons) -> list[str]:
+    """What could not be drawn, and what can hardly be drawn by hand."""
+    lost = [f"not drawn: {told}" for told in drawn.undetermined]
+    return lost + [f"flat: {told}" for told in drawn.flat]
 
 
 def drawn_links(drawn: DrawnPolygons) -> list[str]:
