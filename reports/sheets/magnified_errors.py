@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import Polygon as Patch
 
 from models.array import Array
 from reports.figures.style import power_of_ten
@@ -69,21 +69,29 @@ def magnification(errors_mm: Iterable[Array]) -> float:
     return 10.0 ** max(0, math.floor(math.log10(MOST_MM / largest)))
 
 
-def draw_errors(
-    axes: Axes, drawn: MagnifiedErrors, links: Iterable[Sequence[str]], gid: str
-) -> None:
-    """The errors as arrows, and the images of ``links``, each by its points, through their tips;
-    their lines are called ``gid`` and the point."""
+def outline(corners: Sequence[Array]) -> list[tuple[Array, Array]]:
+    """The lines from corner to corner (2,), and back to the first where there are more than two."""
+    edges = [*itertools.pairwise(corners)]
+    return [*edges, (corners[-1], corners[0])] if len(corners) > 2 else edges
+
+
+def logged_lines(
+    drawn: MagnifiedErrors, links: Iterable[Iterable[str]]
+) -> Iterator[tuple[Array, Array]]:
+    """The lines of links or of their images, each by its points, as the log has them [mm]."""
     tips = drawn.tips
     for points in links:
         corners = [tips.get(name, drawn.exact.get(name)) for name in points]
-        there = [corner for corner in corners if corner is not None]
-        if len(there) == 2:
-            line(axes, *there, color=LOGGED, linewidth=0.6, linestyle=(0, (3, 1.5)), zorder=2)
-        elif len(there) > 2:
-            axes.add_patch(
-                Patch(there, closed=True, fill=False, ec=LOGGED, lw=0.6, ls=(0, (3, 1.5)), zorder=2)
-            )
-    for name, tip in tips.items():
+        yield from outline([corner for corner in corners if corner is not None])
+
+
+def draw_errors(
+    axes: Axes, drawn: MagnifiedErrors, links: Iterable[Iterable[str]], gid: str
+) -> None:
+    """The errors as arrows, and what the log makes of ``links``; lines of errors are called ``gid``
+    and the point."""
+    for start, end in logged_lines(drawn, links):
+        line(axes, start, end, color=LOGGED, linewidth=0.6, linestyle=(0, (3, 1.5)), zorder=2)
+    for name, tip in drawn.tips.items():
         if np.any(drawn.errors[name]):
             arrow(axes, drawn.exact[name], tip, f"{gid}-{name}", LOGGED, width=1.1)

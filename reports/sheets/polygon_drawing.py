@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 
 from analytic.drawings.polygon import Polygon, Vector
 from analytic.drawings.vector_equation import Kind
-from models.array import Array
 from reports.figures.style import INK, TINY, width_in
 from reports.sheets.canvas import Canvas, arrow, line, text
 from reports.sheets.magnified_errors import draw_errors
 from reports.sheets.paper import MM_PER_IN, Box
 from reports.sheets.polygon_letters import write_images
-from reports.sheets.polygon_on_paper import DrawnPolygon, crossing_line
+from reports.sheets.polygon_on_paper import DrawnPolygon, crossing_line, image_lines
 
 COLOURS: dict[Kind, str] = {
     "whole": INK,
@@ -37,8 +33,6 @@ WORDS: dict[Kind, str] = {
     "sliding": "sliding",
 }
 IMAGE = "#8a94a0"
-COVERED_MM = 0.1
-"""A line of an image that is nearer to a vector is covered by it."""
 
 
 def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
@@ -50,7 +44,7 @@ def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
             _draw_vector(drawn, vector, axes, quantity)
         for at in step.nodes.values():
             axes.add_patch(Circle(tuple(drawn.at(at)), 0.55, fc="white", ec=INK, lw=0.7, zorder=6))
-    if edges := [*_image_lines(drawn)]:
+    if edges := [*image_lines(drawn)]:
         axes = canvas.layer(f"{quantity}-images")
         for start, end in edges:
             line(axes, start, end, color=IMAGE, linewidth=0.6)
@@ -60,25 +54,6 @@ def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
     axes = canvas.layer(f"{quantity}-letters")
     write_images(axes, drawn, box)
     _legend(axes, drawn.polygon, box)
-
-
-def _image_lines(drawn: DrawnPolygon) -> Iterator[tuple[Array, Array]]:
-    """The edges of the images of links [mm], without those that a vector lies on."""
-    vectors = [(drawn.at(vector.start), drawn.at(vector.end)) for vector in drawn.polygon.vectors]
-    for image in drawn.polygon.images.values():
-        corners = [drawn.at(end) for end in image.values()]
-        edges = [*itertools.pairwise(corners)]
-        if len(corners) > 2:
-            edges.append((corners[-1], corners[0]))
-        for a, b in edges:
-            apart = [
-                min(
-                    np.hypot(*(a - s)) + np.hypot(*(b - e)), np.hypot(*(b - s)) + np.hypot(*(a - e))
-                )
-                for s, e in vectors
-            ]
-            if min(apart, default=COVERED_MM) >= COVERED_MM:
-                yield a, b
 
 
 def _draw_vector(drawn: DrawnPolygon, vector: Vector, axes: Axes, quantity: str) -> None:

@@ -14,14 +14,16 @@ from reports.drawing.lettering import Label, place
 from reports.figures.style import INK, POINTS, QUIET, SIZE, SMALL, width_in
 from reports.sheets.canvas import text
 from reports.sheets.letters import together
-from reports.sheets.magnified_errors import LOGGED, STAR
+from reports.sheets.magnified_errors import LOGGED, STAR, logged_lines
 from reports.sheets.paper import MM_PER_IN, Box
-from reports.sheets.polygon_on_paper import DrawnPolygon, crossing_line
+from reports.sheets.polygon_on_paper import DrawnPolygon, crossing_line, image_lines
 
 POLES: Mapping[Quantity, str] = {"velocity": "pᵥ", "acceleration": "pₐ"}
 NEAR_MM, APART_MM = 0.3, 1.2
 """Images that stand nearer have their letters in one label; ends between images that stand nearer
 to one than the second have no letter."""
+CAPTION_MM, LEGEND_MM = 4.0, 4.0
+"""Of a box, a line above and one below: no letter stands there."""
 
 
 def write_images(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
@@ -40,6 +42,8 @@ def write_images(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
         at |= {lower_case(n) + prime + STAR: tip for n, tip in drawn.logged.tips.items()}
     joined = together(at, NEAR_MM)
     between = _between(drawn, [*joined.values()])
+    caption = CAPTION_MM if drawn.logged is None else 2 * CAPTION_MM
+    box = Box(box.left, box.bottom + LEGEND_MM, box.width, box.height - LEGEND_MM - caption)
     corner = np.array([box.left, box.bottom])
     labels = [
         Label(
@@ -55,8 +59,11 @@ def write_images(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
     heavy = (np.vstack([*dots, *(s[None] for s in spots)]) - corner) / MM_PER_IN
     obstacles = np.column_stack([heavy, np.full(len(heavy), 0.01)])
     frame = (box.width / MM_PER_IN, box.height / MM_PER_IN)
-    crossing = [each for v in polygon.vectors if (each := crossing_line(drawn, v)) is not None]
-    light = np.vstack([np.zeros((0, 2)), *(_sampled(*each) for each in crossing)])
+    thin = [each for v in polygon.vectors if (each := crossing_line(drawn, v)) is not None]
+    thin += image_lines(drawn)
+    if log is not None:
+        thin += logged_lines(log, polygon.images.values())
+    light = np.vstack([np.zeros((0, 2)), *(_sampled(*each) for each in thin)])
     centres = place(labels, obstacles, (light - corner) / MM_PER_IN, frame)
     for label, (x, y) in zip(labels, centres, strict=True):
         at_x, at_y = corner + MM_PER_IN * np.array([x, y])

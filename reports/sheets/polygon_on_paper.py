@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,13 +12,15 @@ from analytic.drawings.polygon import Polygon, Vector
 from analytic.drawings.similarity import POINT
 from models.array import Array
 from models.errors import CrankcheckError
-from reports.sheets.magnified_errors import MagnifiedErrors
+from reports.sheets.magnified_errors import MagnifiedErrors, outline
 from reports.sheets.paper import Box
 
 PADDING_MM = 9.0
 """Room for letters around a polygon."""
 BEYOND_MM = 6.0
 """By how much a dashed direction goes on beyond the crossing."""
+COVERED_MM = 0.1
+"""A line of an image that is nearer to a vector is covered by it."""
 
 
 @dataclass(frozen=True)
@@ -111,3 +113,14 @@ def crossing_line(drawn: DrawnPolygon, vector: Vector) -> tuple[Array, Array] | 
         return None
     spare = BEYOND_MM * (end - start) / length
     return start - spare, end + spare
+
+
+def image_lines(drawn: DrawnPolygon) -> Iterator[tuple[Array, Array]]:
+    """The edges of the images of links [mm], without those that a vector lies on."""
+    vectors = [(drawn.at(vector.start), drawn.at(vector.end)) for vector in drawn.polygon.vectors]
+    for image in drawn.polygon.images.values():
+        for a, b in outline([drawn.at(end) for end in image.values()]):
+            ways = [(s - a, e - b) for s, e in vectors] + [(s - b, e - a) for s, e in vectors]
+            apart = [float(np.hypot(*s) + np.hypot(*e)) for s, e in ways]
+            if min(apart, default=COVERED_MM) >= COVERED_MM:
+                yield a, b
