@@ -114,7 +114,9 @@ class LogInstants:
         within = rows[(rows > 0) & (rows < off.size - 1)]
         if rows.size:
             return self._at(int((within if within.size else rows)[-1]))
-        low, high = (math.degrees(each) for each in (self.driver_rad.min(), self.driver_rad.max()))
+        low, high = (
+            round(math.degrees(each), 9) for each in (self.driver_rad.min(), self.driver_rad.max())
+        )
         raise CrankcheckError(
             f"--at-deg {at_deg:g}: {self.log.source} does not pass it; in its "
             f"{self.log.time_s.size} rows {self.log.scene.driver.link} goes from {low:.6g} to "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -29,6 +29,33 @@ CAPTION_MM, LEGEND_MM = 4.0, 4.0
 def write_images(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
     """The letters of the images, of ends between them and of the pole, clear of lines and of one
     another."""
+    caption = CAPTION_MM if drawn.logged is None else 2 * CAPTION_MM
+    box = Box(box.left, box.bottom + LEGEND_MM, box.width, box.height - LEGEND_MM - caption)
+    corner = np.array([box.left, box.bottom])
+    images = _images(drawn)
+    between = _between(drawn, [*images.values()])
+    labels = [
+        Label(
+            name, (width_in(name, size), size / POINTS), ((spot - corner) / MM_PER_IN)[None], 0.03
+        )
+        for names, size in ((images, SIZE), (between, SMALL))
+        for name, spot in names.items()
+    ]
+    spots = [spot[None] for spot in (*images.values(), *between.values())]
+    heavy = (np.vstack([*spots, *_thick(drawn)]) - corner) / MM_PER_IN
+    obstacles = np.column_stack([heavy, np.full(len(heavy), 0.01)])
+    light = np.vstack([np.zeros((0, 2)), *_thin(drawn)])
+    frame = (box.width / MM_PER_IN, box.height / MM_PER_IN)
+    centres = place(labels, obstacles, (light - corner) / MM_PER_IN, frame)
+    for label, (x, y) in zip(labels, centres, strict=True):
+        at_x, at_y = corner + MM_PER_IN * np.array([x, y])
+        size = SIZE if label.text in images else SMALL
+        colour = LOGGED if label.text.endswith(STAR) else INK if size == SIZE else QUIET
+        text(axes, at_x, at_y, label.text, size, ha="center", va="center", color=colour)
+
+
+def _images(drawn: DrawnPolygon) -> dict[str, Array]:
+    """Where the pole, the images, and those of a log stand [mm], by letters."""
     polygon = drawn.polygon
     prime = "'" if polygon.quantity == "acceleration" else ""
     at: dict[str, Array] = {POLES[polygon.quantity]: drawn.pole}
@@ -40,36 +67,28 @@ def write_images(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
     }
     if drawn.logged is not None:
         at |= {lower_case(n) + prime + STAR: tip for n, tip in drawn.logged.tips.items()}
-    joined = together(at, NEAR_MM)
-    between = _between(drawn, [*joined.values()])
-    caption = CAPTION_MM if drawn.logged is None else 2 * CAPTION_MM
-    box = Box(box.left, box.bottom + LEGEND_MM, box.width, box.height - LEGEND_MM - caption)
-    corner = np.array([box.left, box.bottom])
-    labels = [
-        Label(
-            name, (width_in(name, size), size / POINTS), ((spot - corner) / MM_PER_IN)[None], 0.03
-        )
-        for names, size in ((joined, SIZE), (between, SMALL))
-        for name, spot in names.items()
-    ]
-    spots = [*joined.values(), *between.values()]
-    dots = [_sampled(drawn.at(v.start), drawn.at(v.end)) for v in polygon.vectors]
+    return together(at, NEAR_MM)
+
+
+def _thick(drawn: DrawnPolygon) -> Iterator[Array]:
+    """Points along the vectors, and along the errors of a log, (n, 2) [mm]."""
+    for vector in drawn.polygon.vectors:
+        yield _sampled(drawn.at(vector.start), drawn.at(vector.end))
     if (log := drawn.logged) is not None:
-        dots += [_sampled(log.exact[name], tip) for name, tip in log.tips.items()]
-    heavy = (np.vstack([*dots, *(s[None] for s in spots)]) - corner) / MM_PER_IN
-    obstacles = np.column_stack([heavy, np.full(len(heavy), 0.01)])
-    frame = (box.width / MM_PER_IN, box.height / MM_PER_IN)
-    thin = [each for v in polygon.vectors if (each := crossing_line(drawn, v)) is not None]
-    thin += image_lines(drawn)
-    if log is not None:
-        thin += logged_lines(log, polygon.images.values())
-    light = np.vstack([np.zeros((0, 2)), *(_sampled(*each) for each in thin)])
-    centres = place(labels, obstacles, (light - corner) / MM_PER_IN, frame)
-    for label, (x, y) in zip(labels, centres, strict=True):
-        at_x, at_y = corner + MM_PER_IN * np.array([x, y])
-        size = SIZE if label.text in joined else SMALL
-        colour = LOGGED if label.text.endswith(STAR) else INK if size == SIZE else QUIET
-        text(axes, at_x, at_y, label.text, size, ha="center", va="center", color=colour)
+        for name, tip in log.tips.items():
+            yield _sampled(log.exact[name], tip)
+
+
+def _thin(drawn: DrawnPolygon) -> Iterator[Array]:
+    """Points along dashed directions and the lines of images, (n, 2) [mm]."""
+    for vector in drawn.polygon.vectors:
+        if (ends := crossing_line(drawn, vector)) is not None:
+            yield _sampled(*ends)
+    lines = [*image_lines(drawn)]
+    if drawn.logged is not None:
+        lines += logged_lines(drawn.logged, drawn.polygon.images.values())
+    for start, end in lines:
+        yield _sampled(start, end)
 
 
 def _between(drawn: DrawnPolygon, images: Sequence[Array]) -> dict[str, Array]:

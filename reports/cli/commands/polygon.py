@@ -61,22 +61,24 @@ def _check(request: PolygonRequest) -> None:
         raise CrankcheckError(f"--turn: a turn is an animation; give -o FILE{ANIMATED}")
     if request.k is not None and not 0.0 < request.k <= MOST_K:
         raise CrankcheckError(f"--k {request.k:g}: give a number above 0, up to {MOST_K:g}")
-    pairs = {
-        "--at-s with --at-deg: each says the instant": request.at_s is not None
-        and request.at_deg is not None,
-        "--at-s with --omega: at a time the driver has a speed": request.at_s is not None
-        and request.omega is not None,
-        "--log with --omega: at its sample the driver has a speed": request.log is not None
-        and request.omega is not None,
-        f"--log with a turn, --turn or -o FILE{PAGE}: a log is drawn at one instant": request.log
-        is not None
-        and (request.turn or ending == PAGE),
-        "--map without --log: it says what the columns of a log mean": request.map is not None
-        and request.log is None,
-    }
-    for told, asked in pairs.items():
-        if asked:
-            raise CrankcheckError(f"{told}; leave one out")
+    if told := _contradiction(request, ending):
+        raise CrankcheckError(f"{told}; leave one out")
+
+
+def _contradiction(request: PolygonRequest, ending: str) -> str:
+    """Two options that do not go together, and why; empty where there are none."""
+    at_time, has_log = request.at_s is not None, request.log is not None
+    if at_time and request.at_deg is not None:
+        return "--at-s with --at-deg: each says the instant"
+    if at_time and request.omega is not None:
+        return "--at-s with --omega: at a time the driver has a speed"
+    if has_log and request.omega is not None:
+        return "--log with --omega: at its sample the driver has a speed"
+    if has_log and (request.turn or ending == PAGE):
+        return f"--log with a turn, --turn or -o FILE{PAGE}: a log is drawn at one instant"
+    if request.map is not None and not has_log:
+        return "--map without --log: it says what the columns of a log mean"
+    return ""
 
 
 def _logged(scene: Scene, request: PolygonRequest) -> LoggedInstant | None:
