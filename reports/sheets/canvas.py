@@ -66,14 +66,18 @@ def arrow(axes: Axes, start: Array, end: Array, gid: str, color: str, width: flo
     length = float((along @ along) ** 0.5)
     if length < 0.3:
         return
-    head = min(HEAD_MM, 0.4 * length)
-    unit = along / length
-    side = unit[::-1] * (-1.0, 1.0) * head * HEAD_WIDE_MM / HEAD_MM / 2
-    back = end - head * unit
-    axes.add_patch(Patch([end, back + side, back - side], closed=True, fc=color, ec=color, lw=0.2))
+    arrow_head(axes, end, along / length, color, min(HEAD_MM, 0.4 * length))
+
+
+def arrow_head(axes: Axes, tip: Array, along: Array, color: str, length: float = HEAD_MM) -> None:
+    """The head of an arrow, its tip at a place, along a unit vector [mm]."""
+    side = along[::-1] * (-1.0, 1.0) * length * HEAD_WIDE_MM / HEAD_MM / 2
+    back = tip - length * along
+    axes.add_patch(Patch([tip, back + side, back - side], closed=True, fc=color, ec=color, lw=0.2))
 
 
 def text(axes: Axes, x: float, y: float, words: str, size: float = SMALL, **look: Any) -> None:
     """Words with the left end of their base line at a place [mm]."""
-    plain: dict[str, Any] = {"size": size, "ha": "left", "va": "baseline"}
+    # a dollar in a name is a dollar
+    plain: dict[str, Any] = {"size": size, "ha": "left", "va": "baseline", "parse_math": False}
     axes.text(x, y, words, **(plain | look))

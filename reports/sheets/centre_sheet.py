@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,26 +17,32 @@ from analytic.drawings.curvature_circles import CurvatureCircles, curvature_circ
 from analytic.drawings.drawn_polygons import DrawnPolygons
 from analytic.drawings.instant_centres import Centre, Pair, instant_centres
 from analytic.drawings.paper_scale import round_scale
-from analytic.kinematics import reach, solve_driven
+from analytic.kinematics import solve_driven
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import GROUND
-from reports.figures.style import INK, QUIET, TINY
+from reports.figures.style import INK, SMALL, cut
 from reports.sheets.canvas import Canvas, line, text
-from reports.sheets.letters import together, write_letters
-from reports.sheets.paper import Box, Paper
+from reports.sheets.driver_range import range_about
+from reports.sheets.letters import Letter, together, write_letters
+from reports.sheets.paper import MM_PER_IN, Box, Paper
 from reports.sheets.scheme import draw_scheme
 from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 
 PADDING = 12.0
 NEAR_MM = 0.5
 """Centres that stand nearer have their names in one label."""
-POLYGON_MM = 42.0
-"""Room of the polygon of centres, in the upper right corner."""
+COLUMN_MM, POLYGON_MM = 46.0, 42.0
+"""Width of the column on the right, and of the polygon of centres, which is at its top."""
+ROW_MM, SAMPLE_MM, CURVE_ROWS = 4.0, 7.0, 7.5
+"""A line of the column, the sample of a curve before its name; lines that tell poles and curves."""
 FAR = 1.5
 """Centres that are further from the mechanism than so many times its size are told, not drawn."""
 POLE, INFLECTION, STILL = "#d1495b", "#2e6f9e", "#3a7d44"
-FIXED, MOVING, THEOREM = "#b7791f", "#6b4e9b", "#9aa5b1"
+FIXED, MOVING, THEOREM = "#b7791f", "#6b4e9b", "#a9b3bf"
+CENTRE_MM, CENTRE_SIZE = 0.8, 7.0
+"""Radius of a centre's circle, and the type of its name [point]."""
+GAP = 3.0
 DENSE = 1441
 
 
@@ -54,7 +61,7 @@ class CentreSheet:
 
     @property
     def box(self) -> Box:
-        return inner_box(self.paper)
+        return _boxes(self.paper)[0]
 
     def at(self, places: Array) -> Array:
         """Where places [m], (..., 2), stand on the sheet [mm]."""
@@ -71,7 +78,8 @@ class CentreSheet:
 def centres_of(drawn: DrawnPolygons, link: str, paper: Paper) -> CentreSheet:
     """The sheet of a position; ``link`` is "" for the centres alone.
 
-    Raises CrankcheckError for a link that the scene has not, or that does not turn.
+    Raises CrankcheckError for a link that the scene has not, or that does not turn, and for paper
+    on which not all fits.
     """
     placement = drawn.placement
     if drawn.undetermined:
@@ -87,15 +95,29 @@ def centres_of(drawn: DrawnPolygons, link: str, paper: Paper) -> CentreSheet:
             raise CrankcheckError(f"--link {link}: no such link; there are {known}")
         circles = curvature_circles(drawn.rates[link], link)
         ways = _ways(drawn, link)
+    _check_room(drawn, paper, rows_of_curves=CURVE_ROWS if link else 0.0)
     scale, middle = _frame(drawn, centres, circles, paper)
     return CentreSheet(drawn, centres, link, circles, ways, scale, middle, paper)
+
+
+def _check_room(drawn: DrawnPolygons, paper: Paper, rows_of_curves: float) -> None:
+    """Refuse paper on which the column on the right does not fit."""
+    bodies = len(body_numbers(drawn))
+    column = _boxes(paper)[1]
+    needed = POLYGON_MM + ROW_MM * (bodies + rows_of_curves + 1.0)
+    if column.height < needed:
+        tall = math.ceil(paper.height - column.height + needed)
+        raise CrankcheckError(
+            f"--paper {paper.width:g}x{paper.height:g}: too low for the names of {bodies} bodies"
+            + (" and of the curves" if rows_of_curves else "")
+            + f"; {paper.width:g}x{tall} would do"
+        )
 
 
 def _ways(drawn: DrawnPolygons, link: str) -> Centrodes:
     """The centrodes over what the driver reaches."""
     scene = drawn.placement.scene
-    low, high = reach(scene)[0]
-    theta = np.linspace(low, high, DENSE)[1:-1]
+    theta = np.linspace(*range_about(scene, drawn.placement.driver.theta), DENSE)[1:-1]
     ones = np.ones_like(theta)
     motion = solve_driven(scene, theta, ones, 0.0 * ones, bound=False)
     return centrodes(motion, link, next(iter(scene.links[link].points)))
@@ -117,10 +139,21 @@ def _frame(
     near = [at for at in more if np.abs(at - about).max() < FAR * size]
     places = np.array([*points, *near])
     low, high = places.min(axis=0), places.max(axis=0)
-    box = inner_box(paper)
+    box = _boxes(paper)[0]
     room = np.array([box.width, box.height]) - 2 * PADDING
     scales = [round_scale(s, r) for s, r in zip(high - low, room, strict=True) if s > 0.0]
     return max(scales), (low + high) / 2
+
+
+def _boxes(paper: Paper) -> tuple[Box, Box]:
+    """The drawing, and the column on its right."""
+    inner = inner_box(paper)
+    wide = inner.width - COLUMN_MM - GAP
+    left = inner.left + wide + GAP
+    return (
+        Box(inner.left, inner.bottom, wide, inner.height),
+        Box(left, inner.bottom, COLUMN_MM, inner.height),
+    )
 
 
 def draw_centres(sheet: CentreSheet, note: str) -> Canvas:
@@ -134,31 +167,47 @@ def draw_centres(sheet: CentreSheet, note: str) -> Canvas:
     points = {name: sheet.at(at) for name, at in sheet.drawn.placement.points.items()}
     draw_scheme(canvas.layer("mechanism"), sheet.drawn.placement, points)
     _centres(canvas.layer("centres"), sheet)
-    _letters(canvas.layer("letters"), sheet, points)
-    _polygon(canvas.layer("polygon-of-centres"), sheet)
+    column = _boxes(sheet.paper)[1]
+    _polygon(canvas.layer("polygon-of-centres"), sheet, column)
+    _legend(canvas.layer("legend"), sheet, column)
+    write_letters(canvas, canvas.layer("letters"), _letters(sheet), sheet.box)
     return canvas
 
 
 def _head(axes: Axes, sheet: CentreSheet, note: str) -> None:
     scene, driver = sheet.drawn.placement.scene, sheet.drawn.placement.driver
     angle = math.degrees(driver.theta) % 360.0
-    title = f"{scene.name}: instant centres, {scene.driver.link} at {angle:.6g}°"
+    title = (
+        f"{scene.name}: instant centres, {scene.driver.link} at {angle:.6g}°, "
+        f"K_l = {sheet.scale:g} m/mm"
+    )
     write_head(axes, sheet.paper, title, note)
-    box = sheet.box
-    draw_border(axes, box)
-    told = [f"K_l = {sheet.scale:g} m/mm"]
-    if sheet.circles is not None:
-        told += [f"of {sheet.link}: P velocity pole, Q acceleration pole"]
-    for k, words in enumerate(told):
-        text(axes, box.left + 1.5, box.bottom + box.height - 3.5 - 3.5 * k, words, color=QUIET)
-    if sheet.circles is not None:
-        kinds = {
-            "inflection circle": INFLECTION, "second circle of Bresse": STILL,
-            "fixed centrode": FIXED, "moving centrode": MOVING,
-        }  # fmt: skip
-        for k, (words, colour) in enumerate(kinds.items()):
-            at = box.bottom + 2.0 + 3.5 * k
-            text(axes, box.left + 1.5, at, words, TINY, color=colour)
+    for box in _boxes(sheet.paper):
+        draw_border(axes, box)
+
+
+def _legend(axes: Axes, sheet: CentreSheet, column: Box) -> None:
+    """The bodies by number; of the link that was named, what is which curve."""
+    left, y = column.left + 2.0, column.bottom + column.height - POLYGON_MM - ROW_MM
+    room = (column.width - 4.0) / MM_PER_IN
+    for body, k in body_numbers(sheet.drawn).items():
+        text(axes, left, y, cut(f"{k}  {body}", room, SMALL), SMALL)
+        y -= ROW_MM
+    if sheet.circles is None:
+        return
+    y -= 0.5 * ROW_MM
+    for words in (f"of {sheet.link}:", "P  velocity pole", "Q  acceleration pole"):
+        text(axes, left, y, cut(words, room, SMALL), SMALL)
+        y -= ROW_MM
+    kinds = {
+        "inflection circle": INFLECTION, "second circle of Bresse": STILL,
+        "fixed centrode": FIXED, "moving centrode": MOVING,
+    }  # fmt: skip
+    for words, colour in kinds.items():
+        start = np.array([left, y + 0.8])
+        line(axes, start, start + np.array([SAMPLE_MM, 0.0]), color=colour, linewidth=0.9)
+        text(axes, left + SAMPLE_MM + 1.5, y, words, SMALL)
+        y -= ROW_MM
 
 
 def _centrodes(axes: Axes, sheet: CentreSheet, ways: Centrodes) -> None:
@@ -198,22 +247,25 @@ def _centres(axes: Axes, sheet: CentreSheet) -> None:
             for pair in pairs:
                 other = sheet.centres[pair].place
                 if other is not None and sheet.is_near(other):
-                    line(axes, here, sheet.at(other), color=THEOREM, linewidth=0.4)
-        axes.add_patch(Round(tuple(here), 0.8, fc="white", ec=POLE, lw=0.8, zorder=7))
+                    line(axes, here, sheet.at(other), color=THEOREM, linewidth=0.5)
+        axes.add_patch(Round(tuple(here), CENTRE_MM, fc="white", ec=POLE, lw=0.8, zorder=7))
+    if sheet.circles is not None and sheet.is_near(sheet.circles.acceleration_pole):
+        there = sheet.at(sheet.circles.acceleration_pole)
+        axes.add_patch(Round(tuple(there), 0.5 * CENTRE_MM, fc=POLE, ec="none", zorder=7))
 
 
-def _letters(axes: Axes, sheet: CentreSheet, points: Mapping[str, Array]) -> None:
-    numbers = body_numbers(sheet.drawn)
+def _letters(sheet: CentreSheet) -> list[Letter]:
+    numbers, circles = body_numbers(sheet.drawn), sheet.circles
     places = {name_of(pair, numbers): centre.place for pair, centre in sheet.centres.items()}
-    if sheet.circles is not None:
-        places["Q"] = sheet.circles.acceleration_pole
+    if circles is not None:
+        places |= {"P": circles.pole, "Q": circles.acceleration_pole}
     at = {
         name: sheet.at(place)
         for name, place in places.items()
         if place is not None and sheet.is_near(place)
     }
-    drawn = np.array(list(points.values()))
-    write_letters(axes, together(at, NEAR_MM), drawn, sheet.box, (0.04, 0.04))
+    joined = together(at, NEAR_MM)
+    return [Letter(name, spot, CENTRE_MM, CENTRE_SIZE) for name, spot in joined.items()]
 
 
 def body_numbers(drawn: DrawnPolygons) -> dict[str, int]:
@@ -230,11 +282,11 @@ def name_of(pair: Pair, numbers: Mapping[str, int]) -> str:
     return f"P{low}{high}" if high < 10 else f"P{low}.{high}"
 
 
-def _polygon(axes: Axes, sheet: CentreSheet) -> None:
+def _polygon(axes: Axes, sheet: CentreSheet, column: Box) -> None:
     """The polygon of centres: bodies as corners, centres of joints as full sides, others dashed."""
     numbers = body_numbers(sheet.drawn)
-    box = sheet.box
-    middle = np.array([box.left + box.width, box.bottom + box.height]) - POLYGON_MM / 2
+    top = column.bottom + column.height
+    middle = np.array([column.left + column.width / 2, top - POLYGON_MM / 2])
     radius = POLYGON_MM / 2 - 5.0
     angles = math.pi / 2 + math.tau * np.arange(len(numbers)) / len(numbers)
     corners = middle + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -245,6 +297,5 @@ def _polygon(axes: Axes, sheet: CentreSheet) -> None:
     for body, k in numbers.items():
         at = corners[k]
         axes.add_patch(Round(tuple(at), 2.2, fc="white", ec=INK, lw=0.6, zorder=7))
-        axes.text(
-            at[0], at[1], str(k), size=TINY, ha="center", va="center", zorder=8, gid=f"body-{body}"
-        )
+        look: dict[str, Any] = {"ha": "center", "zorder": 8, "gid": f"body-{body}"}
+        text(axes, at[0], at[1] - 0.75, str(k), SMALL, **look)

@@ -52,8 +52,8 @@ def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
         axes = canvas.layer(f"{quantity}-log")
         draw_errors(axes, drawn.logged, drawn.polygon.images.values(), f"{quantity}-error")
     axes = canvas.layer(f"{quantity}-letters")
-    write_images(axes, drawn, box)
     _legend(axes, drawn.polygon, box)
+    write_images(canvas, axes, drawn, box)
 
 
 def _draw_vector(drawn: DrawnPolygon, vector: Vector, axes: Axes, quantity: str) -> None:

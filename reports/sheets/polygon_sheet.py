@@ -28,7 +28,7 @@ from models.errors import CrankcheckError
 from reports.figures.style import QUIET, SMALL, TINY, cut
 from reports.output.numbers import readable
 from reports.sheets.canvas import Canvas, text
-from reports.sheets.letters import write_letters
+from reports.sheets.letters import Letter, write_letters
 from reports.sheets.logged_instant import LoggedInstant
 from reports.sheets.magnified_errors import LOGGED, STAR, MagnifiedErrors, draw_errors
 from reports.sheets.paper import MM_PER_IN, Box, Paper
@@ -36,7 +36,7 @@ from reports.sheets.polygon_drawing import draw_polygon
 from reports.sheets.polygon_on_paper import DrawnPolygon, fitted, frame_of
 from reports.sheets.polygon_table import draw_table, link_rows, vector_rows
 from reports.sheets.polygon_words import at_rest, doubts
-from reports.sheets.scheme import bars, draw_scheme
+from reports.sheets.scheme import draw_scheme, point_letters
 from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 
 GAP = 4.0
@@ -163,7 +163,7 @@ def draw_sheet(sheet: PolygonSheet, note: str) -> Canvas:
     canvas = Canvas(sheet.paper)
     axes = canvas.layer("frame")
     _frame(axes, sheet, note)
-    _scheme(canvas.layer("scheme"), sheet)
+    _scheme(canvas, sheet)
     rows = [
         *vector_rows(sheet.velocity), *vector_rows(sheet.acceleration), *link_rows(sheet.drawn)
     ]  # fmt: skip
@@ -233,12 +233,17 @@ def _logged(sheet: PolygonSheet) -> dict[str, str]:
     return told
 
 
-def _scheme(axes: Axes, sheet: PolygonSheet) -> None:
+def _scheme(canvas: Canvas, sheet: PolygonSheet) -> None:
+    axes = canvas.layer("scheme")
     placement, box = sheet.drawn.placement, sheet.boxes["scheme"]
     places = {name: sheet.place(at) for name, at in placement.points.items()}
     draw_scheme(axes, placement, places)
-    letters = dict(places)
+    letters = point_letters(placement, places)
     if (log := sheet.misplaced) is not None:
         draw_errors(axes, log, (x.points for x in placement.scene.links.values()), "scheme-error")
-        letters |= {f"{n}{STAR}": tip for n, tip in log.tips.items() if np.any(log.errors[n])}
-    write_letters(axes, letters, bars(placement, places), box, (0.05, 0.03))
+        letters += [
+            Letter(f"{name}{STAR}", tip[None], 0.0, SMALL, LOGGED)
+            for name, tip in log.tips.items()
+            if np.any(log.errors[name])
+        ]
+    write_letters(canvas, axes, letters, box)

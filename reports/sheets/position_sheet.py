@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,25 +17,29 @@ from matplotlib.patches import Arc, Circle
 
 from analytic.drawings.paper_scale import round_scale
 from analytic.drawings.placed_mechanism import DriverState, PlacedMechanism
-from analytic.kinematics import reach, solve_driven
+from analytic.kinematics import solve_driven
 from analytic.structure.groups import Group
 from models.array import Array
 from models.errors import CrankcheckError
-from models.laws import Oscillating
 from models.scene import Scene
-from reports.drawing.lettering import Label, place
-from reports.figures.style import INK, POINTS, QUIET, SMALL, TINY, width_in
-from reports.sheets.canvas import Canvas, line, text
-from reports.sheets.paper import MM_PER_IN, Box, Paper
-from reports.sheets.scheme import draw_scheme
+from reports.figures.style import INK, QUIET
+from reports.sheets.canvas import Canvas, line
+from reports.sheets.driver_range import range_of_law, sense_of_law
+from reports.sheets.letters import NUMBER, Letter, write_letters
+from reports.sheets.paper import Box, Paper
+from reports.sheets.scheme import draw_scheme, point_letters, symbol_radius
 from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 
 PADDING = 12.0
 LEAST_APART_MM = 2.5
 """Divisions of the crank circle that stand closer can not be numbered."""
-LOCUS = 361
-ARC_DEG = 5.0
-FAINT, LOCI = "#9aa5b1", "#b7791f"
+LOCUS, LOCUS_PLACES = 361, 36
+"""Places along a locus, and those of them at which its name may stand."""
+LEAST_WAY_MM = 0.1
+"""A point with a shorter way stands still."""
+ARC_MM, DOT_MM = 4.0, 0.45
+"""Half the length of the arcs of the construction, and the radius of a position's mark."""
+FAINT, LOCI = "#a9b3bf", "#b7791f"
 
 
 @dataclass(frozen=True)
@@ -66,10 +71,11 @@ def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
     Raises CrankcheckError where the parts are too small to be told apart on the paper.
     """
     start = float(scene.driver.law.at(np.zeros(1))[0][0])
-    low, high = _reach_about(scene, start)
+    low, high = range_of_law(scene)
+    sense = sense_of_law(scene)
     whole = high - low >= math.tau - 1e-9
     if whole:
-        angles = start + math.tau * np.arange(divisions) / divisions
+        angles = start + sense * math.tau * np.arange(divisions) / divisions
         dense = np.linspace(start, start + math.tau, LOCUS)
     else:
         angles, dense = np.linspace(low, high, divisions), np.linspace(low, high, LOCUS)
@@ -79,23 +85,10 @@ def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
     box = inner_box(paper)
     room = np.array([box.width, box.height]) - 2 * PADDING
     scale = max(round_scale(s, r) for s, r in zip(size, room, strict=True) if s > 0.0)
-    placement = PlacedMechanism.of(scene, DriverState(float(angles[0]), 1.0))
+    placement = PlacedMechanism.of(scene, DriverState(float(angles[0]), sense))
     sheet = PositionSheet(scene, placement, angles, points, loci, scale, corner + size / 2, paper)
     _check_apart(sheet, divisions)
     return sheet
-
-
-def _reach_about(scene: Scene, start: float) -> tuple[float, float]:
-    """The driver's angles: those that it swings through, or can reach from its start."""
-    law = scene.driver.law
-    if isinstance(law, Oscillating):
-        swing = abs(law.amplitude_rad)
-        return law.centre_rad - swing, law.centre_rad + swing
-    for low, high in reach(scene):
-        shift = math.tau * round((start - 0.5 * (low + high)) / math.tau)
-        if low + shift - 1e-9 <= start <= high + shift + 1e-9:
-            return low + shift, high + shift
-    raise CrankcheckError(f"{scene.name}: can not be assembled at its start")
 
 
 def _points(scene: Scene, angles: Array) -> dict[str, Array]:
@@ -129,7 +122,7 @@ def draw_positions(sheet: PositionSheet, note: str) -> Canvas:
     _construction(canvas.layer("construction"), sheet)
     first = {name: sheet.at(at[0]) for name, at in sheet.points.items()}
     draw_scheme(canvas.layer("mechanism"), sheet.placement, first)
-    _letters(canvas.layer("letters"), sheet)
+    write_letters(canvas, canvas.layer("letters"), _letters(sheet), sheet.box)
     return canvas
 
 
@@ -140,13 +133,18 @@ def _frame(axes: Axes, sheet: PositionSheet, note: str) -> None:
     draw_border(axes, sheet.box)
 
 
-def _loci(axes: Axes, sheet: PositionSheet) -> None:
-    """The ways of all points that move."""
+def _ways(sheet: PositionSheet) -> Iterator[tuple[str, Array]]:
+    """The ways of all points that move [mm], (n, 2) each."""
     for name, way in sheet.loci.items():
         places = sheet.at(way)
-        if np.ptp(places, axis=0).max() > 0.1:
-            drawn = axes.plot(places[:, 0], places[:, 1], color=LOCI, lw=0.8)[0]
-            drawn.set_gid(f"locus-{name}")
+        if np.ptp(places, axis=0).max() > LEAST_WAY_MM:
+            yield name, places
+
+
+def _loci(axes: Axes, sheet: PositionSheet) -> None:
+    for name, places in _ways(sheet):
+        drawn = axes.plot(places[:, 0], places[:, 1], color=LOCI, lw=0.8)[0]
+        drawn.set_gid(f"locus-{name}")
 
 
 def _positions(axes: Axes, sheet: PositionSheet) -> None:
@@ -161,7 +159,7 @@ def _positions(axes: Axes, sheet: PositionSheet) -> None:
     crank = sheet.scene.links[sheet.scene.driver.link].points
     for name in crank:
         for at in sheet.at(sheet.points[name]):
-            axes.add_patch(Circle(tuple(at), 0.45, fc=FAINT, ec="none"))
+            axes.add_patch(Circle(tuple(at), DOT_MM, fc=FAINT, ec="none"))
 
 
 def _construction(axes: Axes, sheet: PositionSheet) -> None:
@@ -174,41 +172,30 @@ def _construction(axes: Axes, sheet: PositionSheet) -> None:
         for pin in outer:
             about = sheet.at(sheet.points[pin])
             for centre, end in zip(about, inner, strict=True):
-                away = end - centre
-                angle = math.degrees(math.atan2(away[1], away[0]))
-                size = 2 * float(np.hypot(*away))
-                axes.add_patch(
-                    Arc(
-                        tuple(centre), size, size, theta1=angle - ARC_DEG, theta2=angle + ARC_DEG,
-                        color=INK, lw=0.35,
-                    )
-                )  # fmt: skip
+                _arc(axes, centre, end)
 
 
-def _letters(axes: Axes, sheet: PositionSheet) -> None:
-    """Letters of the points in the first position, and numbers along the driver's circle."""
-    corner = np.array([sheet.box.left, sheet.box.bottom])
+def _arc(axes: Axes, centre: Array, through: Array) -> None:
+    """A short arc about a centre on both sides of a place [mm]."""
+    away = through - centre
+    radius = float(np.hypot(*away))
+    angle, half = math.degrees(math.atan2(away[1], away[0])), math.degrees(ARC_MM / radius)
+    ends = {"theta1": angle - half, "theta2": angle + half}
+    axes.add_patch(Arc(tuple(centre), 2 * radius, 2 * radius, color=INK, lw=0.5, **ends))
+
+
+def _letters(sheet: PositionSheet) -> list[Letter]:
+    """Letters of the points in the first position, numbers along the driver's circle, and the names
+    of the loci."""
     spots = {name: sheet.at(at[0]) for name, at in sheet.points.items()}
-    crank = sheet.scene.links[sheet.scene.driver.link].points
+    letters = point_letters(sheet.placement, spots)
     pivot = sheet.scene.driver_pivot
+    crank = sheet.scene.links[sheet.scene.driver.link].points
     pin = max(crank, key=lambda name: float(np.hypot(*(spots[name] - spots[pivot]))))
-    labels = [
-        Label(n, (width_in(n, SMALL), SMALL / POINTS), _inches(at, corner)[None], 0.05)
-        for n, at in spots.items()
-    ]
-    labels += [
-        Label(str(k), (width_in(str(k), TINY), TINY / POINTS), _inches(at, corner)[None], 0.02)
-        for k, at in enumerate(sheet.at(sheet.points[pin]))
-    ]
-    heavy = np.concatenate([sheet.at(at) for at in sheet.points.values()])
-    thick = np.column_stack([_inches(heavy, corner), np.full(len(heavy), 0.02)])
-    thin = _inches(np.concatenate([sheet.at(way) for way in sheet.loci.values()]), corner)
-    frame = (sheet.box.width / MM_PER_IN, sheet.box.height / MM_PER_IN)
-    for k, (label, at) in enumerate(zip(labels, place(labels, thick, thin, frame), strict=True)):
-        x, y = corner + MM_PER_IN * np.array(at)
-        size, ink = (SMALL, INK) if k < len(spots) else (TINY, QUIET)
-        text(axes, x, y, label.text, size, ha="center", va="center", color=ink)
-
-
-def _inches(places: Array, corner: Array) -> Array:
-    return np.asarray((places - corner) / MM_PER_IN)
+    for k, at in enumerate(sheet.at(sheet.points[pin])):
+        radius = symbol_radius(sheet.placement, pin) if k == 0 else DOT_MM
+        letters.append(Letter(str(k), at, radius, NUMBER, QUIET))
+    for name, places in _ways(sheet):
+        few = places[:: max(1, len(places) // LOCUS_PLACES)]
+        letters.append(Letter(f"locus of {name}", few, 0.2, NUMBER, LOCI))
+    return letters

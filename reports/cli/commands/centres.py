@@ -20,6 +20,7 @@ from reports.sheets.centre_sheet import (
     draw_centres,
     name_of,
 )
+from reports.sheets.driver_range import sense_of_law
 from reports.sheets.paper import Paper
 from reports.sheets.sheet_note import sheet_note
 
@@ -31,7 +32,7 @@ def run_centres(request: CentresRequest, console: Console) -> int:
         check_file(request.output, "-o", ENDINGS, inputs=[find_scene(request.scene)])
     scene = load_scene(request.scene)
     # Centres do not depend on the speed; circles ask for the acceleration at a constant one.
-    drawn = draw_polygons(scene, DriverState(angle_at(request.at_deg), 1.0))
+    drawn = draw_polygons(scene, DriverState(angle_at(request.at_deg), sense_of_law(scene)))
     sheet = centres_of(drawn, request.link, paper)
     if request.output is not None:
         told = f"instant centres of {scene.name} at {request.at_deg:g} deg"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
+from models.laws import ConstantSpeed
 from reports.sheets.paper import Paper
 from reports.sheets.position_sheet import PositionSheet, draw_positions, positions
 
@@ -28,6 +30,13 @@ def test_the_crank_circle_is_divided_equally_from_the_start() -> None:
     angles = np.unwrap(np.arctan2(pins[:, 1], pins[:, 0]))
     assert np.diff(angles) == pytest.approx(np.pi / 4)
     assert angles[0] == pytest.approx(sheet.scene.driver.law.at(np.zeros(1))[0][0])
+
+
+def test_a_crank_that_turns_clockwise_is_numbered_clockwise() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    turning = replace(scene.driver, law=ConstantSpeed(start_rad=0.3, speed_rad_s=-10.0))
+    sheet = positions(replace(scene, driver=turning), 8, A4)
+    assert np.diff(sheet.angles) == pytest.approx(-np.pi / 4)
 
 
 @pytest.mark.parametrize("name", shipped())

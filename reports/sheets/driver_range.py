@@ -1,0 +1,38 @@
+"""The driver's angles that a sheet shows: those that are reached from where it stands."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from analytic.kinematics import reach
+from models.errors import CrankcheckError
+from models.laws import Oscillating
+from models.scene import Scene
+
+
+def range_about(scene: Scene, theta: float) -> tuple[float, float]:
+    """The reachable range [rad] that an angle of the driver is in, near to that angle.
+
+    Raises CrankcheckError where the scene can not be assembled there.
+    """
+    for low, high in reach(scene):
+        shift = math.tau * round((theta - 0.5 * (low + high)) / math.tau)
+        if low + shift - 1e-9 <= theta <= high + shift + 1e-9:
+            return low + shift, high + shift
+    raise CrankcheckError(f"{scene.name}: can not be assembled at {math.degrees(theta):g} deg")
+
+
+def sense_of_law(scene: Scene) -> float:
+    """1 of a driver that starts counter-clockwise, -1 of one that starts clockwise."""
+    return math.copysign(1.0, float(scene.driver.law.at(np.zeros(1))[1][0]))
+
+
+def range_of_law(scene: Scene) -> tuple[float, float]:
+    """What the driver swings through, or reaches from its start [rad]. Raises as `range_about`."""
+    law = scene.driver.law
+    if isinstance(law, Oscillating):
+        swing = abs(law.amplitude_rad)
+        return law.centre_rad - swing, law.centre_rad + swing
+    return range_about(scene, float(law.at(np.zeros(1))[0][0]))

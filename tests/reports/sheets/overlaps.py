@@ -1,0 +1,83 @@
+"""What a person would see at once on a sheet: words over lines, over one another, off the paper.
+
+The sheet is drawn without its words: where their letters would be, that picture has to be blank. So
+the check knows nothing of how a sheet is drawn, and misses nothing that is.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from matplotlib.textpath import TextPath
+
+from models.array import Array
+
+DPI = 200
+INK, DARK = 0.9, 0.5
+"""Ink is darker than the first in one of its colours, which the inside of a plate is not; a line
+that no text may interrupt is darker than the second."""
+
+
+@dataclass(frozen=True)
+class Word:
+    """A text, and the rows and columns that its letters are within, from the lower left corner."""
+
+    text: str
+    low: Array
+    high: Array
+
+    def covers(self, other: Word) -> bool:
+        return bool(np.all(self.low < other.high) and np.all(other.low < self.high))
+
+
+def overlaps(figure: Figure) -> list[str]:
+    """A line for each text that lies over a line, over another text, or off the sheet."""
+    figure.set_dpi(DPI)
+    canvas = FigureCanvasAgg(figure)
+    texts = [t for axes in figure.axes for t in axes.texts if t.get_text().strip()]
+    blanks = [a for axes in figure.axes for a in axes.patches if a.get_gid() == "blank"]
+    drawing = (_picture(canvas, hidden=texts) < INK) | (
+        _picture(canvas, hidden=[*texts, *blanks]) < DARK
+    )
+    words = [_word(text, canvas) for text in texts]
+    told = [
+        f"{one.text!r} over {other.text!r}"
+        for one, other in itertools.combinations(words, 2)
+        if one.covers(other)
+    ]
+    for word in words:
+        if np.any(word.low <= 0) or np.any(word.high >= drawing.shape):
+            told.append(f"{word.text!r} off the sheet")
+        (bottom, left), (top, right) = word.low, word.high
+        if drawing[bottom:top, left:right].any():
+            told.append(f"{word.text!r} on a line")
+    return told
+
+
+def _word(text: Text, canvas: FigureCanvasAgg) -> Word:
+    """The box of type is higher than the letters in it: theirs are those of their outlines."""
+    renderer, font = canvas.get_renderer(), text.get_fontproperties()
+    typed = text.get_window_extent(renderer)
+    below = renderer.get_text_width_height_descent("lp", font, False)[2]
+    outline = TextPath((0.0, 0.0), text.get_text(), prop=font).get_extents()
+    base = np.array([typed.y0 + below, typed.x0])
+    low, high = base + DPI / 72.0 * np.array([outline.min[::-1], outline.max[::-1]])
+    return Word(text.get_text(), np.floor(low).astype(int), np.ceil(high).astype(int))
+
+
+def _picture(canvas: FigureCanvasAgg, hidden: Sequence[Artist]) -> Array:
+    """How light a picture without some of its parts is, its lowest row first."""
+    for artist in hidden:
+        artist.set_visible(False)
+    canvas.draw()
+    for artist in hidden:
+        artist.set_visible(True)
+    colours = np.asarray(canvas.buffer_rgba())[::-1, :, :3] / 255.0
+    return np.asarray(colours.min(axis=2))
