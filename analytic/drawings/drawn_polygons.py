@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
@@ -20,7 +21,14 @@ from analytic.drawings.polygon import (
     images_of,
     name_of,
 )
-from analytic.drawings.vector_equation import ParallelError, Term, Way, crossing
+from analytic.drawings.vector_equation import (
+    FLAT,
+    ParallelError,
+    Term,
+    Way,
+    crossing,
+    sine_between,
+)
 from analytic.structure.groups import Bridge, Group
 from models.array import Array
 from models.scene import GROUND, Scene
@@ -32,13 +40,15 @@ QUANTITIES: tuple[Quantity, Quantity] = ("velocity", "acceleration")
 class DrawnPolygons:
     """The polygons of a mechanism as it stands in ``placement``, and how its bodies move by them.
 
-    ``undetermined`` names the groups that could not be drawn, and why.
+    ``undetermined`` names the groups that could not be drawn, and why; ``flat`` those whose
+    directions hardly cross, at which angle.
     """
 
     placement: PlacedMechanism
     velocity: Polygon
     acceleration: Polygon
     rates: Mapping[str, BodyRates]
+    flat: tuple[str, ...] = ()
 
     @property
     def undetermined(self) -> tuple[str, ...]:
@@ -51,7 +61,11 @@ def draw_polygons(scene: Scene, driver: DriverState) -> DrawnPolygons:
     Where two directions of a group are parallel (a limit position, a change point) it and what
     hangs on it is left out and named. Raises as `analytic.kinematics.solve`.
     """
-    placement = PlacedMechanism.of(scene, driver)
+    return polygons_of(PlacedMechanism.of(scene, driver))
+
+
+def polygons_of(placement: PlacedMechanism) -> DrawnPolygons:
+    """As `draw_polygons`, of a mechanism that stands already."""
     table = _Table(placement)
     table.draw_driver()
     undetermined = [said for part in placement.structure.order if (said := table.draw(part))]
@@ -64,7 +78,7 @@ def draw_polygons(scene: Scene, driver: DriverState) -> DrawnPolygons:
         )
         for quantity in QUANTITIES
     )
-    return DrawnPolygons(placement, velocity, acceleration, table.rates)
+    return DrawnPolygons(placement, velocity, acceleration, table.rates, tuple(table.flat))
 
 
 @dataclass
@@ -76,6 +90,7 @@ class _Table:
     steps: dict[Quantity, list[DrawingStep]] = field(
         default_factory=lambda: {q: [] for q in QUANTITIES}
     )
+    flat: list[str] = field(default_factory=list)
 
     def draw_driver(self) -> None:
         """The crank's points from the pole: a^n towards the pivot, a^t across."""
@@ -122,6 +137,9 @@ class _Table:
         ways = [arm.acceleration_way(velocity) for arm in dyad.arms]
         acceleration, drawn_a = self._crossed("acceleration", ways, dyad)
         title, node = _title(dyad.group), {dyad.node: velocity}
+        if abs(sine := sine_between(*ways)) < FLAT:
+            told = f"{math.degrees(math.asin(abs(sine))):.2g} deg"
+            self.flat.append(f"{title}: its directions cross at {told}, near a limit position")
         self.steps["velocity"].append(DrawingStep(title, drawn_v[0], drawn_v[1] | node))
         node = {dyad.node: acceleration}
         self.steps["acceleration"].append(DrawingStep(title, drawn_a[0], drawn_a[1] | node))

@@ -11,6 +11,7 @@ from analytic.kinematics import solve_driven
 from analytic.structure.mobility import Structure, analyse
 from models.array import Array
 from models.joints import sliding_angle, sliding_body
+from models.motion import Motion
 from models.scene import GROUND, Scene
 
 
@@ -37,17 +38,30 @@ class PlacedMechanism:
     @staticmethod
     def of(scene: Scene, driver: DriverState) -> PlacedMechanism:
         """The scene with its driver there. Raises as `analytic.kinematics.solve`."""
-        structure = analyse(scene)
         one = np.ones(1)
         motion = solve_driven(
             scene, driver.theta * one, driver.omega * one, driver.alpha * one, bound=False
         )
-        angles = {GROUND: 0.0} | {n: float(m.theta[0]) for n, m in motion.links.items()}
+        return PlacedMechanism.standing(scene, motion, driver)
+
+    @staticmethod
+    def standing(
+        scene: Scene, motion: Motion, driver: DriverState | None = None, sample: int = 0
+    ) -> PlacedMechanism:
+        """The scene as it stands in a sample of a motion, driven or let go, on whatever branch that
+        is; its driver moves as it does there where nothing else is said."""
+        angles = {GROUND: 0.0} | {n: float(m.theta[sample]) for n, m in motion.links.items()}
         for slider in scene.sliders.values():
             if slider.link is None:
                 angles[sliding_body(slider)] = angles[slider.on] + sliding_angle(slider)
-        points = {name: np.array(point.position[0]) for name, point in motion.points.items()}
-        return PlacedMechanism(scene, structure, driver, points, angles)
+        points = {name: np.array(point.position[sample]) for name, point in motion.points.items()}
+        if driver is None:
+            moves = motion.links[scene.driver.link]
+            theta, omega, alpha = (
+                float(series[sample]) for series in (moves.theta, moves.omega, moves.alpha)
+            )
+            driver = DriverState(theta, omega, alpha)
+        return PlacedMechanism(scene, analyse(scene), driver, points, angles)
 
     def along(self, slider: str) -> Array:
         """The unit vector along the line of a slider."""

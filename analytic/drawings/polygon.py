@@ -83,6 +83,12 @@ class Polygon:
         return {name: at for step in self.steps for name, at in step.nodes.items()}
 
     @property
+    def ends(self) -> dict[str, Array]:
+        """The ends of the vectors of all points of moving links, and the other images, by name."""
+        of_links = {name: at for image in self.images.values() for name, at in image.items()}
+        return of_links | self.nodes
+
+    @property
     def largest(self) -> float:
         """The greatest distance of two of its points [m/s or m/s^2]."""
         ends = [np.zeros(2), *self.nodes.values()]

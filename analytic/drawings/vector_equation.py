@@ -28,6 +28,10 @@ PARALLEL = 1e-9
 """Sine of the angle between two directions below which they do not cross anywhere near."""
 
 
+FLAT = 1e-2
+"""Sine of the angle below which directions cross so flatly that a hand can not draw it."""
+
+
 class ParallelError(Exception):
     """The two directions of a vector equation are parallel: it has no solution, or many."""
 
@@ -67,11 +71,17 @@ class Way:
         )
 
 
+def sine_between(one: Way, other: Way) -> float:
+    """The sine of the angle from the direction of one way to that of the other."""
+    u, v = one.unknown.value, other.unknown.value
+    return float(u[0] * v[1] - u[1] * v[0])
+
+
 def crossing(one: Way, other: Way) -> tuple[float, float]:
     """The lengths of the unknown vectors of both ways. Raises ParallelError."""
     u, v = one.unknown.value, other.unknown.value
     gap = other.before - one.before
-    sine = float(u[0] * v[1] - u[1] * v[0])
+    sine = sine_between(one, other)
     if abs(sine) < PARALLEL:
         raise ParallelError
     return (

@@ -9,7 +9,7 @@ from reports.cli import changes, measuring
 from reports.cli import judging, showing  # --help lists commands in the order of these lines
 
 # isort: split
-from reports.cli import drawing_sheets, graph_sheets, regulating, vibrating
+from reports.cli import drawing_polygons, drawing_sheets, graph_sheets, regulating, vibrating
 
 # isort: split
 from reports.cli import recipes
@@ -19,6 +19,7 @@ __all__ = [
     "app",
     "changes",
     "checking",
+    "drawing_polygons",
     "drawing_sheets",
     "graph_sheets",
     "guarded",

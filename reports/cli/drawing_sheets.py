@@ -42,35 +42,6 @@ def centres(request: CentresRequest) -> int:
     return verb.run_centres(request, terminal())
 
 
-@dataclass(frozen=True)
-class PolygonRequest:
-    """What `polygon` was asked for, as given."""
-
-    scene: SceneName
-    at_deg: Annotated[float, typer.Option(metavar="DEG", help="The driver's angle.")] = 90.0
-    omega: Annotated[
-        float | None,
-        typer.Option(metavar="RAD_S", help="The driver's speed, in place of its law's."),
-    ] = None
-    k: Annotated[
-        float | None,
-        typer.Option(
-            "--k", help="Vectors of the crank so many times as long as it is drawn, p b = k AB."
-        ),
-    ] = None
-    paper: PaperSize = "A4"
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", help="Draw the sheet: .svg in layers, .pdf, or .gif, step by step."
-        ),
-    ] = None
-    turn: Annotated[
-        bool,
-        typer.Option("--turn", help="With -o FILE.gif: over a turn, in place of step by step."),
-    ] = False
-
-
 Output = Annotated[Path, typer.Option("-o", "--output", help="Draw it: .svg in layers, or .pdf.")]
 
 
@@ -90,14 +61,3 @@ def positions(request: PositionsRequest) -> int:
     from reports.cli.commands import sheets as verb
 
     return verb.run_positions(request, terminal())
-
-
-@command
-def polygon(request: PolygonRequest) -> int:
-    """Draw the velocity and the acceleration polygon of a position, group by group, to scale.
-
-    Without -o the table of the vectors is shown.
-    """
-    from reports.cli.commands import polygon as verb
-
-    return verb.run_polygon(request, terminal())

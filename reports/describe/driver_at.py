@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 
 from models.errors import CrankcheckError
+from models.laws import MOST_TURNS
 from models.passing import passing
+from models.released import LONGEST_S
 from models.scene import Scene
 
 MOST_DEG = 1e6
@@ -19,6 +21,17 @@ def angle_at(at_deg: float) -> float:
             f"--at-deg {at_deg:g}: give an angle in degrees, such as 90, up to {MOST_DEG:g}"
         )
     return math.radians(at_deg)
+
+
+def time_at(scene: Scene, at_s: float) -> float:
+    """A time that a user named [s]. Raises CrankcheckError for what is none, or of no motion."""
+    latest = LONGEST_S if scene.is_free else MOST_TURNS * scene.driver.law.period_s
+    if not 0.0 <= at_s <= latest:  # or no number
+        raise CrankcheckError(
+            f"--at-s {at_s:g}: {scene.name} moves from t = 0 on; give a time in seconds, such as "
+            f"{0.25 * scene.driver.law.period_s:.3g}, up to {latest:.3g}"
+        )
+    return at_s
 
 
 def driver_at(

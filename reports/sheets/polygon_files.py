@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import io
-import math
-from dataclasses import replace
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from analytic.drawings.drawn_polygons import draw_polygons
-from models.errors import ReachError
+from reports.sheets.polygon_course import PolygonCourse
 from reports.sheets.polygon_sheet import PolygonSheet, draw_sheet, over_positions
 from reports.sheets.sheet_note import sheet_note
 
-ANIMATED = ".gif"
-ENDINGS = (".svg", ".pdf", ANIMATED)
-FRAMES, FRAME_S, STEP_S, LAST_S = 48, 0.1, 1.2, 3.0
+ANIMATED, PAGE = ".gif", ".html"
+ENDINGS = (".svg", ".pdf", ANIMATED, PAGE)
+FRAMES, MOST_FRAMES = 48, 96
+FRAME_S, STEP_S, LAST_S = 0.1, 1.2, 3.0
 DPI = 100
 
 
@@ -40,20 +38,16 @@ def polygon_file(sheet: PolygonSheet, ending: str) -> bytes:
     return _animated(frames, [STEP_S] * (len(frames) - 1) + [LAST_S])
 
 
-def turning_file(sheet: PolygonSheet) -> bytes:
-    """The sheet over a turn of the driver, as an animation at one scale."""
+def turning_file(sheet: PolygonSheet, *, steady: bool = False) -> bytes:
+    """The sheet over a turn of the driver's law, or over its free motion, as an animation at one
+    scale; with a ``steady`` driver at the speed of the sheet. Raises CrankcheckError where the
+    driver goes through no turn."""
     placement = sheet.drawn.placement
-    angles = placement.driver.theta + np.linspace(0.0, math.tau, FRAMES, endpoint=False)
-    drawn = []
-    for theta in angles:
-        try:
-            state = replace(placement.driver, theta=float(theta))
-            drawn.append(draw_polygons(placement.scene, state))
-        except ReachError:  # the driver swings: what it reaches is shown
-            continue
-    sheets = over_positions(drawn, sheet.paper)
+    course = PolygonCourse.of(placement, FRAMES + 1, MOST_FRAMES, steady=steady)
+    drawn = course.drawn if course.scene.is_free else course.drawn[:-1]  # the first comes again
     frames = [
-        _picture(draw_sheet(each, sheet_note(each.drawn.placement.scene)).figure) for each in sheets
+        _picture(draw_sheet(each, sheet_note(course.scene)).figure)
+        for each in over_positions(drawn, sheet.paper)
     ]
     return _animated(frames, [FRAME_S] * len(frames))
 

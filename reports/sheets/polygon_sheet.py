@@ -16,36 +16,40 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from analytic.drawings.drawn_polygons import DrawnPolygons
 from analytic.drawings.paper_scale import book_scales, round_scale
-from analytic.drawings.polygon import UNITS
 from models.array import Array
 from models.errors import CrankcheckError
-from models.scene import GROUND
-from reports.figures.style import QUIET, SMALL, TINY
+from reports.figures.style import QUIET, SMALL, TINY, cut
 from reports.output.numbers import readable
 from reports.sheets.canvas import Canvas, text
-from reports.sheets.letters import write_letters
-from reports.sheets.paper import Box, Paper
-from reports.sheets.polygon_drawing import DrawnPolygon, draw_polygon, fitted, frame_of
+from reports.sheets.letters import Letter, write_letters
+from reports.sheets.logged_instant import LoggedInstant
+from reports.sheets.magnified_errors import LOGGED, STAR, MagnifiedErrors, draw_errors
+from reports.sheets.paper import MM_PER_IN, Box, Paper
+from reports.sheets.polygon_drawing import draw_polygon
+from reports.sheets.polygon_on_paper import DrawnPolygon, fitted, frame_of
+from reports.sheets.polygon_table import draw_table, link_rows, vector_rows
+from reports.sheets.polygon_words import at_rest, doubts
 from reports.sheets.scheme import draw_scheme, point_letters
 from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 
 GAP = 4.0
 LEFT_SHARE, SCHEME_SHARE = 0.38, 0.5
 SCHEME_PADDING = 9.0
-ROW_MM = 3.1
-COLUMN_MM = 52.0
+DOUBT = "#a52a16"
 
 
 @dataclass(frozen=True)
 class PolygonSheet:
     """What is on the sheet: the polygons, each with its scale; the scale of lengths [m/mm], and
-    what stands in the middle of the scheme [m]."""
+    what stands in the middle of the scheme [m]; the log that is drawn beside, if there is one; the
+    time [s], where it is known."""
 
     drawn: DrawnPolygons
     velocity: DrawnPolygon
@@ -54,23 +58,59 @@ class PolygonSheet:
     middle: Array
     boxes: dict[str, Box]
     paper: Paper
+    log: LoggedInstant | None = None
+    time_s: float | None = None
+
+    def place(self, at: Array) -> Array:
+        """Where a place [m] stands in the scheme [mm]."""
+        return np.asarray(self.boxes["scheme"].middle + (at - self.middle) / self.length_scale)
+
+    @property
+    def misplaced(self) -> MagnifiedErrors | None:
+        """What the log is off by in the scheme."""
+        if self.log is None:
+            return None
+        exact = {name: self.place(at) for name, at in self.drawn.placement.points.items()}
+        errors = {name: error / self.length_scale for name, error in self.log.places.items()}
+        return MagnifiedErrors.of(exact, errors)
 
 
-def laid_out(drawn: DrawnPolygons, paper: Paper, k: float | None = None) -> PolygonSheet:
+def laid_out(
+    drawn: DrawnPolygons,
+    paper: Paper,
+    k: float | None = None,
+    log: LoggedInstant | None = None,
+    time_s: float | None = None,
+) -> PolygonSheet:
     """The polygons on paper, at the finest round scales that fit; with ``k`` at the book's, the
-    crank's vectors k times as long as the drawn crank. Raises CrankcheckError for too small paper.
+    crank's vectors k times as long as the drawn crank; with the images of a ``log`` beside them, or
+    of an instant that is named by its time [s].
+    Raises CrankcheckError for too small paper.
     """
     boxes = _boxes(paper)
-    places = np.array(list(drawn.placement.points.values()))
-    length_scale, middle = _scheme_frame(places, boxes["scheme"])
+    places = [*drawn.placement.points.values()]
+    length_scale, middle = _scheme_frame(np.array(places), boxes["scheme"])
+    if log is not None:  # which may have come apart: it is to be seen
+        off = {name: error / length_scale for name, error in log.places.items()}
+        if MagnifiedErrors.of(drawn.placement.points, off).is_large:
+            places += [drawn.placement.points[n] + error for n, error in log.places.items()]
+            length_scale, middle = _scheme_frame(np.array(places), boxes["scheme"])
     scales: tuple[float | None, float | None] = (None, None)
     if k is not None:
         if drawn.placement.driver.alpha:
             raise CrankcheckError("--k: the book's scales are those of a crank at constant speed")
         scales = book_scales(length_scale, drawn.placement.driver.omega, k)
-    velocity = fitted(drawn.velocity, boxes["velocity"], scales[0])
-    acceleration = fitted(drawn.acceleration, boxes["acceleration"], scales[1])
-    return PolygonSheet(drawn, velocity, acceleration, length_scale, middle, boxes, paper)
+    velocity, acceleration = (
+        fitted(polygon, boxes[polygon.quantity], scale)
+        if log is None
+        else fitted(polygon, boxes[polygon.quantity], scale).beside(
+            log.rates[polygon.quantity], log.ways[polygon.quantity], boxes[polygon.quantity], scale
+        )
+        for polygon, scale in zip((drawn.velocity, drawn.acceleration), scales, strict=True)
+    )
+    return PolygonSheet(
+        drawn, velocity, acceleration, length_scale, middle, boxes, paper, log, time_s
+    )
 
 
 def _scheme_frame(places: Array, box: Box) -> tuple[float, Array]:
@@ -116,25 +156,38 @@ def _boxes(paper: Paper) -> dict[str, Box]:
 
 
 def draw_sheet(sheet: PolygonSheet, note: str) -> Canvas:
-    """The sheet, a layer for each part and each step of drawing; ``note`` stands at its foot."""
+    """The sheet, a layer for each part and each step of drawing; ``note`` stands at its foot.
+
+    Raises CrankcheckError for paper on which its table can not be read.
+    """
     canvas = Canvas(sheet.paper)
     axes = canvas.layer("frame")
     _frame(axes, sheet, note)
     _scheme(canvas, sheet)
-    _table(canvas.layer("table"), sheet)
+    rows = [
+        *vector_rows(sheet.velocity), *vector_rows(sheet.acceleration), *link_rows(sheet.drawn)
+    ]  # fmt: skip
+    draw_table(canvas.layer("table"), rows, sheet.boxes["table"], sheet.paper)
     draw_polygon(canvas, sheet.velocity, sheet.boxes["velocity"])
     draw_polygon(canvas, sheet.acceleration, sheet.boxes["acceleration"])
     return canvas
 
 
-def _frame(axes: Axes, sheet: PolygonSheet, note: str) -> None:
+def heading(sheet: PolygonSheet) -> str:
+    """The mechanism, and how its driver stands and moves."""
     scene, driver = sheet.drawn.placement.scene, sheet.drawn.placement.driver
-    angle = math.degrees(driver.theta) % 360.0
-    title = (
-        f"{scene.name}: {scene.driver.link} at {angle:.6g}°, omega {readable(driver.omega)} rad/s"
-        + (f", alpha {readable(driver.alpha)} rad/s²" if driver.alpha else "")
+    angle = round(math.degrees(driver.theta), 9) % 360.0
+    at_time = f" (t = {sheet.time_s:.6g} s)" if sheet.time_s is not None else ""
+    alpha = f", alpha {readable(driver.alpha)} rad/s²" if driver.alpha else ""
+    rigid = "; its elastic links taken as rigid" if scene.elastic else ""
+    return (
+        f"{scene.name}: {scene.driver.link} at {angle:.6g}°{at_time}, omega "
+        f"{readable(driver.omega)} rad/s{alpha}{rigid}"
     )
-    write_head(axes, sheet.paper, title, note)
+
+
+def _frame(axes: Axes, sheet: PolygonSheet, note: str) -> None:
+    write_head(axes, sheet.paper, heading(sheet), note)
     captions = {
         "scheme": f"scheme, K_l = {sheet.length_scale:g} m/mm",
         "velocity": f"velocities, K_v = {sheet.velocity.scale:g} m/s per mm",
@@ -143,50 +196,54 @@ def _frame(axes: Axes, sheet: PolygonSheet, note: str) -> None:
     }
     for name, box in sheet.boxes.items():
         draw_border(axes, box)
-        text(
-            axes, box.left + 1.5, box.bottom + box.height - 3.2, captions[name], SMALL, color=QUIET
-        )
+        x, y = box.left + 1.5, box.bottom + box.height - 3.2
+        text(axes, x, y, captions[name], SMALL, color=QUIET)
+        if told := _logged(sheet).get(name):
+            room = (box.width - 3.0) / MM_PER_IN
+            text(axes, x, y - 2.8, cut(told, room, TINY), TINY, color=LOGGED)
+    _doubts(axes, sheet)
+
+
+def _doubts(axes: Axes, sheet: PolygonSheet) -> None:
+    """What could not be drawn, above the legend of each polygon; and which is one point."""
+    for drawn in (sheet.velocity, sheet.acceleration):
+        box = sheet.boxes[drawn.polygon.quantity]
+        told = doubts(sheet.drawn)
+        if drawn.polygon.largest == 0.0:
+            told.append(at_rest(drawn.polygon.quantity))
+        for number, words in enumerate(reversed(told), 1):
+            room = (box.width - 3.0) / MM_PER_IN
+            at = box.bottom + 1.8 + 2.8 * number
+            text(axes, box.left + 1.5, at, cut(words, room, TINY), TINY, color=DOUBT)
+
+
+def _logged(sheet: PolygonSheet) -> dict[str, str]:
+    """What is told of a log in the boxes that it is drawn in."""
+    log, misplaced = sheet.log, sheet.misplaced
+    if log is None or misplaced is None:
+        return {}
+    name = Path(log.source).name
+    told = {"scheme": f"{name}: {misplaced.words}"} if misplaced.errors else {}
+    for drawn in (sheet.velocity, sheet.acceleration):
+        if drawn.logged is not None and drawn.logged.errors:
+            words = f"{name}, {drawn.logged_by}: {drawn.logged.words}"
+        else:
+            words = f"{name}: no {drawn.polygon.quantity} of any point in it"
+        told[drawn.polygon.quantity] = words
+    return told
 
 
 def _scheme(canvas: Canvas, sheet: PolygonSheet) -> None:
     axes = canvas.layer("scheme")
     placement, box = sheet.drawn.placement, sheet.boxes["scheme"]
-    places = {
-        name: box.middle + (at - sheet.middle) / sheet.length_scale
-        for name, at in placement.points.items()
-    }
+    places = {name: sheet.place(at) for name, at in placement.points.items()}
     draw_scheme(axes, placement, places)
-    write_letters(canvas, axes, point_letters(placement, places), box)
-
-
-def _table(axes: Axes, sheet: PolygonSheet) -> None:
-    box = sheet.boxes["table"]
-    rows = list(_rows(sheet))
-    per_column = int((box.height - 6.0) / ROW_MM)
-    for number, (name, on_paper, value) in enumerate(rows):
-        column, row = divmod(number, per_column)
-        x = box.left + 1.5 + column * COLUMN_MM
-        y = box.bottom + box.height - 7.0 - row * ROW_MM
-        text(axes, x, y, name, TINY)
-        text(axes, x + 24.0, y, on_paper, TINY, ha="right")
-        text(axes, x + 26.0, y, value, TINY)
-
-
-def _rows(sheet: PolygonSheet) -> Sequence[tuple[str, str, str]]:
-    rows = []
-    for drawn in (sheet.velocity, sheet.acceleration):
-        unit = UNITS[drawn.polygon.quantity]
-        rows += [
-            (each.name, f"{each.size / drawn.scale:.2f} mm", f"{readable(each.size)} {unit}")
-            for each in drawn.polygon.vectors
+    letters = point_letters(placement, places)
+    if (log := sheet.misplaced) is not None:
+        draw_errors(axes, log, (x.points for x in placement.scene.links.values()), "scheme-error")
+        letters += [
+            Letter(f"{name}{STAR}", tip[None], 0.0, SMALL, LOGGED)
+            for name, tip in log.tips.items()
+            if np.any(log.errors[name])
         ]
-    for name, body in sheet.drawn.rates.items():
-        if name != GROUND and name in sheet.drawn.placement.scene.links:
-            rows.append(
-                (
-                    f"omega, alpha of {name}",
-                    "",
-                    f"{readable(body.omega)} rad/s, {readable(body.alpha)} rad/s²",
-                )
-            )
-    return rows
+    write_letters(canvas, axes, letters, box)

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-import math
-
 from rich.console import Console
 
-from analytic.drawings.drawn_polygons import DrawnPolygons, draw_polygons
-from analytic.drawings.placed_mechanism import DriverState
+from analytic.drawings.drawn_polygons import DrawnPolygons, polygons_of
+from analytic.drawings.placed_mechanism import PlacedMechanism
 from models.errors import CrankcheckError, harmless
 from models.files import find_scene, load_scene
 from models.scene import Scene
-from reports.cli.drawing_sheets import PolygonRequest
-from reports.describe.driver_at import angle_at, driver_at
+from reports.cli.drawing_polygons import PolygonRequest
+from reports.logs.map_file import Map, read_map
 from reports.output.write import check_file, write
+from reports.sheets.logged_instant import LoggedInstant, LogInstants
 from reports.sheets.paper import Paper
-from reports.sheets.polygon_files import ANIMATED, ENDINGS, polygon_file, turning_file
+from reports.sheets.polygon_files import ANIMATED, ENDINGS, PAGE, polygon_file, turning_file
+from reports.sheets.polygon_instant import AT_DEG, placed_at_angle, placed_at_time
+from reports.sheets.polygon_listing import show_polygons
 from reports.sheets.polygon_sheet import PolygonSheet, laid_out
-from reports.sheets.polygon_tables import show_polygons
+from reports.sheets.polygon_words import doubts
 
 MOST_K = 1e3
 
@@ -27,55 +28,94 @@ def run_polygon(request: PolygonRequest, console: Console) -> int:
     paper = Paper.of(request.paper)
     _check(request)
     scene = load_scene(request.scene)
-    sheet = laid_out(draw_polygons(scene, _driver(scene, request)), paper, request.k)
+    log = _logged(scene, request)
+    placement = log.placement if log is not None else _placed(scene, request)
+    time_s = request.at_s if log is None else log.time_s
+    sheet = laid_out(polygons_of(placement), paper, request.k, log, time_s)
     if request.output is None:
         show_polygons(console, sheet)
         return 0
     ending = request.output.suffix.lower()
-    raw = turning_file(sheet) if request.turn else polygon_file(sheet, ending)
+    steady = request.omega is not None
+    if ending == PAGE:
+        from reports.sheets.polygon_page import polygon_page  # the page's machinery, for it alone
+
+        raw: str | bytes = polygon_page(placement, steady=steady)
+    else:
+        raw = turning_file(sheet, steady=steady) if request.turn else polygon_file(sheet, ending)
     write(request.output, raw)
     told = f"{request.output}: {_told(sheet, request)}"
     console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
-    _tell_undetermined(console, sheet.drawn)
+    _tell_doubts(console, sheet.drawn)
     return 0
 
 
 def _check(request: PolygonRequest) -> None:
     """Refuse what can not be asked."""
+    inputs = [find_scene(request.scene), request.log, request.map]
+    ending = ""
     if request.output is not None:
-        check_file(request.output, "-o", ENDINGS, inputs=[find_scene(request.scene)])
-    if request.turn and (request.output is None or request.output.suffix.lower() != ANIMATED):
+        check_file(request.output, "-o", ENDINGS, inputs=inputs)
+        ending = request.output.suffix.lower()
+    if request.turn and ending != ANIMATED:
         raise CrankcheckError(f"--turn: a turn is an animation; give -o FILE{ANIMATED}")
     if request.k is not None and not 0.0 < request.k <= MOST_K:
         raise CrankcheckError(f"--k {request.k:g}: give a number above 0, up to {MOST_K:g}")
-    if request.omega is not None and not (math.isfinite(request.omega) and request.omega):
-        raise CrankcheckError(
-            f"--omega {request.omega:g}: give a speed other than 0 in rad/s; at rest there is "
-            "nothing to draw"
-        )
+    if told := _contradiction(request, ending):
+        raise CrankcheckError(f"{told}; leave one out")
 
 
-def _driver(scene: Scene, request: PolygonRequest) -> DriverState:
-    if request.omega is not None:
-        return DriverState(angle_at(request.at_deg), request.omega)
-    if scene.is_free:
-        raise CrankcheckError(
-            f"{scene.name}: its driver is let go, and no law says how fast it is at "
-            f"{request.at_deg:g} deg; give --omega"
-        )
-    return DriverState(*driver_at(scene, request.at_deg))
+def _contradiction(request: PolygonRequest, ending: str) -> str:
+    """Two options that do not go together, and why; empty where there are none."""
+    at_time, has_log = request.at_s is not None, request.log is not None
+    if at_time and request.at_deg is not None:
+        return "--at-s with --at-deg: each says the instant"
+    if at_time and request.omega is not None:
+        return "--at-s with --omega: at a time the driver has a speed"
+    if has_log and request.omega is not None:
+        return "--log with --omega: at its sample the driver has a speed"
+    if has_log and (request.turn or ending == PAGE):
+        return f"--log with a turn, --turn or -o FILE{PAGE}: a log is drawn at one instant"
+    if request.map is not None and not has_log:
+        return "--map without --log: it says what the columns of a log mean"
+    return ""
+
+
+def _logged(scene: Scene, request: PolygonRequest) -> LoggedInstant | None:
+    """The log at the instant, where one is drawn beside."""
+    if request.log is None:
+        return None
+    map_ = read_map(request.map) if request.map else Map()
+    instants = LogInstants.of_file(scene, request.log, map_)
+    if request.at_s is not None:
+        return instants.at_time(request.at_s)
+    return instants.at_angle(AT_DEG if request.at_deg is None else request.at_deg)
+
+
+def _placed(scene: Scene, request: PolygonRequest) -> PlacedMechanism:
+    if request.at_s is not None:
+        return placed_at_time(scene, request.at_s)
+    at_deg = AT_DEG if request.at_deg is None else request.at_deg
+    return placed_at_angle(scene, at_deg, request.omega)
 
 
 def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
     """What was drawn."""
     name = sheet.drawn.placement.scene.name
-    of = "over a turn" if request.turn else f"at {request.at_deg:g} deg"
+    ending = request.output.suffix.lower() if request.output is not None else ""
+    if request.turn or ending == PAGE:
+        is_free = sheet.drawn.placement.scene.is_free and request.omega is None
+        course = "its motion" if is_free else "a turn"
+        return f"velocities and accelerations of {name} over {course}"
+    at_deg = AT_DEG if request.at_deg is None else request.at_deg
+    of = f"at {at_deg:g} deg" if request.at_s is None else f"at {request.at_s:g} s"
+    beside = f", {request.log} beside" if request.log is not None else ""
     return (
-        f"velocities and accelerations of {name} {of}, on {sheet.paper.width:g} x "
+        f"velocities and accelerations of {name} {of}{beside}, on {sheet.paper.width:g} x "
         f"{sheet.paper.height:g} mm"
     )
 
 
-def _tell_undetermined(console: Console, drawn: DrawnPolygons) -> None:
-    for told in drawn.undetermined:
-        console.print(f"not drawn: {told}", highlight=False, markup=False, soft_wrap=True)
+def _tell_doubts(console: Console, drawn: DrawnPolygons) -> None:
+    for told in doubts(drawn):
+        console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)

@@ -27,11 +27,16 @@ SHORTEST_MS, LONGEST_MS = 4000, 12000
 """What a round may take."""
 
 
-def build(free: FreeMotion, figures: Mapping[str, bytes]) -> Section:
-    """The section; ``figures`` are SVG files by their name."""
+def instants(free: FreeMotion) -> int:
+    """How many a free motion is drawn at."""
     turns = free.peak_speed_rad_s * free.until_s / math.tau
     wanted = max(IN_A_TURN * turns, IN_A_SECOND * free.until_s)
-    time_s = np.linspace(0.0, free.until_s, int(np.clip(wanted, LEAST, MOST)))
+    return int(np.clip(wanted, LEAST, MOST))
+
+
+def build(free: FreeMotion, figures: Mapping[str, bytes]) -> Section:
+    """The section; ``figures`` are SVG files by their name."""
+    time_s = np.linspace(0.0, free.until_s, instants(free))
     motion = free.at(time_s, bound=False)
     drawn = drawing(free.scene, time_s, motion)
     lasts_ms = float(np.clip(1000.0 * free.until_s, SHORTEST_MS, LONGEST_MS))

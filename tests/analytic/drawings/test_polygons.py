@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import replace
 
@@ -12,6 +13,7 @@ from analytic.drawings.drawn_polygons import DrawnPolygons, draw_polygons
 from analytic.drawings.paper_scale import book_scales, round_scale
 from analytic.drawings.placed_mechanism import DriverState
 from analytic.drawings.polygon import Polygon
+from analytic.drawings.similarity import similarity
 from analytic.kinematics import reach, solve_driven
 from models.files import load_scene, shipped
 from models.motion import Motion
@@ -110,6 +112,28 @@ def test_the_image_of_a_link_is_similar_to_the_link_and_turned(name: str) -> Non
                 size = max(polygon.largest, abs(turn) * scene.longest_m)
                 assert left < 1e-12 * size
                 assert abs(factor - turn) * scene.longest_m < 1e-12 * size
+                said = similarity(drawn, link, polygon.quantity)
+                if said.is_point:
+                    assert abs(turn) * scene.longest_m < 1e-11 * size
+                else:
+                    assert cmath.rect(said.scale, said.turn_rad) == pytest.approx(turn, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "link", "theta"),
+    [
+        ("scotch-yoke", "yoke", 1.0),  # it slides on the ground
+        # crank and coupler in line: cos theta = (0.35^2 + 0.3^2 - 0.2^2) / (2 0.35 0.3)
+        ("fourbar-lecture-1", "rocker", math.acos(0.1725 / 0.21)),
+    ],
+)
+def test_where_omega_is_0_the_image_of_velocities_is_one_point(
+    name: str, link: str, theta: float
+) -> None:
+    drawn = draw_polygons(with_third_points(load_scene(name)), DriverState(theta, OMEGA))
+    assert similarity(drawn, link, "velocity").is_point
+    assert similarity(drawn, link, "acceleration").is_point == (name == "scotch-yoke")
+    assert not similarity(drawn, "crank", "velocity").is_point
 
 
 def test_a_link_that_does_not_turn_has_one_point_as_its_image() -> None:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner, Result
 
+from analytic.kinematics import solve
+from models.files import load_scene
 from reports.cli import app
 
 
@@ -50,10 +53,19 @@ def test_a_limit_position_is_drawn_as_far_as_it_is_determined() -> None:
         (("fourbar-lecture-1", "--turn"), "give -o FILE.gif"),
         (("fourbar-lecture-1", "--paper", "B9"), "no size; use A5"),
         (("fourbar-lecture-1", "--at-deg", "nan"), "give an angle in degrees"),
-        (("fourbar-lecture-1", "-o", "sheet.png"), "use .svg, .pdf, .gif"),
+        (("fourbar-lecture-1", "-o", "sheet.png"), "use .svg, .pdf, .gif, .html"),
         (("fourbar-swing",), "its driver is let go"),
         (("fourbar-swing", "--at-deg", "nan", "--omega", "1"), "give an angle in degrees"),
         (("double-pendulum", "--omega", "1"), "mobility"),
+        (("double-pendulum", "--at-s", "1"), "mobility"),
+        (("fourbar-swing", "--at-s", "nan"), "moves from t = 0 on"),
+        (("fourbar-swing", "--at-s", "-1"), "moves from t = 0 on"),
+        (("fourbar-lecture-1", "--at-s", "1", "--at-deg", "3"), "each says the instant"),
+        (("fourbar-lecture-1", "--at-s", "1", "--omega", "3"), "--at-s with --omega"),
+        (("fourbar-lecture-1", "--map", "x.toml"), "--map without --log"),
+        (("fourbar-lecture-1", "--log", "x.csv", "--omega", "3"), "--log with --omega"),
+        (("fourbar-lecture-1", "--log", "x.csv", "-o", "x.html"), "a log is drawn at one instant"),
+        (("fourbar-elastic-pulse", "--at-s", "1"), "bends or stretches"),
         (("fourbar-double-rocker", "--at-deg", "180"), "deg"),
     ],
 )
@@ -62,3 +74,45 @@ def test_what_can_not_be_drawn_is_refused(arguments: tuple[str, ...], told: str)
     assert result.exit_code != 0
     message = result.output + str(result.exception)
     assert told in " ".join(message.split())
+
+
+def test_what_is_let_go_is_drawn_at_a_time() -> None:
+    told = polygon("fourbar-swing", "--at-s", "0").output
+    assert "t = 0 s, 0 rad/s, -77.2067 rad/s^2" in told
+    assert "at rest: every velocity is 0" in told
+    assert "one point, as omega is 0" in told
+
+
+def test_at_a_change_point_the_rest_is_drawn_and_told() -> None:
+    told = polygon("fourbar-chain", "--omega", "1", "--at-deg", "0").output
+    assert "v_B0A0" in told
+    assert "not drawn: RRR (coupler0, rocker1): both directions" in told
+    assert "not drawn: RRR (coupler1, rocker2): hangs on coupler0" in told
+
+
+def log_of_one(tmp_path: Path) -> Path:
+    """Rows in which C stands and moves as the reference has it, but for 1 mm/s."""
+    scene = load_scene("fourbar-lecture-1")
+    motion = solve(scene, np.arange(0.0, 0.7, 0.01), bound=False)
+    point = motion.points["C"]
+    rows = np.column_stack([motion.time_s, point.position, point.velocity + np.array([1e-3, 0])])
+    path = tmp_path / "run.csv"
+    head = "time_s,C_x_m,C_y_m,C_vx_m_s,C_vy_m_s"
+    np.savetxt(path, rows, delimiter=",", header=head, comments="", fmt="%.12g")
+    return path
+
+
+def test_a_log_is_drawn_beside(tmp_path: Path) -> None:
+    log = log_of_one(tmp_path)
+    told = polygon("fourbar-lecture-1", "--at-deg", "90", "--log", str(log)).output
+    assert "crank at 90.9634 deg, t = 0.63 s in" in " ".join(told.split())
+    assert "as the log reports them: errors" in told
+    assert "by central differences of logged positions" in told
+    point = next(line.split() for line in told.splitlines() if line.startswith("C "))
+    assert point[5:] == ["0.001", "0.1", "0.000"]
+
+
+def test_a_log_of_another_scene_is_refused(tmp_path: Path) -> None:
+    result = polygon("slider-crank-central", "--log", str(log_of_one(tmp_path)))
+    message = " ".join((result.output + str(result.exception)).split())
+    assert "in its first row, t = 0 s, C is 0.24 m off where slider-crank-central has it" in message

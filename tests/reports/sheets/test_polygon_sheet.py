@@ -18,7 +18,7 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.sheets.paper import Paper
 from reports.sheets.polygon_files import polygon_file, turning_file
-from reports.sheets.polygon_sheet import PolygonSheet, laid_out
+from reports.sheets.polygon_sheet import PolygonSheet, draw_sheet, laid_out
 
 MM_PER_POINT = 25.4 / 72.0
 TENTH_MM = 0.1
@@ -103,14 +103,42 @@ def test_the_same_sheet_has_the_same_bytes() -> None:
 def test_an_animation_has_a_frame_for_each_layer_that_is_drawn() -> None:
     sheet = sheet_of("fourbar-lecture-1", 1.0, "A5")
     with Image.open(io.BytesIO(polygon_file(sheet, ".gif"))) as picture:
-        # nothing; the table; driver, group, image, letters of each polygon
-        assert picture.n_frames == 1 + 1 + 2 * 4
+        # nothing; the table; driver, group, letters of each polygon; images of accelerations, as
+        # those of velocities are the vectors themselves
+        assert picture.n_frames == 1 + 1 + 2 * 3 + 1
 
 
 @pytest.mark.slow  # 48 sheets: what it finds beside the others is that the scales stay
 def test_over_a_turn_all_sheets_have_one_scale() -> None:
     with Image.open(io.BytesIO(turning_file(sheet_of("fourbar-lecture-1", 1.0, "A5")))) as picture:
         assert picture.n_frames == 48
+
+
+def words_on(sheet: PolygonSheet) -> list[str]:
+    return [text.get_text() for axes in draw_sheet(sheet, "").layers for text in axes.texts]
+
+
+def test_ends_of_components_have_letters_as_the_lecture_has_them() -> None:
+    assert {"n'CB", "n'CD", "b'", "c'"} <= {*words_on(sheet_of("fourbar-lecture-1", 1.0))}
+    assert {"n'", "k'", "b(lever)'"} <= {*words_on(sheet_of("slotted-lever", 0.9))}
+
+
+def test_the_table_says_what_the_images_of_links_are() -> None:
+    words = words_on(sheet_of("scotch-yoke", 1.0))
+    assert "v: one point, as omega is 0" in words
+    assert "v: similar, 10 1/s, turned by 90°" in words
+
+
+def test_a_table_without_room_asks_for_larger_paper() -> None:
+    with pytest.raises(CrankcheckError, match=r"\d+ rows .* can not be read .* such as A3"):
+        draw_sheet(sheet_of("squeezer", -0.6, "A5"), "")
+
+
+def test_directions_that_hardly_cross_are_told() -> None:
+    # coupler and rocker in line: cos phi = (0.25^2 + 0.3^2 - 0.4^2) / (2 0.25 0.3)
+    limit = math.acos(-0.05)
+    words = words_on(sheet_of("fourbar-double-rocker-swing", limit - 1e-6))
+    assert any(word.startswith("flat: RRR (coupler, rocker): its directions") for word in words)
 
 
 def test_the_book_s_scale_draws_the_crank_s_vectors_k_times_the_crank() -> None:
