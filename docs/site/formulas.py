@@ -1,0 +1,64 @@
+"""Formulas of pages, `$...$` in a line and `$$...$$` by itself, as MathML: browsers draw it
+without a script.
+
+An extension of Python-Markdown; what stands in code is left alone.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+from xml.etree.ElementTree import Element
+
+from latex2mathml.converter import convert
+from markdown import Markdown
+from markdown.extensions import Extension
+from markdown.inlinepatterns import InlineProcessor
+
+DISPLAYED = r"\$\$(.+?)\$\$"
+INLINE = r"(?<![\\$\w])\$(?![\s$])([^$\n]*(?:\n[^$\n]+)*?)(?<![\s\\])\$(?![\w$])"
+BEFORE_ESCAPES_AFTER_CODE = 186
+"""Python-Markdown takes code at 190 and backslashes at 180."""
+
+
+class FormulaError(Exception):
+    """LaTeX that there is no MathML for."""
+
+
+class Formula(InlineProcessor):
+    """One of the two kinds of formulas."""
+
+    def __init__(self, pattern: str, md: Markdown, display: str) -> None:
+        super().__init__(pattern, md)
+        self.display = display
+        self.compiled_re = re.compile(pattern, re.DOTALL)
+
+    def handleMatch(  # noqa: N802
+        self, m: re.Match[str], data: str
+    ) -> tuple[str | Element, int, int]:
+        return self.md.htmlStash.store(mathml(m[1], self.display)), m.start(0), m.end(0)
+
+
+class Formulas(Extension):
+    """Adds both kinds."""
+
+    def extendMarkdown(self, md: Markdown) -> None:  # noqa: N802
+        at = BEFORE_ESCAPES_AFTER_CODE
+        md.inlinePatterns.register(Formula(DISPLAYED, md, "block"), "displayed formula", at)
+        md.inlinePatterns.register(Formula(INLINE, md, "inline"), "formula", at - 1)
+
+
+def mathml(latex: str, display: str = "inline") -> str:
+    """The MathML of a formula. Raises FormulaError, with the formula, where a part is not known."""
+    try:
+        told = convert(latex.strip(), display=display)
+    except Exception as fault:  # of no common kind
+        raise FormulaError(f"no MathML for ${latex}$: {fault!r}") from fault
+    if unknown := re.search(r"\\[A-Za-z]+", told):
+        raise FormulaError(f"no MathML for {unknown[0]} in ${latex}$")
+    return told
+
+
+def makeExtension(**options: Any) -> Formulas:  # noqa: N802
+    """What Python-Markdown calls."""
+    return Formulas(**options)
