@@ -36,7 +36,10 @@ class Formula(InlineProcessor):
     def handleMatch(  # noqa: N802
         self, m: re.Match[str], data: str
     ) -> tuple[str | Element, int, int]:
-        return self.md.htmlStash.store(mathml(m[1], self.display)), m.start(0), m.end(0)
+        told = mathml(m[1], self.display)
+        if self.display == "block":
+            told = f'<span class="formula">{told}</span>'
+        return self.md.htmlStash.store(told), m.start(0), m.end(0)
 
 
 class Formulas(Extension):
@@ -50,11 +53,12 @@ class Formulas(Extension):
 
 def mathml(latex: str, display: str = "inline") -> str:
     """The MathML of a formula. Raises FormulaError, with the formula, where a part is not known."""
+    known = latex.strip().replace("{aligned}", "{align*}")
     try:
-        told = convert(latex.strip(), display=display)
+        told = convert(known, display=display)
     except Exception as fault:  # of no common kind
         raise FormulaError(f"no MathML for ${latex}$: {fault!r}") from fault
-    if unknown := re.search(r"\\[A-Za-z]+", told):
+    if unknown := re.search(r"\\[A-Za-z]+|<mi>&</mi>|<mspace linebreak", told):
         raise FormulaError(f"no MathML for {unknown[0]} in ${latex}$")
     return told
 

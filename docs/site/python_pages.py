@@ -35,19 +35,13 @@ def face_page() -> str:
         "What they take and give": _entries("crankcheck", rest),
         "Errors": _entries("crankcheck", errors),
         "crankcheck.testing": _entries("crankcheck.testing", testing.__all__),
-        "crankcheck.engine": f"Also {as_above}, as above.\n\n"
-        + _entries("crankcheck.engine", [name for name in own if _has_docstring(name)]),
+        "crankcheck.engine": f"Also {as_above}, as above.\n\n" + _entries("crankcheck.engine", own),
     }
     return "\n\n".join(f"## {title}\n\n{entries}" for title, entries in sections.items()) + "\n"
 
 
 def _is_error(thing: object) -> bool:
     return isinstance(thing, type) and issubclass(thing, Exception)
-
-
-def _has_docstring(name: str) -> bool:
-    thing = getattr(engine, name)
-    return inspect.isroutine(thing) or isinstance(thing, type) or inspect.ismodule(thing)
 
 
 def _entries(module: str, names: Iterable[str]) -> str:
@@ -66,7 +60,8 @@ def theory_rooms(root: Path) -> list[str]:
 
 def theory_page(room: str) -> str:
     """One room with all its modules, functions and classes, and their code."""
-    return f"# {THEORY}.{room}\n\n{_module(f'{THEORY}.{room}', code=True)}\n"
+    name = f"{THEORY}.{room}"
+    return f"# {name} {{: #{name} }}\n\n{_module(name, code=True)}\n"
 
 
 def theory_index(rooms: Iterable[str]) -> str:
