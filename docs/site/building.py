@@ -8,9 +8,11 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 from docs.site.examples import run_examples, with_figures
+from docs.site.formulas import fault_of
 from docs.site.inspection import faults_of_site
 from docs.site.staging import ROOT, pages
 
@@ -37,9 +39,11 @@ def build(output: Path, *, examples: bool = True) -> list[str]:
 def _staged(stage: Path, *, examples: bool) -> list[str]:
     """Write all pages, with their figures, where zensical reads them."""
     made = pages()
+    if told := {place: fault for place, page in made.items() if (fault := fault_of(page))}:
+        return _named(told)
     runs = stage / "runs"
     if examples and (told := run_examples(made, runs)):
-        return [f"{place}\n{fault}" for place, fault in told.items()]
+        return _named(told)
     faults = []
     for place, page in made.items():
         there = stage / "pages" / place
@@ -53,6 +57,10 @@ def _staged(stage: Path, *, examples: bool) -> list[str]:
     return faults
 
 
+def _named(faults: Mapping[str, str]) -> list[str]:
+    return [f"{place}\n{fault}" for place, fault in faults.items()]
+
+
 def _rendered(stage: Path) -> list[str]:
     """Make the site; whatever zensical says beside its progress is a fault."""
     done = subprocess.run(
@@ -64,8 +72,8 @@ def _rendered(stage: Path) -> list[str]:
         check=False,
     )
     told, _, crash = COLOUR.sub("", done.stdout + done.stderr).partition("Traceback (most recent")
-    if crash and "issues found" not in told:
-        told += crash
+    if crash and "--strict" not in crash.splitlines()[-1]:  # which only repeats what was told
+        told += "\n".join(line for line in crash.splitlines() if not line.startswith(" "))
     said = [line for line in told.splitlines() if not PROGRESS.fullmatch(line)]
     if said or done.returncode != 0:
         return ["\n".join(said) or f"zensical ended with {done.returncode}"]

@@ -63,6 +63,15 @@ def mathml(latex: str, display: str = "inline") -> str:
     return told
 
 
+def fault_of(page: str) -> str:
+    """The formula of a page that there is no MathML for, "" where all have one."""
+    try:
+        Markdown(extensions=["tables", "pymdownx.superfences", Formulas()]).convert(page)
+    except FormulaError as fault:
+        return str(fault)
+    return ""
+
+
 def makeExtension(**options: Any) -> Formulas:  # noqa: N802
     """What Python-Markdown calls."""
     return Formulas(**options)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from markdown import Markdown
 
-from docs.site.formulas import FormulaError, mathml
+from docs.site.formulas import FormulaError, fault_of, mathml
+from docs.site.staging import sources
 
 
 def html(page: str) -> str:
@@ -41,3 +42,13 @@ def test_aligned_equations_are_a_table() -> None:
 def test_what_there_is_no_mathml_for_is_refused(latex: str) -> None:
     with pytest.raises(FormulaError, match="no MathML for"):
         mathml(latex)
+
+
+def test_every_formula_of_every_page_has_mathml() -> None:
+    faults = {path: fault_of(page) for path, page in sources().text.items()}
+    assert not {path: fault for path, fault in faults.items() if fault}
+
+
+def test_a_formula_without_mathml_is_named() -> None:
+    assert fault_of("# A\n\nso $x$ and\n\n$$\\nonsense$$\n").endswith(r"\nonsense in $\nonsense$")
+    assert fault_of("# A\n\nso $x$ and `$\\nonsense$`\n") == ""
