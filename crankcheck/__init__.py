@@ -4,8 +4,9 @@
     print(verdict)
 
 The public face is what ``__all__`` lists, and `crankcheck.testing`: docs/python.md shows all of it;
-and `crankcheck.engine`, for engines of your own: docs/own-engine.md. Every other module, class and
-function is private, and may change from one version to the next without a word in CHANGELOG.md.
+and `crankcheck.engine`, for engines of your own: docs/how-to/add-an-engine.md. Every other module,
+class and function is private, and may change from one version to the next without a word in
+CHANGELOG.md.
 
 It is the same in a checkout and where the wheel is installed. Importing it costs next to nothing:
 what stands behind a name is loaded when the name is first used. Where it is the command that

@@ -7,8 +7,8 @@
     ENGINE = cc.Engine("mine", profiles, version, check, open)
 
 An adapter opens a session at a state, steps it, and says what it holds and what has moved, as
-`Poses`; everything after that is crankcheck's. docs/own-engine.md shows one from top to bottom;
-``crankcheck engines check package.module:ENGINE`` says what one still does wrong.
+`Poses`; everything after that is crankcheck's. docs/how-to/add-an-engine.md shows one from top to
+bottom; ``crankcheck engines check package.module:ENGINE`` says what one still does wrong.
 
 What stands here is public. ``drive`` says what the crank is to be told at each step,
 ``load_magnitudes`` how large the loads of a scene are meanwhile, and ``tree`` lays out a mechanism
