@@ -20,9 +20,8 @@ INLINE = r"(?<![\\$\w])\$(?![\s$])([^$\n]*(?:\n[^$\n]+)*?)(?<![\s\\])\$(?![\w$])
 BEFORE_ESCAPES_AFTER_CODE = 186
 """Python-Markdown takes code at 190 and backslashes at 180."""
 
-SHORT_BAR = '<mo accent="true">&#x02015;</mo>'
-LONG_BAR = '<mo stretchy="true">&#x000AF;</mo>'
-"""Over a length such as AB: the first does not stretch."""
+OVERLINED = re.compile(r'<mover>((?:(?!<mover>).)*?)<mo accent="true">&#x02015;</mo></mover>')
+"""A length such as AB: that bar does not stretch, and browsers draw a border in its place."""
 
 
 class FormulaError(Exception):
@@ -62,7 +61,7 @@ def mathml(latex: str, display: str = "inline") -> str:
         told = convert(known, display=display)
     except Exception as fault:  # of no common kind
         raise FormulaError(f"no MathML for ${latex}$: {fault!r}") from fault
-    told = told.replace(SHORT_BAR, LONG_BAR)
+    told = OVERLINED.sub(r'<mrow class="overlined">\1</mrow>', told)
     if unknown := re.search(r"\\[A-Za-z]+|<mi>&</mi>|<mspace linebreak", told):
         raise FormulaError(f"no MathML for {unknown[0]} in ${latex}$")
     return told

@@ -36,6 +36,12 @@ def test_aligned_equations_are_a_table() -> None:
     assert "&</mi>" not in made
 
 
+def test_a_length_is_overlined_from_end_to_end() -> None:
+    made = mathml(r"\overline{pb} = k\,\overline{AB}")
+    assert made.count('<mrow class="overlined"><mrow><mi>') == 2
+    assert "mover" not in made
+
+
 @pytest.mark.parametrize(
     "latex", [r"\nonsense x", r"\begin{gathered} a \\ b \end{gathered}", "a & b"]
 )

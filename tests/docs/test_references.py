@@ -7,6 +7,7 @@ import re
 import crankcheck
 from crankcheck import engine, testing
 from docs.site.commands_page import commands_page
+from docs.site.docstrings import one_by_one
 from docs.site.python_pages import face_page, others_page, theory_rooms
 from docs.site.staging import ROOT
 from tests.worlds.command import COMMAND
@@ -55,3 +56,13 @@ def test_every_room_of_the_theory_has_a_page() -> None:
     rooms = theory_rooms(ROOT)
     assert {"dyads", "kinematics", "free"} <= set(rooms)
     assert len(rooms) == len(set(rooms))
+
+
+def test_parameters_told_together_are_told_one_by_one() -> None:
+    """So that each has the type and the default of its own."""
+    told = one_by_one(
+        "A.\n\nParameters\n----------\na, b\n    As of c.\nd : int\n    D.\n\nAn, end."
+    )
+    assert "\na\n    As of c.\nb\n    As of c.\nd : int\n    D.\n" in told
+    assert told.startswith("A.\n")
+    assert told.endswith("\n\nAn, end.")
