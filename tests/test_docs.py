@@ -27,9 +27,15 @@ MADE = {"forces": "figs", "elastic": "figs", "own-model": "out"}
 """Folders that a page has made, and names all files of."""
 
 
-@pytest.mark.parametrize("name", WITH_EXAMPLES)
+def tried(name: str) -> object:
+    """Pages of engines have studies of their own, each 6 s of processor time: `make docs` and `make
+    slow` try them."""
+    return pytest.param(name, marks=[pytest.mark.slow] if name.startswith("engines/") else [])
+
+
+@pytest.mark.parametrize("name", [tried(name) for name in WITH_EXAMPLES])
 def test_what_a_page_shows_is_what_is_printed(name: str, tmp_path: Path) -> None:
-    """A command's start each, of 50 in all: some 100 s, which nothing else does."""
+    """All that stands on pages: of some 100 commands nothing else says that they print it."""
     page = PAGES[name]
     if "$ patch " in page and shutil.which("patch") is None:
         pytest.skip("no patch: apt-get install patch")

@@ -41,7 +41,8 @@ def _folder(folder: Path, place: str) -> Path:
 
 def with_figures(place: str, page: str, made: Path | None, site: Path) -> tuple[str, list[str]]:
     """The page with its figures copied from the folder ``made`` of its examples to a folder beside
-    it in ``site``, and the figures that no example has drawn. None: all are stood in for."""
+    it in ``site``, each a link to itself, as sheets are larger than a page; and the figures that no
+    example has drawn. None: all are stood in for."""
     stem = place.removesuffix(".md")
     missing: list[str] = []
 
@@ -55,6 +56,7 @@ def with_figures(place: str, page: str, made: Path | None, site: Path) -> tuple[
             shutil.copyfile(made / stem / name, to)
         else:
             missing.append(name)
-        return f"{found[1]}{posixpath.basename(stem)}/{name}{found[3]}"
+        there = f"{posixpath.basename(stem)}/{name}"
+        return f"[{found[1]}{there}{found[3]}]({there})"
 
     return outside_code(page, lambda prose: PICTURE.sub(shown, prose)), missing

@@ -27,7 +27,8 @@ def test_pages_that_draw_one_name_show_each_its_own(tmp_path: Path) -> None:
         text, missing = with_figures(place, page, runs, site)
         stem = Path(place).stem
         assert missing == []
-        assert text == page.replace("](a.svg)", f"]({stem}/a.svg)")
+        shown = f"[![What is drawn]({stem}/a.svg)]({stem}/a.svg)"
+        assert text == page.replace("![What is drawn](a.svg)", shown)
     assert (site / "t" / "one" / "a.svg").read_text() == "first"
     assert (site / "t" / "two" / "a.svg").read_text() == "second"
 
@@ -46,5 +47,5 @@ def test_a_figure_that_no_command_draws_is_told(tmp_path: Path) -> None:
 
 def test_without_examples_something_stands_in_for_figures(tmp_path: Path) -> None:
     text, missing = with_figures("o.md", "![Later](a/b.svg) `![](c.svg)`", None, tmp_path)
-    assert (text, missing) == ("![Later](o/a/b.svg) `![](c.svg)`", [])
+    assert (text, missing) == ("[![Later](o/a/b.svg)](o/a/b.svg) `![](c.svg)`", [])
     assert "drawn by" in (tmp_path / "o" / "a" / "b.svg").read_text()
