@@ -1,5 +1,5 @@
 // The search runs in a worker, and browsers refuse workers to pages opened as files. There a hidden
-// frame does the worker's work.
+// frame does the worker's work; as for a worker, what is said is copied.
 if (location.protocol === "file:") {
   window.Worker = class {
     constructor(address) {
@@ -9,7 +9,7 @@ if (location.protocol === "file:") {
       this.frame.hidden = true;
       this.frame.addEventListener("load", () => {
         const inside = this.frame.contentWindow;
-        inside.postMessage = (data) => setTimeout(() => this.onmessage?.({ data }));
+        inside.postMessage = (data) => this.say(structuredClone(data));
         const script = inside.document.createElement("script");
         script.src = new URL(address, location.href).href;
         script.onerror = (event) => this.onerror?.(event);
@@ -23,7 +23,11 @@ if (location.protocol === "file:") {
     }
 
     postMessage(data) {
-      this.hear(data);
+      this.hear(structuredClone(data));
+    }
+
+    say(data) {
+      setTimeout(() => this.onmessage?.({ data }));
     }
 
     terminate() {
