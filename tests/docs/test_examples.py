@@ -40,6 +40,12 @@ def test_a_page_that_shows_otherwise_is_named_with_the_command(tmp_path: Path) -
     assert "the page says\n  2\nwhat is printed\n  1" in fault
 
 
+def test_a_program_that_is_not_there_is_named(tmp_path: Path) -> None:
+    page = OTHERWISE.replace("$ python -c", "$ no-such-program")
+    (fault,) = run_examples({"o.md": page}, tmp_path).values()
+    assert "needs no-such-program, which this machine has not" in fault
+
+
 def test_a_figure_that_no_command_draws_is_told(tmp_path: Path) -> None:
     _, missing = with_figures("o.md", "![Nothing](none.svg)", tmp_path, tmp_path / "site")
     assert missing == ["none.svg"]

@@ -47,7 +47,11 @@ def told_otherwise(page: str, folder: Path) -> str:
     run = started if OWN_ENGINE in page else ran
     faults = []
     for command, shown, code in commands(page):
-        done = run(words(command), folder)
+        try:
+            done = run(words(command), folder)
+        except FileNotFoundError as missing:
+            faults.append(f"$ {command}\nneeds {missing.filename}, which this machine has not")
+            continue
         printed = [line.rstrip() for line in done.stdout.splitlines()]
         fault = follows([line.rstrip() for line in shown], printed)
         if done.returncode != code or fault:
