@@ -5,6 +5,7 @@
 #   make report       run the shipped study into out/, with its page, figures and summary
 #   make hard         hard cases, graded, into out/hard
 #   make slow         the long checks that `make test` leaves out
+#   make docs         build the documentation into out/docs: every example run, every link checked
 #   make benchmarks   speed of the reference, of logging and of free motion, as ratios
 #   make models       write the MJCF files in models/canonical/ anew
 #   make format       format the code
@@ -14,7 +15,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: verify test lint pytest browser report hard slow benchmarks models format clean
+.PHONY: verify test lint pytest browser report hard slow docs benchmarks models format clean
 
 verify: $(VENV)/crankcheck
 	$(BIN)/crankcheck verify
@@ -58,6 +59,9 @@ hard: $(VENV)/crankcheck
 slow: $(VENV)/test
 	$(BIN)/python -m pytest -q -n 2 --dist worksteal -m slow $(PYTEST)
 
+docs: $(VENV)/docs
+	$(BIN)/python -m docs.site
+
 benchmarks: $(VENV)/benchmark
 	$(BIN)/python benchmarks/reference.py
 	$(BIN)/python benchmarks/forces.py
@@ -90,6 +94,10 @@ $(VENV)/crankcheck: pyproject.toml constraints.txt | $(BIN)/python
 
 $(VENV)/test: $(VENV)/crankcheck
 	$(PIP) install --constraint constraints.txt --group test
+	touch $@
+
+$(VENV)/docs: $(VENV)/crankcheck
+	$(PIP) install --constraint constraints.txt --group docs
 	touch $@
 
 $(VENV)/benchmark: $(VENV)/crankcheck
