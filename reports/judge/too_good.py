@@ -33,9 +33,9 @@ WHOLE = ("total", "geometric")
 ROUNDING = sys.float_info.epsilon
 """A rate that is off by this share of its scale, at most, is the next number or the same."""
 
-STIFFER = 2
-"""By so many orders of the step gaps may be smaller where nothing drives: MuJoCo's loops, as tuned
-for that, hardly give way, and what its steps of fourth order leave of them is all that is seen."""
+ORDER_LET_GO = 4
+"""Of what is let go, where an engine's loops need not give way, and all of its errors may be those
+of its steps: of MuJoCo's RK4."""
 BENT = ("deflection", "segments")
 SAME_BEND = 1e-11
 """Of the largest deflection: rounding; the nearest engine was off by 5e-7."""
@@ -51,10 +51,15 @@ def too_good(errors: Errors, placing: Placing, order: int) -> list[Error]:
     return sorted([*found, *_bent_the_same(errors)], key=lambda row: row.pure)
 
 
+def highest_order(errors: Errors, order: int) -> int:
+    """Of the step, what an engine of some ``order`` may be off by."""
+    return order if errors.free is None else max(order, ORDER_LET_GO)
+
+
 def _nearer(errors: Errors, order: int) -> Iterator[Error]:
     """Errors that no step of that size leaves of what is integrated; of gaps the widest alone, as
     an engine may hold some of its joints exactly."""
-    least = LEAST * errors.step_rad**order
+    least = LEAST * errors.step_rad ** highest_order(errors, order)
     for row in errors.rows:
         body = row.body_kind, row.body
         place = row.quantity in PLACES
@@ -67,9 +72,8 @@ def _nearer(errors: Errors, order: int) -> Iterator[Error]:
             yield row
     gap = largest(row for row in errors.rows if row.quantity in named("closure"))
     borne = largest(row for row in errors.rows if row.quantity in FORCES)
-    closed = least if errors.free is None else LEAST * errors.step_rad ** (order + STIFFER)
-    for widest, leaves in ((gap, closed), (borne, least)):
-        if widest and widest.pure <= leaves * max(errors.uneven.values(), default=-1):
+    for widest in (gap, borne):
+        if widest and widest.pure <= least * max(errors.uneven.values(), default=-1):
             yield widest
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from reports.compare.errors import Errors
 from reports.judge.rules.rule import Evidence, Finding, measure
-from reports.judge.too_good import too_good
+from reports.judge.too_good import highest_order, too_good
 from reports.quantities import named
 
 LEAST_SAMPLES = 8
@@ -51,7 +51,7 @@ class TwoComputations:
         first = found[0]
         bodies = ", ".join(dict.fromkeys(f"{row.body_kind} {row.body}" for row in found))
         why = (
-            f"what is integrated is off by step^{order}"
+            f"what is integrated is off by step^{highest_order(errors, order)}"
             if placing == "integrated"
             else "rates are rounded in another way where they are worked out apart"
         )
