@@ -1,4 +1,4 @@
-"""Sweeps in the process of the tests, where nothing that is tested ends or slows another one."""
+"""Runs in the process of the tests, where it is not tested that they may end or hang another."""
 
 from __future__ import annotations
 
@@ -11,6 +11,15 @@ import pytest
 from reports.workers.isolated import Limits
 
 Answer = TypeVar("Answer")
+STARTED_IN = (
+    "advise.prices",
+    "stability.running",
+    "sweep.running",
+    "tune.attempt",
+    "tune.timing",
+    "workers.scheduler",
+)
+"""The modules that start children."""
 
 
 class Here(Generic[Answer]):
@@ -30,9 +39,9 @@ class Here(Generic[Answer]):
 
 @contextmanager
 def in_this_process() -> Iterator[pytest.MonkeyPatch]:
-    """Cells of sweeps are run and timed here, with ``jobs=1``; ends with the block, as other tests
-    need children that may die."""
+    """Cells are run and timed here, with one job: no child has to start, and each truth is found
+    once. Ends with the block, as other tests need children that may die."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.workers.scheduler.Isolated", Here)
-        patch.setattr("reports.sweep.running.Isolated", Here)
+        for name in STARTED_IN:
+            patch.setattr(f"reports.{name}.Isolated", Here)
         yield patch
