@@ -109,9 +109,9 @@ def test_a_single_value_has_a_limit_of_its_time(crank: Crank) -> None:
 
 
 def test_a_value_that_is_held_ends_with_0_and_one_that_is_not_with_1(crank: Crank) -> None:
-    held = crank(*LINE, "--at", "1e-3")
+    with in_this_process():
+        held, lost = (crank(*LINE, "--at", value) for value in ("1e-3", "1e-6"))
     assert (held.exit_code, "ok" in held.stdout) == (0, True)
-    lost = crank(*LINE, "--at", "1e-6")
     assert (lost.exit_code, "branch-changed" in lost.stdout) == (1, True)
     assert "driver 18" in lost.stdout
 
