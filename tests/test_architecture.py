@@ -101,18 +101,24 @@ def name_of(path: Path, root: Path = ROOT) -> str:
     return ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
 
 
+def nodes(path: Path) -> list[ast.AST]:
+    """All of a file's syntax: it is looked through several times."""
+    return list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+
+
 def imports(path: Path, root: Path = ROOT) -> Iterator[Import]:
     """What a file imports, also inside functions."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    every = nodes(path)
     late = {
         id(inner)
-        for node in ast.walk(tree)
+        for node in every
         if isinstance(node, ast.FunctionDef | ast.Lambda)
         or (isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test))
         for inner in ast.walk(node)
+        if isinstance(inner, ast.Import | ast.ImportFrom)
     }
     by = name_of(path, root)
-    for node in ast.walk(tree):
+    for node in every:
         if isinstance(node, ast.Import):
             yield from (Import(by, alias.name, id(node) in late) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -220,9 +226,9 @@ def strangers(found: list[Import]) -> list[str]:
 
 def words(path: Path) -> Iterator[tuple[int, str]]:
     """Identifiers and texts of a file with their lines, but for comments and docstrings."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    said = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-    for node in ast.walk(tree):
+    every = nodes(path)
+    said = {id(node.value) for node in every if isinstance(node, ast.Expr)}
+    for node in every:
         if id(node) not in said:
             fields = (getattr(node, name, None) for name in ("id", "attr", "arg", "name", "value"))
             for word in (getattr(node, "module", None), *fields):

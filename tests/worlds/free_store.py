@@ -9,6 +9,7 @@ from rich.console import Console
 
 from reports.cli.commands import sweep as command
 from reports.cli.measuring import SweepRequest
+from tests.worlds.in_process import in_this_process
 
 SCENE = "fourbar-swing"
 LASTS_S = 1.0
@@ -26,6 +27,8 @@ def filled(folder: Path) -> Path:
         free=True,
         dt_s="4e-3,2e-3",
         duration_s=LASTS_S,
+        jobs=1,
     )
-    command.sweep(asked, nowhere, nowhere)
+    with in_this_process():
+        command.sweep(asked, nowhere, nowhere)
     return folder

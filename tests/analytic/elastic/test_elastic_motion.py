@@ -51,8 +51,11 @@ def off(one: Motion, other: Motion) -> dict[str, float]:
     return found
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize(
+    "name", [*SHIPPED[:2], *(pytest.param(name, marks=pytest.mark.slow) for name in SHIPPED[2:])]
+)
 def test_the_reference_is_good_to_1e_8_of_the_deflection(name: str) -> None:
+    """The six-bar takes twice the time of both others together."""
     scene = load_scene(name)
     motion, time_s = driven(scene), times(scene)
     doubt, own = motion.doubt(time_s), motion.at(time_s)
@@ -67,12 +70,13 @@ def test_the_reference_is_good_to_1e_8_of_the_deflection(name: str) -> None:
     [
         (Polynomials(3, 1), "periodic"),
         (Polynomials(4, 2), "quasi-static"),
-        (Modes(3, 2), "periodic"),
         (Elements(1), "periodic"),
-        (Elements(2), "periodic"),
+        pytest.param(Modes(3, 2), "periodic", marks=pytest.mark.slow),
+        pytest.param(Elements(2), "periodic", marks=pytest.mark.slow),
     ],
 )
 def test_the_estimated_error_is_not_under_the_true_one(by: Discretisation, start: Shape) -> None:
+    """Two seconds each: left out are what falls off as polynomials do, and more elements."""
     scene = fourbar(axial_n=3e5)
     time_s = times(scene) if start == "periodic" else np.linspace(0.0, 0.2, 17)
     motion = replace(driven(scene, by, start), until_s=time_s[-1])

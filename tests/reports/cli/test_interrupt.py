@@ -66,17 +66,23 @@ def ended(
     return running.returncode, output, complaint
 
 
-@pytest.mark.parametrize("moment", [IMPORTS, FIRST_STARTS, SECOND_STARTS, FIRST_ANSWER])
+@pytest.mark.parametrize(
+    "moment",
+    [IMPORTS, SECOND_STARTS, FIRST_ANSWER, pytest.param(FIRST_STARTS, marks=pytest.mark.slow)],
+)
 def test_ctrl_c_ends_the_workers_with_one_line_and_nothing_written(
     programs: Start, tmp_path: Path, moment: Moment
 ) -> None:
+    """Where the first worker starts, SIGTERM comes below, which takes the same way."""
     code, output, complaint = ended(programs, tmp_path, GROUP, moment, times=4)
     assert complaint.splitlines() == ["crankcheck: interrupted"]
     assert (code, output) == (130, "")
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("moment", [FIRST_STARTS, FIRST_ANSWER])
+@pytest.mark.parametrize(
+    "moment", [FIRST_STARTS, pytest.param(FIRST_ANSWER, marks=pytest.mark.slow)]
+)
 def test_sigterm_ends_in_the_same_way(programs: Start, tmp_path: Path, moment: Moment) -> None:
     code, output, complaint = ended(programs, tmp_path, ALONE, moment, times=2)
     assert complaint.splitlines() == ["crankcheck: terminated"]

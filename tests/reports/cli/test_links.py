@@ -8,6 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from reports.cli import app
+from tests.worlds.in_process import in_this_process
 
 SHORT = "fourbar-lecture-1 --engine pymunk --profile tuned"
 VERIFY = f"verify {SHORT} --turns 0.2 --no-convergence"
@@ -33,7 +34,8 @@ COMMANDS = {
 
 
 def ran(line: str) -> int:
-    return CliRunner().invoke(app, line.split(), catch_exceptions=False).exit_code
+    with in_this_process():
+        return CliRunner().invoke(app, line.split(), catch_exceptions=False).exit_code
 
 
 @pytest.fixture(scope="module")

@@ -19,6 +19,7 @@ from reports.plan.free import scenes_of, under_control
 from reports.plan.grid import grid
 from reports.plan.study import load_study
 from reports.store.reader import read_store
+from tests.worlds.in_process import in_this_process
 
 STEPS = ["--engine", "mujoco", "--segments", "4", "--steps-per-turn", "720", "--turns", "1"]
 NAME, CONTROLLED = "fourbar-elastic", "fourbar-elastic-controlled"
@@ -26,7 +27,8 @@ NAME, CONTROLLED = "fourbar-elastic", "fourbar-elastic-controlled"
 
 def crankcheck(*words: object, code: int = 0) -> str:
     """The output of a command, with its lines as one."""
-    result = CliRunner().invoke(app, [str(word) for word in words], catch_exceptions=False)
+    with in_this_process():
+        result = CliRunner().invoke(app, [str(word) for word in words], catch_exceptions=False)
     assert result.exit_code == code, result.output
     return " ".join(result.output.split())
 

@@ -19,6 +19,7 @@ from reports.page.build import page, stability_page
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored, read_store
 from tests.reports.page import hard_runs
+from tests.worlds.in_process import in_this_process
 
 STUDY = """
 scenes = ["fourbar-lecture-1", "shaper"]
@@ -60,9 +61,9 @@ def small_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     study = folder / "study.toml"
     study.write_text(STUDY)
     nowhere = Console(file=StringIO())
-    with pytest.MonkeyPatch.context() as patch:
+    with in_this_process() as patch:
         patch.setattr("reports.sweep.running.ROUNDS", 2)  # the pages tell times, good or bad
-        command.sweep(SweepRequest(folder / "out", study=study), nowhere, nowhere)
+        command.sweep(SweepRequest(folder / "out", study=study, jobs=1), nowhere, nowhere)
     return folder / "out"
 
 

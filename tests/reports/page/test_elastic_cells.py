@@ -29,6 +29,7 @@ from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store
 from tests.reports.page.conftest import PHONE, WIDE, Opened
 from tests.reports.page.test_browser import OUT
+from tests.worlds.in_process import in_this_process
 
 SCENE = "fourbar-elastic"
 
@@ -45,8 +46,9 @@ def bent(tmp_path_factory: pytest.TempPathFactory) -> Stored:
         segments="3,4",
         steps_per_turn="720,1440",
         turns=1.0,
+        jobs=1,
     )
-    with pytest.MonkeyPatch.context() as patch:
+    with in_this_process() as patch:
         patch.setattr("reports.sweep.running.ROUNDS", 2)
         command.sweep(asked, nowhere, nowhere)
     return read_store(folder)

@@ -30,6 +30,7 @@ from tests.worlds.bare import (
     mujoco_error_of_geometry,
     pymunk_error,
 )
+from tests.worlds.in_process import in_this_process
 from tests.worlds.workshop import DISTURBANCE
 
 STUDY = """
@@ -88,9 +89,9 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Stored:
     study = folder.with_suffix(".toml")
     study.write_text(STUDY, encoding="utf-8")
     quiet = Console(quiet=True)
-    with pytest.MonkeyPatch.context() as patch:
+    with in_this_process() as patch:
         patch.setattr("reports.sweep.running.ROUNDS", 2)  # of what is promised no time is measured
-        assert sweep(SweepRequest(folder / "sweep", study=study), quiet, quiet) == 0
+        assert sweep(SweepRequest(folder / "sweep", study=study, jobs=1), quiet, quiet) == 0
     return read_store(folder / "sweep")
 
 

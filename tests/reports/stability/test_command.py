@@ -14,6 +14,7 @@ from typer.testing import CliRunner, Result
 from reports.cli import app
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.matrix import read_matrix
+from tests.worlds.in_process import in_this_process
 
 Crank = Callable[..., Result]
 LINE = ["stability", "grashof-excess", "--engine", "mujoco", "--profile", "tuned"]
@@ -35,7 +36,8 @@ def stored(crank: Crank, tmp_path_factory: pytest.TempPathFactory) -> tuple[Resu
     """A case in two profiles, printed and stored."""
     folder = tmp_path_factory.mktemp("matrix")
     args = ["stability", "grashof-excess", "wrong-branch", "--engine", "mujoco"]
-    return crank(*args, "-o", str(folder)), folder
+    with in_this_process():
+        return crank(*args, "-o", str(folder), "--jobs", "1"), folder
 
 
 def test_the_matrix_is_printed_with_critical_values(stored: tuple[Result, Path]) -> None:
@@ -82,8 +84,9 @@ def test_the_page_and_the_pictures_of_failures_are_written(stored: tuple[Result,
 def test_a_second_run_takes_the_place_of_the_first(
     stored: tuple[Result, Path], crank: Crank, tmp_path: Path
 ) -> None:
-    args = ["stability", "wrong-branch", "--engine", "pymunk", "-o", str(tmp_path)]
-    assert crank(*args).exit_code == crank(*args).exit_code == 0
+    args = ["stability", "wrong-branch", "--engine", "pymunk", "-o", str(tmp_path), "--jobs", "1"]
+    with in_this_process():
+        assert crank(*args).exit_code == crank(*args).exit_code == 0
     assert {run.engine for run in read_matrix(tmp_path).runs} == {"pymunk"}
 
 
@@ -106,9 +109,9 @@ def test_a_single_value_has_a_limit_of_its_time(crank: Crank) -> None:
 
 
 def test_a_value_that_is_held_ends_with_0_and_one_that_is_not_with_1(crank: Crank) -> None:
-    held = crank(*LINE, "--at", "1e-3")
+    with in_this_process():
+        held, lost = (crank(*LINE, "--at", value) for value in ("1e-3", "1e-6"))
     assert (held.exit_code, "ok" in held.stdout) == (0, True)
-    lost = crank(*LINE, "--at", "1e-6")
     assert (lost.exit_code, "branch-changed" in lost.stdout) == (1, True)
     assert "driver 18" in lost.stdout
 

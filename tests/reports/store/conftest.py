@@ -6,33 +6,16 @@ import shutil
 from collections.abc import Callable
 from io import StringIO
 from pathlib import Path
-from typing import Generic, TypeVar
 
 import pytest
 from rich.console import Console
 
 from reports.cli.commands.sweep import sweep
 from reports.cli.measuring import SweepRequest
-from reports.workers.isolated import Limits
+from tests.worlds.in_process import in_this_process
 
 SCENE = "fourbar-lecture-1"
 Sweep = Callable[..., int]
-Answer = TypeVar("Answer")
-
-
-class Here(Generic[Answer]):
-    """Calls a function where others would start a process for it."""
-
-    closed = False
-
-    def __init__(self, limits: Limits) -> None:
-        self.limits = limits
-
-    def call(self, function: Callable[..., Answer], *arguments: object) -> Answer:
-        return function(*arguments)
-
-    def close(self) -> None:
-        """There is nothing to end."""
 
 
 @pytest.fixture(scope="session")
@@ -50,11 +33,11 @@ def swept() -> Sweep:
             jobs=1,
             timing=timing,
         )
-        with pytest.MonkeyPatch.context() as patch:  # other tests need children that may die
-            patch.setattr("reports.workers.scheduler.Isolated", Here)
-            patch.setattr("reports.sweep.running.Isolated", Here)
+        with in_this_process() as patch:
             patch.setattr("reports.sweep.measured.REPEAT_S", 1e-5)  # nobody compares these times
             patch.setattr("reports.sweep.measured.LEAST_TIMED", 5)
+            # A part for each sweep, however busy the machine is.
+            patch.setattr("reports.store.writer.EVERY_S", 600.0)
             return sweep(asked, nowhere, nowhere)
 
     return run

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import re
 import sys
@@ -21,6 +22,7 @@ from reports.cli.measuring import TuneRequest
 from sim.mujoco.knobs import EVALUATIONS
 from sim.tuning import Knob, search_space
 from tests.worlds.command import PYTHON, script
+from tests.worlds.in_process import in_this_process
 from tests.worlds.programs import Start
 from tests.worlds.workshop import mujoco_disturbance
 
@@ -28,11 +30,13 @@ SMALL = TuneRequest(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, ti
 Tell = Callable[[TuneRequest], tuple[int, str]]
 
 
-def told(request: TuneRequest) -> tuple[int, str]:
-    """Exit code and output, but for the time of day."""
+def told(request: TuneRequest, *, apart: bool = False) -> tuple[int, str]:
+    """Exit code and output, but for the time of day; of runs in a process ``apart``, which the
+    clock may end, or in this one."""
     output = io.StringIO()
     quiet = Console(file=io.StringIO())
-    code = run_tune(request, Console(file=output, width=100), quiet)
+    with contextlib.nullcontext() if apart else in_this_process():
+        code = run_tune(request, Console(file=output, width=100), quiet)
     return code, "\n".join(line for line in output.getvalue().splitlines() if "made" not in line)
 
 
@@ -154,7 +158,7 @@ def test_what_the_clock_ended_is_told_and_not_kept(tmp_path: Path) -> None:
     path = tmp_path / "kept.db"
     request = replace(SMALL, budget=2, limit_s=1e-4, output=path)
     for _ in range(2):
-        code, text = told(request)
+        code, text = told(request, apart=True)
         assert code == 1
         assert "The clock ended 2 of what was tried (--limit-s 0.0001)" in " ".join(text.split())
     study = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
@@ -187,7 +191,7 @@ def test_several_scenes_are_tuned_together() -> None:
 
 
 def test_measured_cost_is_told_beside_that_of_the_profile() -> None:
-    code, text = told(replace(SMALL, timing=True, budget=1))
+    code, text = told(replace(SMALL, timing=True, budget=1), apart=True)
     assert code == 0
     assert len(line(text, "us per step")) == len(line(text, "ms per turn")) == 2
     assert "cost of a turn, found over profile tuned: " in text

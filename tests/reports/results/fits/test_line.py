@@ -223,7 +223,7 @@ def test_the_stated_uncertainty_of_a_floor_holds_two_times_in_three(count: int) 
 @pytest.mark.parametrize("order", [1.0, 2.0])
 @pytest.mark.parametrize(
     "alignment",
-    [-0.6, *(pytest.param(each, marks=pytest.mark.slow) for each in (0.0, 0.6)), 0.3, 1.0],
+    [-0.6, *(pytest.param(each, marks=pytest.mark.slow) for each in (0.0, 0.3, 0.6)), 1.0],
 )
 def test_it_holds_two_times_in_three_however_floor_and_step_are_aligned(
     alignment: float, order: float
