@@ -24,6 +24,11 @@ OVERLINED = re.compile(r'<mover>((?:(?!<mover>).)*?)<mo accent="true">&#x02015;<
 """A length such as AB: that bar does not stretch, and browsers draw a border in its place."""
 
 
+FENCE = re.compile(r"(?:\\left|\\right)?\\([lr])vert(?![A-Za-z])")
+SIDES = {"l": r"\left|", "r": r"\right|"}
+"""Bars about a size: only in pairs of these are they fences, else the sign of "divides"."""
+
+
 class FormulaError(Exception):
     """LaTeX that there is no MathML for."""
 
@@ -57,6 +62,7 @@ class Formulas(Extension):
 def mathml(latex: str, display: str = "inline") -> str:
     """The MathML of a formula. Raises FormulaError, with the formula, where a part is not known."""
     known = latex.strip().replace("{aligned}", "{align*}")
+    known = FENCE.sub(lambda bar: SIDES[bar[1]], known)
     try:
         told = convert(known, display=display)
     except Exception as fault:  # of no common kind
