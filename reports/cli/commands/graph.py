@@ -12,13 +12,13 @@ from models.files import find_scene, load_scene
 from reports.cli.commands.sheets import ENDINGS, save_sheet
 from reports.cli.graph_sheets import GraphRequest
 from reports.output.write import check_file
-from reports.sheets.graph_drawing import DrawnGraphs, drawn_graphs
-from reports.sheets.graph_log import graph_log
-from reports.sheets.graph_orders import GraphErrors, graph_errors, show_errors, told_floor
-from reports.sheets.graph_orders_sheet import draw_errors
-from reports.sheets.graph_page import draw_graphs, laid_out
-from reports.sheets.graph_range import OVERS, Over, over_period
-from reports.sheets.graph_words import show_graphs, tell, told_errors, told_log
+from reports.sheets.graphs.graph_drawing import DrawnGraphs, drawn_graphs
+from reports.sheets.graphs.graph_log import graph_log
+from reports.sheets.graphs.graph_orders import GraphErrors, graph_errors, show_errors, told_floor
+from reports.sheets.graphs.graph_orders_sheet import draw_errors
+from reports.sheets.graphs.graph_page import draw_graphs, laid_out
+from reports.sheets.graphs.graph_range import OVERS, Over, over_period
+from reports.sheets.graphs.graph_words import show_graphs, tell, told_errors, told_log
 from reports.sheets.paper import Paper
 from reports.sheets.sheet_note import sheet_note
 

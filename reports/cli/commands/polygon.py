@@ -12,13 +12,19 @@ from models.scene import Scene
 from reports.cli.drawing_polygons import PolygonRequest
 from reports.logs.map_file import Map, read_map
 from reports.output.write import check_file, write
-from reports.sheets.logged_instant import LoggedInstant, LogInstants
 from reports.sheets.paper import Paper
-from reports.sheets.polygon_files import ANIMATED, ENDINGS, PAGE, polygon_file, turning_file
-from reports.sheets.polygon_instant import AT_DEG, placed_at_angle, placed_at_time
-from reports.sheets.polygon_listing import show_polygons
-from reports.sheets.polygon_sheet import PolygonSheet, laid_out
-from reports.sheets.polygon_words import doubts
+from reports.sheets.polygons.logged_instant import LoggedInstant, LogInstants
+from reports.sheets.polygons.polygon_files import (
+    ANIMATED,
+    ENDINGS,
+    PAGE,
+    polygon_file,
+    turning_file,
+)
+from reports.sheets.polygons.polygon_instant import AT_DEG, placed_at_angle, placed_at_time
+from reports.sheets.polygons.polygon_listing import show_polygons
+from reports.sheets.polygons.polygon_sheet import PolygonSheet, laid_out
+from reports.sheets.polygons.polygon_words import doubts
 
 MOST_K = 1e3
 
@@ -38,7 +44,9 @@ def run_polygon(request: PolygonRequest, console: Console) -> int:
     ending = request.output.suffix.lower()
     steady = request.omega is not None
     if ending == PAGE:
-        from reports.sheets.polygon_page import polygon_page  # the page's machinery, for it alone
+        from reports.sheets.polygons.polygon_page import (
+            polygon_page,  # the page's machinery, for it alone
+        )
 
         raw: str | bytes = polygon_page(placement, steady=steady)
     else:

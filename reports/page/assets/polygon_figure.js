@@ -1,5 +1,5 @@
 "use strict";
-// A vector polygon at an instant: what `reports.sheets.polygon_page` writes, drawn up to a step.
+// A vector polygon at an instant: what `reports.sheets.polygons.polygon_page` writes, drawn up to a step.
 
 crankcheck.polygonFigure = (element, polygon) => {
   const { svg, unpacked } = crankcheck;

@@ -7,8 +7,8 @@ from pathlib import Path
 from playwright.sync_api import Browser
 
 from models.files import load_scene
-from reports.sheets.polygon_instant import placed_at_time
-from reports.sheets.polygon_page import polygon_page
+from reports.sheets.polygons.polygon_instant import placed_at_time
+from reports.sheets.polygons.polygon_page import polygon_page
 from tests.reports.page.conftest import Opened
 
 

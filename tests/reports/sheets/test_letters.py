@@ -18,7 +18,7 @@ from reports.sheets.canvas import Canvas, line, text
 from reports.sheets.centre_sheet import centres_of, draw_centres
 from reports.sheets.letters import Letter, write_letters
 from reports.sheets.paper import Box, Paper
-from reports.sheets.polygon_sheet import draw_sheet, laid_out
+from reports.sheets.polygons.polygon_sheet import draw_sheet, laid_out
 from reports.sheets.position_sheet import draw_positions, positions
 from tests.reports.sheets.overlaps import overlaps
 

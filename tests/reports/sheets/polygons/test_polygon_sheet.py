@@ -17,8 +17,8 @@ from analytic.kinematics import solve_driven
 from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.sheets.paper import Paper
-from reports.sheets.polygon_files import polygon_file, turning_file
-from reports.sheets.polygon_sheet import PolygonSheet, draw_sheet, laid_out
+from reports.sheets.polygons.polygon_files import polygon_file, turning_file
+from reports.sheets.polygons.polygon_sheet import PolygonSheet, draw_sheet, laid_out
 
 MM_PER_POINT = 25.4 / 72.0
 TENTH_MM = 0.1

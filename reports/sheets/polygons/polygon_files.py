@@ -9,8 +9,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from reports.sheets.polygon_course import PolygonCourse
-from reports.sheets.polygon_sheet import PolygonSheet, draw_sheet, over_positions
+from reports.sheets.polygons.polygon_course import PolygonCourse
+from reports.sheets.polygons.polygon_sheet import PolygonSheet, draw_sheet, over_positions
 from reports.sheets.sheet_note import sheet_note
 
 ANIMATED, PAGE = ".gif", ".html"

@@ -10,8 +10,8 @@ from models.array import Array
 from models.errors import harmless
 from reports.output.columns import plain_table
 from reports.output.numbers import listed
-from reports.sheets.graph_drawing import READ, DrawnGraphs
-from reports.sheets.graph_table import degrees, numbers, written
+from reports.sheets.graphs.graph_drawing import READ, DrawnGraphs
+from reports.sheets.graphs.graph_table import degrees, numbers, written
 
 NOTHING = 1e-9
 """What is off by a smaller share is rounding."""

@@ -20,9 +20,9 @@ from reports.output.numbers import count
 from reports.output.provenance import crankcheck_version
 from reports.page.build import Head, assembled
 from reports.page.sections.section import Section
-from reports.sheets.polygon_course import PolygonCourse
-from reports.sheets.polygon_letters import POLES, lower_case
-from reports.sheets.polygon_words import drawn_links
+from reports.sheets.polygons.polygon_course import PolygonCourse
+from reports.sheets.polygons.polygon_letters import POLES, lower_case
+from reports.sheets.polygons.polygon_words import drawn_links
 
 INSTANTS, MOST = 181, 721
 """Over the turn, both ends included; and at most of a free motion."""

@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from models.errors import CrankcheckError
 from reports.figures.style import QUIET, SIZE, logarithmic, styled
 from reports.sheets.canvas import Canvas
-from reports.sheets.graph_lines import DRAWN, LOGGED, RAY
-from reports.sheets.graph_orders import GraphErrors, order_words
-from reports.sheets.graph_words import NOTHING
+from reports.sheets.graphs.graph_lines import DRAWN, LOGGED, RAY
+from reports.sheets.graphs.graph_orders import GraphErrors, order_words
+from reports.sheets.graphs.graph_words import NOTHING
 from reports.sheets.paper import Paper
 from reports.sheets.sheet_frame import inner_box, write_head
 

@@ -15,9 +15,9 @@ from models.array import Array
 from models.errors import harmless
 from reports.output.columns import plain_table
 from reports.output.numbers import readable
-from reports.sheets.polygon_on_paper import DrawnPolygon
-from reports.sheets.polygon_sheet import PolygonSheet
-from reports.sheets.polygon_words import at_rest, doubts, drawn_links, image_words
+from reports.sheets.polygons.polygon_on_paper import DrawnPolygon
+from reports.sheets.polygons.polygon_sheet import PolygonSheet
+from reports.sheets.polygons.polygon_words import at_rest, doubts, drawn_links, image_words
 
 
 def show_polygons(console: Console, sheet: PolygonSheet) -> None:

@@ -15,12 +15,12 @@ from analytic.drawings.graphical import METHODS, Method
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
-from reports.sheets.graph_drawing import drawn_graphs
-from reports.sheets.graph_page import caption, draw_graphs, laid_out
-from reports.sheets.graph_range import Over, over_period
-from reports.sheets.graph_scales import POLES_MM, graph_scales
-from reports.sheets.graph_sheet import GraphSheet
-from reports.sheets.graph_table import table_cells
+from reports.sheets.graphs.graph_drawing import drawn_graphs
+from reports.sheets.graphs.graph_page import caption, draw_graphs, laid_out
+from reports.sheets.graphs.graph_range import Over, over_period
+from reports.sheets.graphs.graph_scales import POLES_MM, graph_scales
+from reports.sheets.graphs.graph_sheet import GraphSheet
+from reports.sheets.graphs.graph_table import table_cells
 from reports.sheets.paper import Paper
 
 SVG = "{http://www.w3.org/2000/svg}"

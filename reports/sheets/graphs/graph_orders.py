@@ -11,10 +11,10 @@ from rich.console import Console
 from analytic.drawings.graphical import Method
 from reports.output.columns import plain_table
 from reports.results.fits.curves import straight
-from reports.sheets.graph_drawing import DrawnGraphs, drawn_graphs
-from reports.sheets.graph_log import GraphLog
-from reports.sheets.graph_range import Range
-from reports.sheets.graph_words import NOTHING, share
+from reports.sheets.graphs.graph_drawing import DrawnGraphs, drawn_graphs
+from reports.sheets.graphs.graph_log import GraphLog
+from reports.sheets.graphs.graph_range import Range
+from reports.sheets.graphs.graph_words import NOTHING, share
 
 LEAST_FALL = 2
 """Errors above rounding that an order takes."""

@@ -20,8 +20,8 @@ import numpy as np
 from analytic.drawings.graphical import ORDERS, Order
 from models.array import Array
 from models.errors import CrankcheckError
-from reports.sheets.graph_drawing import READ, DrawnGraphs
-from reports.sheets.graph_scales import graph_scales
+from reports.sheets.graphs.graph_drawing import READ, DrawnGraphs
+from reports.sheets.graphs.graph_scales import graph_scales
 from reports.sheets.paper import Box, Paper
 from reports.sheets.sheet_frame import inner_box
 

@@ -9,7 +9,7 @@ from analytic.drawings.drawn_polygons import polygons_of
 from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.drawing.true_motion import true_motion
-from reports.sheets.polygon_instant import placed_at_angle, placed_at_time
+from reports.sheets.polygons.polygon_instant import placed_at_angle, placed_at_time
 
 
 @pytest.mark.parametrize(

@@ -16,12 +16,12 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.figures.style import styled
-from reports.sheets.graph_drawing import DrawnGraphs, drawn_graphs
-from reports.sheets.graph_log import graph_log
-from reports.sheets.graph_orders import graph_errors
-from reports.sheets.graph_page import draw_graphs, laid_out
-from reports.sheets.graph_range import over_period
-from reports.sheets.graph_words import told_log
+from reports.sheets.graphs.graph_drawing import DrawnGraphs, drawn_graphs
+from reports.sheets.graphs.graph_log import graph_log
+from reports.sheets.graphs.graph_orders import graph_errors
+from reports.sheets.graphs.graph_page import draw_graphs, laid_out
+from reports.sheets.graphs.graph_range import over_period
+from reports.sheets.graphs.graph_words import told_log
 from reports.sheets.paper import Paper
 
 LECTURE = load_scene("fourbar-lecture-1")

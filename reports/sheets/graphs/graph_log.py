@@ -17,7 +17,7 @@ from reports.logs.channel import OwnLog, Reading
 from reports.logs.columns import read_columns
 from reports.logs.map_file import Map, read_map
 from reports.logs.meanings import understood, wanted
-from reports.sheets.graph_range import Range
+from reports.sheets.graphs.graph_range import Range
 
 BESIDE = 4
 """Rows on both sides of the period that the spline goes through as well."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.drawings.graphical import Method, Order, ThreeGraphs, three_graphs
-from reports.sheets.graph_log import GraphLog, needed
-from reports.sheets.graph_range import Range
+from reports.sheets.graphs.graph_log import GraphLog, needed
+from reports.sheets.graphs.graph_range import Range
 
 READ: dict[Method, Order] = {"chords": 0, "tangents": 0, "integration": 2}
 """Of which order readings are drawn from."""

@@ -12,8 +12,8 @@ from analytic.drawings.polygon import Polygon, Vector
 from analytic.drawings.similarity import POINT
 from models.array import Array
 from models.errors import CrankcheckError
-from reports.sheets.magnified_errors import MagnifiedErrors, outline
 from reports.sheets.paper import Box
+from reports.sheets.polygons.magnified_errors import MagnifiedErrors, outline
 
 PADDING_MM = 9.0
 """Room for letters around a polygon."""

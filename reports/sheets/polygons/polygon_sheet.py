@@ -29,13 +29,13 @@ from reports.figures.style import QUIET, SMALL, TINY, cut
 from reports.output.numbers import readable
 from reports.sheets.canvas import Canvas, text
 from reports.sheets.letters import Letter, write_letters
-from reports.sheets.logged_instant import LoggedInstant
-from reports.sheets.magnified_errors import LOGGED, STAR, MagnifiedErrors, draw_errors
 from reports.sheets.paper import MM_PER_IN, Box, Paper
-from reports.sheets.polygon_drawing import draw_polygon
-from reports.sheets.polygon_on_paper import DrawnPolygon, fitted, frame_of
-from reports.sheets.polygon_table import draw_table, link_rows, vector_rows
-from reports.sheets.polygon_words import at_rest, doubts
+from reports.sheets.polygons.logged_instant import LoggedInstant
+from reports.sheets.polygons.magnified_errors import LOGGED, STAR, MagnifiedErrors, draw_errors
+from reports.sheets.polygons.polygon_drawing import draw_polygon
+from reports.sheets.polygons.polygon_on_paper import DrawnPolygon, fitted, frame_of
+from reports.sheets.polygons.polygon_table import draw_table, link_rows, vector_rows
+from reports.sheets.polygons.polygon_words import at_rest, doubts
 from reports.sheets.scheme import draw_scheme, point_letters
 from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 

@@ -11,10 +11,10 @@ from analytic.drawings.polygon import Polygon, Vector
 from analytic.drawings.vector_equation import Kind
 from reports.figures.style import INK, TINY, width_in
 from reports.sheets.canvas import Canvas, arrow, line, text
-from reports.sheets.magnified_errors import draw_errors
 from reports.sheets.paper import MM_PER_IN, Box
-from reports.sheets.polygon_letters import write_images
-from reports.sheets.polygon_on_paper import DrawnPolygon, crossing_line, image_lines
+from reports.sheets.polygons.magnified_errors import draw_errors
+from reports.sheets.polygons.polygon_letters import write_images
+from reports.sheets.polygons.polygon_on_paper import DrawnPolygon, crossing_line, image_lines
 
 COLOURS: dict[Kind, str] = {
     "whole": INK,

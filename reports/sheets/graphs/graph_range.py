@@ -22,7 +22,7 @@ from models.laws import ConstantSpeed, Oscillating
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.sheets.graph_quantity import Quantity, quantity_of
+from reports.sheets.graphs.graph_quantity import Quantity, quantity_of
 
 Over = Literal["time", "angle"]
 OVERS: tuple[Over, ...] = get_args(Over)

@@ -14,8 +14,8 @@ from analytic.drawings.paper_scale import round_scale
 from reports.figures.style import INK, QUIET, SMALL, TINY, cut, width_in
 from reports.output.numbers import readable
 from reports.sheets.canvas import Canvas, line, text
-from reports.sheets.graph_drawing import READ
-from reports.sheets.graph_sheet import CAPTION_MM, GraphSheet, Panel
+from reports.sheets.graphs.graph_drawing import READ
+from reports.sheets.graphs.graph_sheet import CAPTION_MM, GraphSheet, Panel
 from reports.sheets.paper import MM_PER_IN
 
 EXACT, DRAWN, RAY, LOGGED, FAINT = "#a3adb8", "#2e6f9e", "#b7791f", "#b23a48", "#e6e6e6"

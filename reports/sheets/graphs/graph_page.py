@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from reports.figures.style import LARGE, QUIET, TINY, cut, width_in
 from reports.output.numbers import readable
 from reports.sheets.canvas import Canvas, line, text
-from reports.sheets.graph_drawing import READ, DrawnGraphs
-from reports.sheets.graph_lines import (
+from reports.sheets.graphs.graph_drawing import READ, DrawnGraphs
+from reports.sheets.graphs.graph_lines import (
     DASHED,
     DRAWN,
     EXACT,
@@ -23,9 +23,9 @@ from reports.sheets.graph_lines import (
     draw_own_rates,
     draw_rays,
 )
-from reports.sheets.graph_sheet import GraphSheet, Panel, graph_sheet
-from reports.sheets.graph_table import draw_table, table_width_mm
-from reports.sheets.graph_words import own_rates_off, share
+from reports.sheets.graphs.graph_sheet import GraphSheet, Panel, graph_sheet
+from reports.sheets.graphs.graph_table import draw_table, table_width_mm
+from reports.sheets.graphs.graph_words import own_rates_off, share
 from reports.sheets.paper import MM_PER_IN, Paper
 from reports.sheets.sheet_frame import write_head
 

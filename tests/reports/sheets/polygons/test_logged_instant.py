@@ -17,9 +17,9 @@ from models.files import load_scene
 from models.motion import Motion
 from reports.logs.map_file import Map
 from reports.logs.of_motion import log_of_motion
-from reports.sheets.logged_instant import DIFFERENCED, REPORTED, LoggedInstant, LogInstants
 from reports.sheets.paper import Paper
-from reports.sheets.polygon_sheet import PolygonSheet, draw_sheet, laid_out
+from reports.sheets.polygons.logged_instant import DIFFERENCED, REPORTED, LoggedInstant, LogInstants
+from reports.sheets.polygons.polygon_sheet import PolygonSheet, draw_sheet, laid_out
 
 SCENE = load_scene("fourbar-lecture-1")
 ROWS, STEP_S = 720, math.tau / 10.0 / 360

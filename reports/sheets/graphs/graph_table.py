@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from models.array import Array
 from reports.figures.style import INK, QUIET, TINY, width_in
 from reports.sheets.canvas import line, text
-from reports.sheets.graph_drawing import READ, DrawnGraphs
+from reports.sheets.graphs.graph_drawing import READ, DrawnGraphs
 from reports.sheets.paper import MM_PER_IN, Box
 
 ROW_MM = 2.55

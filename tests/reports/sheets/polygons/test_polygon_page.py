@@ -13,8 +13,8 @@ from analytic.drawings.drawn_polygons import draw_polygons
 from analytic.drawings.placed_mechanism import DriverState, PlacedMechanism
 from models.errors import CrankcheckError
 from models.files import load_scene
-from reports.sheets.polygon_instant import placed_at_angle
-from reports.sheets.polygon_page import INSTANTS, polygon_page
+from reports.sheets.polygons.polygon_instant import placed_at_angle
+from reports.sheets.polygons.polygon_page import INSTANTS, polygon_page
 
 
 def embedded(page: str) -> dict:

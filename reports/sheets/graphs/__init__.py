@@ -1,0 +1,1 @@
+"""Sheets of graphs: differentiated and integrated with ruler and pole."""
