@@ -13,7 +13,14 @@ from dataclasses import dataclass
 from typing import Literal
 
 Trend = Literal[
-    "shrinks", "levels off", "does not shrink", "grows", "at rounding", "as the truth", "diverges"
+    "shrinks",
+    "levels off",
+    "does not shrink",
+    "grows",
+    "at rounding",
+    "as solved",
+    "as the truth",
+    "diverges",
 ]
 
 AT_ROUNDING = 1e-11
@@ -74,7 +81,7 @@ def convergence(
     Where errors of several kinds may cancel at one of the steps, as those of a phase, a floor is
     one only where the last halving leaves most of the error. An error up to ``known`` is no
     engine's: the truth itself, or what it is compared with. One up to ``solved`` that does not
-    shrink is what the engine's solver rounds.
+    shrink is as near as the engine solves its joints.
 
     Raises
     ------
@@ -86,8 +93,11 @@ def convergence(
     first, second, third = error
     trend, order, floor = _read(first, second, third, rounding)
     if trend in ("grows", "does not shrink") and max(second, third) <= solved:
-        trend, order, floor = "at rounding", math.nan, math.nan
-    if trend not in ("at rounding", "diverges", "grows") and max(second, third) <= known:
+        trend, order, floor = "as solved", math.nan, math.nan
+    if (
+        trend not in ("at rounding", "as solved", "diverges", "grows")
+        and max(second, third) <= known
+    ):
         trend, order, floor = "as the truth", math.nan, math.nan
     elif trend == "levels off" and floor <= known:
         trend, floor = "shrinks", math.nan

@@ -33,20 +33,19 @@ RANGES = {
     "flywheel_ratio": (1.0, 1e15),
     "servo_gain": (1e-9, 1e15),
     "free_timeconst_steps": (0.0, 1e9),
-    "free_inverse_weights": (1e-12, 1.0),
+    "free_inverse_weight_share": (1e-12, 1.0),
 }
 """What MuJoCo takes; it clips impedances to these without a word."""
-MORE_ITERATIONS = {"friction": 20, "springs": 20, "free_weights": 4}
+MORE_ITERATIONS = {"friction": 20, "springs": 20, "free_weight_share": 4}
 """What causes need more iterations than pins as stiff as the compiled weights make them."""
 OF_DRIVES = ("flywheel_ratio", "servo_gain", "servo_integrator")
 """What a free crank does not have."""
-OF_FREE = ("free_timeconst_steps", "free_inverse_weights")
+OF_FREE = ("free_timeconst_steps", "free_inverse_weight_share")
 """What is given to a free crank alone."""
 
-FREE_STEPS, FREE_WEIGHTS = 32.0, 1e-8
+FREE_STEPS, FREE_WEIGHT_SHARE = 32.0, 1e-8
 """Time constant of the loop closures in steps, and the share of the bodies' inverse weights, where
-nothing drives. Weights of 1e-4, 1e-6, 1e-8 and time constants of 2 to 48 steps were run over 10 s
-of the shipped scenes at 1 ms: `docs/free.md` has what came of it."""
+nothing drives: `benchmarks/free_loops.py` shows what others come to."""
 
 AS_SHIPPED = Profile(
     "as-shipped",
@@ -72,7 +71,7 @@ AS_SHIPPED = Profile(
         "servo_gain": Setting(1e3, "of the drive `servo`, over inertia scale times peak speed"),
         "servo_integrator": Setting("Euler", "default; takes the place of integrator under servo"),
         "free_timeconst_steps": Setting(0.0, "not used: let go, loops close as they do driven"),
-        "free_inverse_weights": Setting(1.0, "default: mjModel.body_invweight0 as compiled"),
+        "free_inverse_weight_share": Setting(1.0, "default: mjModel.body_invweight0 as compiled"),
     },
 )
 TUNED = Profile(
@@ -113,8 +112,8 @@ TUNED = Profile(
             "takes the place of solref_timeconst_steps of what is let go: loops that do not give "
             "way need hardly be drawn back, and a gentle spring takes less from the energy",
         ),
-        "free_inverse_weights": Setting(
-            FREE_WEIGHTS,
+        "free_inverse_weight_share": Setting(
+            FREE_WEIGHT_SHARE,
             "of what is let go, body_invweight0 times this once compiled: how far loops give way "
             "goes with it, and solimp alone can not lower it under 0.01 %; no MJCF says it",
         ),
@@ -178,7 +177,11 @@ def _iterating(scene: Scene, settings: Settings, drive: Drive) -> str:
         return "friction"
     if scene.springs and integrator(settings, drive) == "discrete":
         return "springs"
-    return "free_weights" if drive == "free" and settings["free_inverse_weights"] != 1 else ""
+    return (
+        "free_weight_share"
+        if drive == "free" and settings["free_inverse_weight_share"] != 1
+        else ""
+    )
 
 
 def held_iterations(

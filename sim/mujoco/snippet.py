@@ -183,7 +183,7 @@ def _servo(complete: Settings) -> list[str]:
 
 def _free(complete: Settings) -> list[str]:
     """What starts the runs that were let go, and what no MJCF can say of them."""
-    share = _short(complete["free_inverse_weights"])
+    share = _short(complete["free_inverse_weight_share"])
     scaled = (
         f"Once compiled, model.body_invweight0[:] *= {share}, in a model with nothing else in it; "
         "else for the bodies of the mechanism alone: without it loops give way more, and with so "

@@ -75,6 +75,7 @@ class MujocoSpoiler:
             geom.solref, geom.solimp = own._model.eq_solref[0], own._model.eq_solimp[0]
         model = spec.compile()
         model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        model.body_invweight0[:] = own._model.body_invweight0  # lowered where nothing drives
         data = mujoco.MjData(model)
         data.qpos[:], data.qvel[:] = own._data.qpos, own._data.qvel
         mujoco.mj_forward(model, data)

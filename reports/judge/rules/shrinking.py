@@ -7,7 +7,7 @@ from dataclasses import replace
 from reports.judge.rules.rule import Evidence, Finding, Level
 from reports.judge.three_steps import Convergence
 
-FINE = ("shrinks", "at rounding", "as the truth")
+FINE = ("shrinks", "at rounding", "as solved", "as the truth")
 BAD = ("grows", "diverges")
 SOFT = 1e-4
 """What MuJoCo's stiffest documented impedance (0.9999) leaves open of a force."""

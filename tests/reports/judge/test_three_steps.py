@@ -90,3 +90,11 @@ def test_an_error_that_is_no_number_diverges(bad: float) -> None:
 def test_two_steps_are_not_enough_for_a_floor() -> None:
     with pytest.raises(ValueError, match="a floor needs three"):
         convergence((1e-3, 5e-4), (1e-3, 1e-3), "rad")
+
+
+@pytest.mark.parametrize(("solved", "trend"), [(4e-9, "as solved"), (2e-9, "grows")])
+def test_an_error_that_grows_is_the_solvers_only_as_far_as_that_goes(
+    solved: float, trend: str
+) -> None:
+    errors = (1e-9, 2e-10, 3e-9)
+    assert convergence((1e-3, 5e-4, 2.5e-4), errors, "rad", solved=solved).trend == trend
