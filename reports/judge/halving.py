@@ -29,7 +29,7 @@ to it what their sums may be off by (`reports.compare.drive_rounding`)."""
 MOST_GROWTH = 1e3
 """A sensitivity of free motion from which on errors of phase cancel and add up as they like, and
 say nothing of an order."""
-SOLVED = 1e-5
+SOLVED = 3e-4
 """An error of free motion that does not shrink, of so small a share of its limit, is no floor of a
 model: where joints are nearly dependent an engine's solver leaves as much at any step."""
 BEHIND_DRIVE = 5.0

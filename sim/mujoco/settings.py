@@ -43,7 +43,7 @@ OF_DRIVES = ("flywheel_ratio", "servo_gain", "servo_integrator")
 OF_FREE = ("free_timeconst_steps", "free_inverse_weight_share")
 """What is given to a free crank alone."""
 
-FREE_STEPS, FREE_WEIGHT_SHARE = 32.0, 1e-8
+FREE_STEPS, FREE_WEIGHT_SHARE = 32.0, 1e-7
 """Time constant of the loop closures in steps, and the share of the bodies' inverse weights, where
 nothing drives: `benchmarks/free_loops.py` shows what others come to."""
 
