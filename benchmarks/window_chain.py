@@ -150,7 +150,7 @@ def thousandth() -> None:
     """Which steps and settings keep B0 and its velocity to a thousandth."""
     print(
         f"\nplace and velocity of B0 within {WITHIN:g} m and m/s for {HELD_S:g} s\n\n"
-        f"{'N':<5}{'settings':45}{'dt':10}{'m':>9}{'m/s':>9}{'drift':>9}{'us/step':>9}"
+        f"{'N':<5}{'settings':66}{'dt':10}{'m':>9}{'m/s':>9}{'drift':>9}{'us/step':>9}"
     )
     asked = [(count, case) for count, cases in TRIED.items() for case in cases]
     with ProcessPoolExecutor(2) as pool:
@@ -160,7 +160,7 @@ def thousandth() -> None:
             cost = found.run.cost
             spent = f"{cost.us_per_step:9.0f}" if cost else f"{'':9}"
             print(
-                f"{count:<5}{case.words:45}{case.dt_s:<10g}{place:9.1e}{speed:9.1e}"
+                f"{count:<5}{case.words:66}{case.dt_s:<10g}{place:9.1e}{speed:9.1e}"
                 f"{found.energy_drift:9.1e}{spent}  {words}",
                 flush=True,
             )
