@@ -51,7 +51,9 @@ def by_library(table: FormulaTable, file: Path) -> Mapping[str, np.ndarray]:
     return columns
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind == KINDS[0])) for kind in KINDS]
+)
 def test_a_library_recalculates_a_changed_workbook_to_the_reference(
     kind: str, tmp_path: Path
 ) -> None:
@@ -127,6 +129,7 @@ def _says_what_is_open(columns: Mapping[str, np.ndarray], table: FormulaTable) -
             assert np.isfinite(columns[name][~wrong].astype(float)).all(), name
 
 
+@pytest.mark.slow  # LibreOffice, which starts once for all, is asked for the same
 @pytest.mark.parametrize("kind", ["slotted-lever"])
 def test_a_library_says_what_is_open(kind: str, tmp_path: Path) -> None:
     _, table = live(kind)
