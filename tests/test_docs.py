@@ -23,14 +23,22 @@ WITH_EXAMPLES = [
     name for name, page in PAGES.items() if re.search("^```(console|python)", page, re.M)
 ]
 (ENGINES,) = (page for page in PAGES.values() if "`examples/engine/penalty_engine.py` is" in page)
-MADE = {"forces": "figs", "elastic": "figs", "own-model": "out"}
+MADE = {"forces": "figs", "elastic": "figs", "how-to/own-model": "out"}
 """Folders that a page has made, and names all files of."""
 
 
+KINEMATICS = {
+    f"theory/{chapter}"
+    for chapter in ("positions", "velocities", "accelerations", "graphs", "centres")
+}
+"""Chapters whose sheets are tried always, and cost a second each."""
+
+
 def tried(name: str) -> object:
-    """Pages of engines have studies of their own, each 6 s of processor time: `make docs` and `make
-    slow` try them."""
-    return pytest.param(name, marks=[pytest.mark.slow] if name.startswith("engines/") else [])
+    """Pages of engines, by task, and of what is not kinematics have studies of their own, seconds
+    of processor time each: `make docs` and `make slow` try them."""
+    often = "/" not in name or name in KINEMATICS
+    return pytest.param(name, marks=[] if often else [pytest.mark.slow])
 
 
 @pytest.mark.parametrize("name", [tried(name) for name in WITH_EXAMPLES])
@@ -40,7 +48,7 @@ def test_what_a_page_shows_is_what_is_printed(name: str, tmp_path: Path) -> None
     if "$ patch " in page and shutil.which("patch") is None:
         pytest.skip("no patch: apt-get install patch")
     assert not faults_of(page, tmp_path)
-    if folder := MADE.get(Path(name).name):
+    if folder := MADE.get(name):
         made = list((tmp_path / folder).iterdir())
         assert made
         assert not [path for path in made if not {f"`{path.name}`", f"`{path.stem}`"} & spans(page)]

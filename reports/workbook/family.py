@@ -55,20 +55,21 @@ def check_values(name: str, values: Sequence[float]) -> None:
 
 
 def member_columns(
-    table: FormulaTable, one: Input, values: Sequence[float]
+    table: FormulaTable, one: Input, values: Sequence[float], asked: str
 ) -> list[dict[str, Array]]:
     """The columns of each member, (rows,). Raises CrankcheckError for a member that has no
-    position, or no rates, everywhere on the way of the crank."""
+    position, or no rates, everywhere on the way of the crank: of ``asked``, the name that was
+    given for ``one``."""
     found = []
     for value in values:
         inputs = [replace(i, value=value) if i is one else i for i in table.inputs]
         member = replace(table, inputs=inputs)
-        _check_way(member, one, value)
+        _check_way(member, asked, value)
         found.append(evaluated(member))
     return found
 
 
-def _check_way(member: FormulaTable, one: Input, value: float) -> None:
+def _check_way(member: FormulaTable, name: str, value: float) -> None:
     """Refuse a member that the crank can not be brought all the way with: between rows, too."""
     (step,) = (each for each in member.inputs if each.name == "step_deg")
     way_deg = min(step.value * (member.count - 1), 360.0)
@@ -83,8 +84,8 @@ def _check_way(member: FormulaTable, one: Input, value: float) -> None:
         if columns[STATE][at] != why:
             why = "has no determined rates"
         raise CrankcheckError(
-            f"--family {one.name}={value:g}: this member {why} with its crank at "
-            f"{np.degrees(columns['phi'][at]):.4g} deg; leave it out, or choose another {one.name}"
+            f"--family {name}={value:g}: this member {why} with its crank at "
+            f"{np.degrees(columns['phi'][at]):.4g} deg; leave it out, or choose another {name}"
         )
 
 
@@ -92,7 +93,7 @@ def family(table: FormulaTable, name: str, values: Sequence[float]) -> FormulaTa
     """The table with a group of columns for each value of the input ``name``. Raises
     CrankcheckError as `varied` and `member_columns`."""
     one = varied(table, name, values)
-    member_columns(table, one, values)
+    member_columns(table, one, values, name)
     shared = SHARED[:1] if one.name == "omega" else SHARED
     members = range(1, len(values) + 1)
     inputs = [each for each in table.inputs if each is not one]

@@ -49,7 +49,7 @@ class FamilyCurves:
 def family_curves(table: FormulaTable, name: str, values: Sequence[float]) -> FamilyCurves:
     """The curves of a family of formulas. Raises CrankcheckError as `family`."""
     one = varied(table, name, values)
-    members = member_columns(table, one, values)
+    members = member_columns(table, one, values, name)
     heads = {each.name: each.head for each in table.columns}
     charts = [
         FamilyChart(kind, with_unit(heads[column]), [member[column] for member in members])

@@ -86,5 +86,5 @@ def state_column(inside: str) -> Column:
     """Says by the sign of the column ``inside``, the square of what the rates are divided by over
     its size, whether a row can be assembled."""
     words = f'"cannot be assembled",IF([{inside}]>{ZERO},"{ASSEMBLED}","rates not determined")'
-    formula = f'IF(ISNUMBER([{inside}]),IF([{inside}]<0,{words}),"not determined")'
+    formula = f'IF(ISNUMBER([{inside}]),IF([{inside}]<-{ZERO},{words}),"not determined")'
     return Column(STATE, STATE, formula)

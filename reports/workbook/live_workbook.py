@@ -7,8 +7,11 @@ from collections.abc import Mapping
 
 from openpyxl import Workbook  # type: ignore[import-untyped]  # ships no stubs
 
+from analytic.mechanism.fourbar import FourBar
+from analytic.prepared import prepared
 from analytic.structure.groups import Group
 from analytic.structure.mobility import analyse
+from models.errors import StructureError
 from models.laws import ConstantSpeed
 from models.scene import GROUND, Scene
 from reports.output.provenance import crankcheck_version
@@ -25,27 +28,48 @@ TIME = "time"
 
 def formulas_of(scene: Scene, count: int, step_deg: float) -> FormulaTable | None:
     """The formulas of a four-bar, a slider-crank or a slotted lever at constant speed; None of any
-    other scene."""
-    if not isinstance(scene.driver.law, ConstantSpeed):
+    other scene, and of one that goes through change points: formulas stay on one branch there."""
+    if not isinstance(scene.driver.law, ConstantSpeed) or prepared(scene).passages:
         return None
     order = analyse(scene).order
     group = order[0] if len(order) == 1 else None
     if not isinstance(group, Group):
         return None
-    if group.kind == "RRR":
+    if group.kind == "RRR" and _is_four_bar(scene):
         return four_bar_table(scene, group, count, step_deg)
-    if group.kind == "RRP" and scene.sliders[group.outer2].on == GROUND:
+    if group.kind == "RRP" and _is_slider_crank(scene, group):
         return slider_crank_table(scene, group, count, step_deg)
     if group.kind == "RPR" and _is_slotted_lever(scene, group):
         return slotted_lever_table(scene, group, count, step_deg)
     return None
 
 
+def _is_four_bar(scene: Scene) -> bool:
+    """Whether the two links hang between the crank and the ground, and have a length each."""
+    try:
+        FourBar.of(scene)
+    except StructureError:
+        return False
+    return True
+
+
+def _is_slider_crank(scene: Scene, group: Group) -> bool:
+    """Whether the rod hangs on the crank's pin, and what slides does so on the ground."""
+    return scene.sliders[group.outer2].on == GROUND and group.outer1 in _crank_pins(scene)
+
+
 def _is_slotted_lever(scene: Scene, group: Group) -> bool:
     """Whether a block on the crank's pin slides on a lever that is pinned to the ground."""
     slider = scene.sliders[group.inner]
-    crank = scene.links[scene.driver.link].points
-    return slider.link is None and slider.on in scene.links and slider.point in crank
+    if slider.link is not None or slider.on not in scene.links:
+        return False
+    grounded = {group.outer1, group.outer2} & set(scene.ground) & set(scene.links[slider.on].points)
+    return bool(grounded) and slider.point in _crank_pins(scene)
+
+
+def _crank_pins(scene: Scene) -> set[str]:
+    """The points of the crank that turn about its pivot."""
+    return set(scene.links[scene.driver.link].points) - {scene.driver_pivot}
 
 
 def add_live(book: Workbook, table: FormulaTable) -> None:

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.kinematics import solve
+from analytic.kinematics import driven_chunk, repeats_after, solve
 from models.array import Array
 from models.errors import CrankcheckError, ReachError, suggestion
 from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import GROUND, Scene, span
-from reports.workbook.family import check_values
+from reports.workbook.family import CLOSE_DEG, check_values
 from reports.workbook.family_curves import KINDS, FamilyChart, FamilyCurves
 
 OMEGA = "omega"
 AXES = ("x", "y")
+CLOSE_RAD = math.radians(CLOSE_DEG)
+MOST_CLOSE = 20_000
+"""Instants at which the law of a driver is looked at for how far it goes."""
 
 
 @dataclass(frozen=True)
@@ -41,13 +45,26 @@ def scene_family(scene: Scene, name: str, values: Sequence[float], time_s: Array
     motions = []
     members = [varied_scene(scene, name, value) for value in values]
     for value, member in zip(values, members, strict=True):
+        own_s = turns * member.driver.law.period_s
         try:
-            motions.append(solve(member, turns * member.driver.law.period_s, bound=False))
+            _close_all_the_way(member, own_s)
+            motions.append(solve(member, own_s, bound=False))
         except ReachError as error:
             raise CrankcheckError(
                 f"--family {name}={value:g}: this member cannot be assembled: {error}"
             ) from None
     return SceneFamily(scene, name, "rad/s" if name == OMEGA else "m", values, motions)
+
+
+def _close_all_the_way(member: Scene, time_s: Array) -> None:
+    """Assemble a member closely on the way of its driver: between the instants, too. Raises
+    ReachError."""
+    count = math.ceil(float(time_s[-1]) * member.driver.law.peak_speed_rad_s / CLOSE_RAD)
+    angles = member.driver.law.at(np.linspace(0.0, time_s[-1], min(count, MOST_CLOSE) + 1))[0]
+    low, high = float(angles.min()), float(angles.max())
+    way = min(high - low, repeats_after(member))
+    theta = np.linspace(low, low + way, math.ceil(way / CLOSE_RAD) + 1)
+    driven_chunk(member, theta, np.ones_like(theta))
 
 
 def varied_scene(scene: Scene, name: str, value: float) -> Scene:

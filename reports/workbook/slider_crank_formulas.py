@@ -1,14 +1,17 @@
 """The slider-crank as formulas of a sheet, as the paper writes them.
 
 With t the angle of the crank from the line of the slider, R and L the lengths of crank and rod, e
-by how much the line passes the crank's pivot on its left, and f the rod's angle to the line::
+by how much the way of the rod's pin on the slider passes the crank's pivot on its left, and f the
+rod's angle to the line::
 
     sin f = (R sin t - e) / L       X = R cos t + L cos f
     X'  = -w R sin t - f' (R sin t - e)
     X'' = -w^2 R cos t - f'' (R sin t - e) - f' w R cos t
 
-With e = 0 these are X' = -(w + f') R sin t and X'' = -w^2 R [cos t + (f''/w^2) sin t + (f'/w) cos
-t]. Source: paper "Phan tich dong hoc co cau tay quay con truot bang phan mem Excel".
+A slider that is a link may have this pin off its line, and ahead of the point that the displacement
+is told of: its way is parallel to the line then. With e = 0 these are X' = -(w + f') R sin t and
+X'' = -w^2 R [cos t + (f''/w^2) sin t + (f'/w) cos t]. Source: paper "Phan tich
+dong hoc co cau tay quay con truot bang phan mem Excel".
 """
 
 from __future__ import annotations
@@ -17,10 +20,11 @@ import math
 
 from analytic.structure.groups import Group
 from models.joints import less, turned
-from models.scene import Scene, span
+from models.scene import Point, Scene, Slider, span
 from reports.workbook.drive_inputs import DRIVE_COLUMNS, drive_inputs
 from reports.workbook.formula_table import Column, FormulaTable, Input, state_column
 
+E_TOLD = "the way of the rod's pin on the slider passes the crank's pivot so far on its left"
 COLUMNS = (
     *DRIVE_COLUMNS,
     Column("t", "t rad", "[phi]-RADIANS({line_deg})"),
@@ -58,17 +62,28 @@ def slider_crank_table(scene: Scene, group: Group, count: int, step_deg: float) 
     slider, pivot = scene.sliders[group.outer2], scene.ground[scene.driver_pivot]
     crank, rod = scene.links[scene.driver.link], scene.links[group.first]
     ends = group.outer1, group.inner
-    x0, e = turned(less(slider.through_m, pivot), -slider.direction_rad)
+    line = turned(less(slider.through_m, pivot), -slider.direction_rad)
+    ahead, aside = _pin_in(scene, slider, group.inner)
+    x0, e = line[0] + ahead, line[1] + aside
     radius = span({pin: crank.points[pin] for pin in (scene.driver_pivot, group.outer1)})
     length = span({pin: rod.points[pin] for pin in ends})
     branch = scene.branch.get(group.branch_key, 1)
     inputs = (
         Input("R", radius, "m", "length of the crank", "above 0", crank.name),
         Input("L", length, "m", "length of the rod", "above 0", rod.name),
-        Input("e", e, "m", "the line of the slider passes the pivot so far on its left"),
+        Input("e", e, "m", E_TOLD),
         Input("line_deg", math.degrees(slider.direction_rad), "deg", "direction of the line"),
         Input("X0", x0, "m", "X from which the displacement counts"),
         Input("branch", branch, "", "1: the rod points along the line; -1: against it", "1 or -1"),
         *drive_inputs(scene, group.outer1, step_deg),
     )
     return FormulaTable(inputs, COLUMNS, count, CHARTS)
+
+
+def _pin_in(scene: Scene, slider: Slider, pin: str) -> Point:
+    """Where a pin of what slides is from the point of the slider [m]: along the line, and to its
+    left."""
+    if slider.link is None:
+        return 0.0, 0.0
+    points = scene.links[slider.link].points
+    return turned(less(points[pin], points[slider.point]), slider.angle_rad)

@@ -29,7 +29,7 @@ def test_every_command_stands_there_with_every_option() -> None:
 
 def test_options_are_told_with_defaults_and_limits() -> None:
     page = commands_page()
-    assert "| `--at-deg DEG` | `90.0` | The driver's angle. |" in page
+    assert "| `--at-deg DEG` | `60.0` | The driver's angle. |" in page
     assert (
         "| `--jobs <int range>` | `0` | Processes; 0: one per processor. (`0<=x<=1024`) |" in page
     )

@@ -63,3 +63,9 @@ def test_what_is_driven_is_drawn() -> None:
 def test_a_family_that_can_not_be_is_refused(name: str, values: list[float], told: str) -> None:
     with pytest.raises(CrankcheckError, match=told):
         scene_family(load_scene("sixbar-stephenson"), name, values, TIMES)
+
+
+def test_a_member_that_is_open_between_rows_alone_is_refused() -> None:
+    told = "rod=0.184977: this member cannot be assembled: sixbar-watt: crank at 216"
+    with pytest.raises(CrankcheckError, match=told):
+        scene_family(load_scene("sixbar-watt"), "rod", [0.3, 0.184977], np.linspace(0.0, 0.6, 2))
