@@ -171,17 +171,14 @@ def _iterating(scene: Scene, settings: Settings, drive: Drive) -> str:
     Friction: which of two signs it has makes the solver's problem more than quadratic. Springs: the
     integrator `discrete` solves inertia and stiffness together by conjugate gradients, as many of
     them as there are iterations, and gives the run up where they do not converge. Lower weights of
-    what is let go: so stiff a problem keeps rounding of the first passes in its first reactions.
+    what is let go: so stiff a problem keeps what the first passes round, the more so beside springs.
     """
     if scene.friction:
         return "friction"
-    if scene.springs and integrator(settings, drive) == "discrete":
+    lowered = drive == "free" and settings["free_inverse_weight_share"] != 1
+    if scene.springs and (lowered or integrator(settings, drive) == "discrete"):
         return "springs"
-    return (
-        "free_weight_share"
-        if drive == "free" and settings["free_inverse_weight_share"] != 1
-        else ""
-    )
+    return "free_weight_share" if lowered else ""
 
 
 def held_iterations(
