@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
+from typing import Literal, TypeVar
 
 import numpy as np
 
 from models.array import Array
 from models.forces import Forces
 from models.scene import Point
+
+Order = Literal[0, 1, 2]
+"""A place, its rate, or the rate of that."""
 
 
 @dataclass(frozen=True)

@@ -23,10 +23,10 @@ from typing import Literal, get_args
 import numpy as np
 
 from models.array import Array
+from models.motion import Order
 
 Method = Literal["chords", "tangents", "integration"]
 METHODS: tuple[Method, ...] = get_args(Method)
-Order = Literal[0, 1, 2]
 ORDERS: tuple[Order, ...] = get_args(Order)
 Readings = Callable[[Order, Array], Array]
 """What a graph is plotted from: a quantity (0), its rate (1) or the rate of that (2) at places."""

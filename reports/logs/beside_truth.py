@@ -16,7 +16,7 @@ import numpy as np
 
 from analytic.kinematics import solve_driven
 from models.array import Array
-from models.motion import Motion
+from models.motion import Motion, Order
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.free.free_truth import FreeTruth
@@ -25,7 +25,6 @@ from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.logged_motion import logged_motion
 from reports.logs.whole_pins import whole_pins
 from reports.quantities import QUANTITIES, named
-from reports.quantities.moving import Order
 from sim.engine import Run
 
 EVEN = 1e-6

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from models.array import Array
-from models.motion import Motion
+from models.motion import Motion, Order
 from reports.compare.free.free_beside import FreeBeside
 from reports.compare.free.free_truth import FreeTruth
 from reports.compare.tracks import Track, tracks
@@ -18,7 +18,6 @@ from reports.logs.channel import OwnLog, Reading
 from reports.logs.kinds import KINDS
 from reports.logs.logged_motion import logged_motion
 from reports.quantities.free import GEOMETRY
-from reports.quantities.moving import Order
 from sim.engine import Run
 
 

@@ -7,9 +7,17 @@ from dataclasses import dataclass
 from typing import Literal
 
 from models.array import Array
-from models.motion import Bound, ElasticMotion, LinkMotion, Motion, PointMotion, SliderMotion
+from models.motion import (
+    Bound,
+    ElasticMotion,
+    LinkMotion,
+    Motion,
+    Order,
+    PointMotion,
+    SliderMotion,
+)
 from reports.logs.units import Dimension
-from reports.quantities.moving import MovingKind, Order
+from reports.quantities.moving import MovingKind
 
 LoggedKind = MovingKind | Literal["elastic"]
 """What may be logged of: an elastic link is a link, and bends and stretches besides."""

@@ -7,10 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from models.array import Array
-from models.motion import ElasticMotion, LinkMotion, Motion, PointMotion, SliderMotion
+from models.motion import ElasticMotion, LinkMotion, Motion, Order, PointMotion, SliderMotion
 from reports.logs.channel import OwnLog, Reading
 from reports.logs.kinds import Kind
-from reports.quantities.moving import Order
 
 
 def logged_motion(

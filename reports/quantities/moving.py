@@ -6,12 +6,10 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Literal
 
-from models.motion import Bound, Motion
+from models.motion import Bound, Motion, Order
 from models.scene import Scene
 from reports.quantities.quantity import Measure, Series
 
-Order = Literal[0, 1, 2]
-"""The place itself, or a rate of it."""
 MovingKind = Literal["link", "slider", "point"]
 
 

@@ -17,12 +17,14 @@ from reports.sheets.graphs.graph_log import graph_log
 from reports.sheets.graphs.graph_orders import GraphErrors, graph_errors, show_errors, told_floor
 from reports.sheets.graphs.graph_orders_sheet import draw_errors
 from reports.sheets.graphs.graph_page import draw_graphs, laid_out
-from reports.sheets.graphs.graph_range import OVERS, Over, over_period
+from reports.sheets.graphs.graph_span import OVERS, GraphSpan, Over, over_period
 from reports.sheets.graphs.graph_words import show_graphs, tell, told_errors, told_log
 from reports.sheets.paper import Paper
 from reports.sheets.sheet_note import sheet_note
 
 LEAST_PARTS, MOST_PARTS, MOST_COUNTS = 4, 1440, 12
+MOST_DIGITS = 9
+"""Of longer numbers none is asked for in earnest, and the longest are not read as such."""
 
 
 def run_graph(request: GraphRequest, console: Console) -> int:
@@ -40,7 +42,7 @@ def run_graph(request: GraphRequest, console: Console) -> int:
     log = None
     if request.log is not None:
         log = graph_log(request.log, request.map, of)
-        of = log.range
+        of = log.span
     if len(divisions) > 1:
         _tell_errors(request, console, graph_errors(of, by, divisions, log), paper)
     else:
@@ -50,9 +52,9 @@ def run_graph(request: GraphRequest, console: Console) -> int:
 
 def _tell_graphs(request: GraphRequest, console: Console, drawn: DrawnGraphs, paper: Paper) -> None:
     """Draw the sheet, or show the table; then what both are off by."""
-    of = drawn.range
+    of = drawn.span
     told = (
-        f"{of.quantity.name} of {of.scene.name} in {drawn.parts} parts{_by(drawn.by)}; "
+        f"{of.quantity.name} of {of.scene.name} in {drawn.parts} parts{_by(drawn.by)}{_rigid(of)}; "
         f"{told_errors(drawn, drawn.reference)}"
     )
     if request.output is None:
@@ -70,7 +72,7 @@ def _tell_errors(
     request: GraphRequest, console: Console, errors: GraphErrors, paper: Paper
 ) -> None:
     """Show the errors, and draw them where a file is given."""
-    of = errors.range
+    of = errors.span
     if request.output is not None:
         told = f"errors of {of.quantity.name} of {of.scene.name} over divisions{_by(errors.by)}"
         canvas = draw_errors(errors, paper, sheet_note(of.scene))
@@ -84,6 +86,10 @@ def _by(method: Method) -> str:
     return "" if method == "chords" else f" by {method}"
 
 
+def _rigid(of: GraphSpan) -> str:
+    return ", its elastic links taken as rigid" if of.scene.elastic else ""
+
+
 def counts(text: str) -> Sequence[int]:
     """Numbers of divisions, rising. Raises CrankcheckError."""
     words = text.split(",")
@@ -91,7 +97,8 @@ def counts(text: str) -> Sequence[int]:
         raise CrankcheckError(
             f"--divisions {shown(text)}: give whole numbers, such as 24, or 12,24,48"
         )
-    found = [int(word) for word in words]
+    # Zeros in front count as digits, too: what is too long is out of bounds either way.
+    found = [int(word) if len(word.strip()) <= MOST_DIGITS else MOST_PARTS + 1 for word in words]
     if not all(LEAST_PARTS <= each <= MOST_PARTS for each in found):
         raise CrankcheckError(
             f"--divisions {shown(text)}: a period has {LEAST_PARTS} to {MOST_PARTS} parts"

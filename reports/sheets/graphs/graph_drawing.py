@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.drawings.graphical import Method, Order, ThreeGraphs, three_graphs
+from analytic.drawings.graphical import Method, ThreeGraphs, three_graphs
+from models.motion import Order
 from reports.sheets.graphs.graph_log import GraphLog, needed
-from reports.sheets.graphs.graph_range import Range
+from reports.sheets.graphs.graph_span import GraphSpan
 
 READ: dict[Method, Order] = {"chords": 0, "tangents": 0, "integration": 2}
 """Of which order readings are drawn from."""
@@ -19,7 +20,7 @@ class DrawnGraphs:
     """A quantity and its rates over a range in equal parts, drawn ``by`` a method: of the
     reference, and of a log where there is one. ``sizes`` are what errors are over."""
 
-    range: Range
+    span: GraphSpan
     by: Method
     parts: int
     reference: ThreeGraphs
@@ -35,7 +36,7 @@ class DrawnGraphs:
     def off(self, drawn: ThreeGraphs, order: Order) -> float:
         """What a graph is off by the exact curve at most, over the size."""
         graph = drawn.graphs[order]
-        exact = self.range.exact(order, graph.x)
+        exact = self.span.exact(order, graph.x)
         return float(np.abs(graph.y - exact).max()) / self.sizes[order]
 
     def own_part(self, order: Order) -> float:
@@ -46,13 +47,13 @@ class DrawnGraphs:
         return float(np.abs(one.y - other.y).max()) / self.sizes[order]
 
 
-def drawn_graphs(of: Range, by: Method, parts: int, log: GraphLog | None = None) -> DrawnGraphs:
+def drawn_graphs(of: GraphSpan, by: Method, parts: int, log: GraphLog | None = None) -> DrawnGraphs:
     """Draw. Raises CrankcheckError for a log that has not what the method reads."""
     x = of.divisions(parts)
     start = float(of.exact(0, x[:1])[0]), float(of.exact(1, x[:1])[0])
     reference = three_graphs(by, x, of.exact, start)
     logged = None
     if log is not None:
-        needed(log, READ[by], parts, reference.graphs[READ[by]].x)
+        needed(log, READ[by], parts)
         logged = three_graphs(by, x, log.at, start)
     return DrawnGraphs(of, by, parts, reference, log, logged, of.sizes())

@@ -17,8 +17,9 @@ from reports.sheets.canvas import Canvas, line, text
 from reports.sheets.graphs.graph_drawing import READ
 from reports.sheets.graphs.graph_sheet import CAPTION_MM, GraphSheet, Panel
 from reports.sheets.paper import MM_PER_IN
+from reports.sheets.sheet_log import LOGGED
 
-EXACT, DRAWN, RAY, LOGGED, FAINT = "#a3adb8", "#2e6f9e", "#b7791f", "#b23a48", "#e6e6e6"
+EXACT, DRAWN, RAY, FAINT = "#a3adb8", "#2e6f9e", "#b7791f", "#e6e6e6"
 DASHED = (0, (4, 2))
 """Lines of a log, under which others are seen."""
 VALUES_APART_MM = 6.0
@@ -57,7 +58,7 @@ def draw_axes(axes: Axes, sheet: GraphSheet, panel: Panel, caption: str) -> None
 
 def _names(sheet: GraphSheet) -> list[str]:
     """What stands below the divisions: their numbers, or the angles of the driver."""
-    of, parts = sheet.drawn.range, sheet.drawn.parts
+    of, parts = sheet.drawn.span, sheet.drawn.parts
     if of.over == "time":
         return [str(k) for k in range(parts + 1)]
     return [f"{each:.4g}" for each in np.round(of.driver_deg(of.divisions(parts)), 2) + 0.0]
@@ -65,8 +66,7 @@ def _names(sheet: GraphSheet) -> list[str]:
 
 def _every(sheet: GraphSheet) -> int:
     """Which divisions have theirs."""
-    least = LABELS_APART_MM * sheet.drawn.parts / sheet.panels[0].box.width
-    return next((k for k in (1, 2, 3, 4, 6, 12, 24) if k >= least), 36)
+    return math.ceil(LABELS_APART_MM * sheet.drawn.parts / sheet.panels[0].box.width)
 
 
 def _write_values(axes: Axes, panel: Panel) -> None:
@@ -85,8 +85,8 @@ def _write_values(axes: Axes, panel: Panel) -> None:
 
 def draw_exact(axes: Axes, sheet: GraphSheet, panel: Panel) -> None:
     """The exact curve."""
-    dense = sheet.drawn.range.dense
-    y = panel.height_mm(sheet.drawn.range.exact(panel.order, dense))
+    dense = sheet.drawn.span.dense
+    y = panel.height_mm(sheet.drawn.span.exact(panel.order, dense))
     (curve,) = axes.plot(sheet.along_mm(dense), y, color=EXACT, lw=1.6, solid_capstyle="round")
     _clip(axes, panel, [curve])
 
@@ -138,7 +138,7 @@ def _draw_tangents(
     axes: Axes, sheet: GraphSheet, panel: Panel, graph: Plotted, slopes: Plotted, color: str
 ) -> None:
     """A piece of the tangent at each point that has one."""
-    reach = TANGENT * (sheet.drawn.range.end - sheet.drawn.range.start) / sheet.drawn.parts
+    reach = TANGENT * (sheet.drawn.span.end - sheet.drawn.span.start) / sheet.drawn.parts
     for k, (x, y, slope) in enumerate(zip(slopes.x, graph.y[1:-1], slopes.y, strict=True)):
         ends = np.array([x - reach, x + reach])
         along, across = sheet.along_mm(ends), panel.height_mm(y + slope * (ends - x))

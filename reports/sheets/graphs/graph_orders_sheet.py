@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 
+from models.array import Array
 from models.errors import CrankcheckError
 from reports.figures.style import QUIET, SIZE, logarithmic, styled
 from reports.sheets.canvas import Canvas
-from reports.sheets.graphs.graph_lines import DRAWN, LOGGED, RAY
-from reports.sheets.graphs.graph_orders import GraphErrors, order_words
+from reports.sheets.graphs.graph_lines import DRAWN, RAY
+from reports.sheets.graphs.graph_orders import ErrorLine, GraphErrors, Whose, order_words
 from reports.sheets.graphs.graph_words import NOTHING
 from reports.sheets.paper import Paper
 from reports.sheets.sheet_frame import inner_box, write_head
+from reports.sheets.sheet_log import LOGGED
 
 AROUND_MM = (18.0, 14.0)
 """Left of the diagram and below it, for numbers and names [mm]."""
-LOOKS = {"reference": (DRAWN, "-"), "log": (LOGGED, "--"), "its own part": (RAY, ":")}
+LOOKS: Mapping[Whose, tuple[str, str]] = {
+    "reference": (DRAWN, "-"),
+    "log": (LOGGED, "--"),
+    "its own part": (RAY, ":"),
+}
 MARKERS = ("o", "s")
 GUIDE = 0.5
 """How far below the first line the slope of order 2 stands, as a share."""
@@ -29,7 +36,7 @@ def draw_errors(errors: GraphErrors, paper: Paper, note: str) -> Canvas:
     where all are right to rounding."""
     canvas = Canvas(paper)
     frame = canvas.layer("frame")
-    of = errors.range
+    of = errors.span
     title = f"{of.scene.name}: {of.quantity.name} by {errors.by}, errors over divisions"
     write_head(frame, paper, title, note)
     box = inner_box(paper)
@@ -50,7 +57,7 @@ def _draw(axes: Axes, errors: GraphErrors) -> None:
     seen = [error for each in errors.lines for error in each.errors if error > NOTHING]
     if not seen:
         raise CrankcheckError(
-            f"{errors.range.quantity.name} of {errors.range.scene.name} is drawn right with any "
+            f"{errors.span.quantity.name} of {errors.span.scene.name} is drawn right with any "
             "number of divisions: there are no errors to draw"
         )
     with styled():
@@ -62,13 +69,26 @@ def _draw(axes: Axes, errors: GraphErrors) -> None:
             color, style = LOOKS[each.of]
             order = order_words(each, errors.divisions)
             told = f"{each.of}, {each.symbol}" + (f": order {order}" if order != "-" else "")
+            shown = [error if error > NOTHING else np.nan for error in each.errors]
             axes.plot(
-                errors.divisions, each.errors, color=color, ls=style, marker=next(markers),
+                errors.divisions, shown, color=color, ls=style, marker=next(markers),
                 ms=3.0, label=told,
             )  # fmt: skip
-        counts = np.array(errors.divisions[:1] + errors.divisions[-1:], dtype=float)
-        slope = errors.lines[0].errors[0] * GUIDE * (counts[0] / counts) ** 2
-        axes.plot(counts, slope, color=QUIET, lw=0.6, label="slope of order 2")
+        axes.plot(*_guide(errors.lines, errors.divisions), color=QUIET, lw=0.6,
+                  label="slope of order 2")  # fmt: skip
         axes.set_xlabel("parts of the period", size=SIZE, color=QUIET)
         axes.set_ylabel("largest error over the size", size=SIZE, color=QUIET)
         axes.legend(loc="best", frameon=True)
+
+
+def _guide(lines: Sequence[ErrorLine], divisions: Sequence[int]) -> tuple[Array, Array]:
+    """The slope of order 2 from the first to the last number of divisions, a little below the first
+    error that is above rounding."""
+    parts, error = next(
+        (parts, error)
+        for line in lines
+        for parts, error in zip(divisions, line.errors, strict=True)
+        if error > NOTHING
+    )
+    counts = np.array([divisions[0], divisions[-1]], dtype=float)
+    return counts, GUIDE * error * (parts / counts) ** 2

@@ -15,7 +15,6 @@ from reports.sheets.graphs.graph_lines import (
     DASHED,
     DRAWN,
     EXACT,
-    LOGGED,
     RAY,
     draw_axes,
     draw_exact,
@@ -28,6 +27,7 @@ from reports.sheets.graphs.graph_table import draw_table, table_width_mm
 from reports.sheets.graphs.graph_words import own_rates_off, share
 from reports.sheets.paper import MM_PER_IN, Paper
 from reports.sheets.sheet_frame import write_head
+from reports.sheets.sheet_log import LOGGED
 
 NAME_IN = 1.3
 """How long the name of a log is in the title at most [inch]."""
@@ -60,11 +60,13 @@ def draw_graphs(sheet: GraphSheet, note: str) -> Canvas:
 
 
 def _title(drawn: DrawnGraphs) -> str:
-    of = drawn.range
+    of = drawn.span
     span = "a period" if not of.scene.is_free else f"{of.end - of.start:g} s"
     if of.analogues:
         span = f"the angle of {of.scene.driver.link}"
     title = f"{of.scene.name}: {of.quantity.name} over {span}, {drawn.parts} parts, by {drawn.by}"
+    if of.scene.elastic:
+        title += ", links taken as rigid"
     return f"{title}; log: {cut(drawn.log.name, NAME_IN, LARGE)}" if drawn.log else title
 
 
@@ -121,7 +123,7 @@ def _write_legend(axes: Axes, sheet: GraphSheet) -> None:
 
 
 def _along(sheet: GraphSheet) -> str:
-    of = sheet.drawn.range
+    of = sheet.drawn.span
     part = (of.end - of.start) / sheet.drawn.parts
     name, unit = ("time", "s") if of.over == "time" else (f"angle of {of.scene.driver.link}", "deg")
     since = f" from {of.start:.6g} s on" if of.start and not of.analogues else ""

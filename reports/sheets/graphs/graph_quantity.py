@@ -12,7 +12,7 @@ AXES = ("x", "y")
 
 
 @dataclass(frozen=True)
-class Quantity:
+class GraphedQuantity:
     """A quantity of a ``body`` with both of its rates: how a motion holds them, their symbols, and
     what their unit is before any s."""
 
@@ -23,19 +23,19 @@ class Quantity:
     unit: str
 
 
-def quantity_of(motion: Motion, name: str) -> Quantity:
+def quantity_of(motion: Motion, name: str) -> GraphedQuantity:
     """The quantity of that name: a link, a slider, or a coordinate of a point (C.x). Raises
     CrankcheckError for what the motion has not."""
     point, _, axis = name.partition(".")
     if name in motion.links:
         kinds = _kinds("link", "angle", "angular velocity", "angular acceleration")
-        return Quantity(name, name, kinds, ("phi", "omega", "epsilon"), "rad")
+        return GraphedQuantity(name, name, kinds, ("phi", "omega", "epsilon"), "rad")
     if name in motion.sliders:
         kinds = _kinds("slider", "displacement", "speed", "acceleration")
-        return Quantity(name, name, kinds, ("s", "v", "a"), "m")
+        return GraphedQuantity(name, name, kinds, ("s", "v", "a"), "m")
     if point in motion.points and axis in AXES:
         kinds = _kinds("point", axis, f"v{axis}", f"a{axis}")
-        return Quantity(name, point, kinds, ("s", "v", "a"), "m")
+        return GraphedQuantity(name, point, kinds, ("s", "v", "a"), "m")
     known = [*motion.links, *motion.sliders, *(f"{p}.{a}" for p in motion.points for a in AXES)]
     raise CrankcheckError(f"--of {name}: {suggestion(name, known, 'there are')}")
 

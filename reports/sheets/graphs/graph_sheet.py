@@ -17,9 +17,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.drawings.graphical import ORDERS, Order
+from analytic.drawings.graphical import ORDERS
 from models.array import Array
 from models.errors import CrankcheckError
+from models.motion import Order
 from reports.sheets.graphs.graph_drawing import READ, DrawnGraphs
 from reports.sheets.graphs.graph_scales import graph_scales
 from reports.sheets.paper import Box, Paper
@@ -77,7 +78,7 @@ class GraphSheet:
 
     def along_mm(self, x: Array) -> Array:
         """Places of x on paper [mm]."""
-        return self.panels[0].box.left + (x - self.drawn.range.start) / self.scale_x
+        return self.panels[0].box.left + (x - self.drawn.span.start) / self.scale_x
 
     def panel(self, order: Order) -> Panel:
         return next(each for each in self.panels if each.order == order)
@@ -93,7 +94,7 @@ def graph_sheet(drawn: DrawnGraphs, paper: Paper, table_mm: float) -> GraphSheet
             f"--divisions {drawn.parts}: a part is under {LEAST_MM:g} mm wide on {paper.width:g} x "
             f"{paper.height:g} mm; at most {int(wide / LEAST_MM)} fit, or take larger paper"
         )
-    scale_x = (drawn.range.end - drawn.range.start) / (drawn.parts * part_mm)
+    scale_x = (drawn.span.end - drawn.span.start) / (drawn.parts * part_mm)
     high = (inner.height - LEGEND_MM - 2 * GAP) / 3
     boxes = [
         Box(
@@ -131,7 +132,7 @@ def _panels(drawn: DrawnGraphs, scale_x: float, boxes: list[Box]) -> tuple[Panel
         low, high = reaches[order]
         scale = scales.units_per_mm[order]
         spare = box.height - (high - low) / scale
-        symbol, unit = drawn.range.symbols[order], drawn.range.units[order]
+        symbol, unit = drawn.span.symbols[order], drawn.span.units[order]
         pole = scales.poles_mm[order]
         panels.append(
             Panel(
@@ -147,7 +148,7 @@ def _axis_of_places(drawn: DrawnGraphs) -> float:
     start."""
     if drawn.by == "integration":
         return float(drawn.reference.graphs[0].y[0])
-    exact = drawn.range.exact(0, drawn.range.dense)
+    exact = drawn.span.exact(0, drawn.span.dense)
     middle = 0.5 * float(exact.min() + exact.max())
     digits = math.floor(math.log10(drawn.sizes[0])) - 1
     return round(middle, -digits)
@@ -155,7 +156,7 @@ def _axis_of_places(drawn: DrawnGraphs) -> float:
 
 def _reach(drawn: DrawnGraphs, order: Order, axis: float) -> tuple[float, float]:
     """The lowest and the highest of a graph over its axis, which lies within [unit]."""
-    exact = drawn.range.exact(order, drawn.range.dense)
+    exact = drawn.span.exact(order, drawn.span.dense)
     both = np.concatenate([exact, drawn.reference.graphs[order].y, [axis]]) - axis
     low, high = float(both.min()), float(both.max())
     if drawn.logged is not None:

@@ -22,11 +22,11 @@ def table_cells(drawn: DrawnGraphs) -> list[list[str]]:
     """The columns of the table, each from its two lines of heading on."""
     order = READ[drawn.by]
     graph = drawn.reference.graphs[order]
-    unit = drawn.range.units[order]
+    unit = drawn.span.units[order]
     columns = [
         ["", "no.", *(f"{each:g}" for each in numbers(drawn, graph.x))],
-        [f"{drawn.range.scene.driver.link}", "deg", *degrees(drawn, graph.x)],
-        [drawn.range.symbols[order], unit, *written(graph.y, drawn.sizes[order])],
+        [f"{drawn.span.scene.driver.link}", "deg", *degrees(drawn, graph.x)],
+        [drawn.span.symbols[order], unit, *written(graph.y, drawn.sizes[order])],
     ]
     if drawn.logged is not None:
         logged = drawn.logged.graphs[order].y
@@ -36,13 +36,13 @@ def table_cells(drawn: DrawnGraphs) -> list[list[str]]:
 
 def numbers(drawn: DrawnGraphs, x: Array) -> Array:
     """The divisions at places, halves in the middles of parts."""
-    length = drawn.range.end - drawn.range.start
-    return np.round(2.0 * drawn.parts * (x - drawn.range.start) / length) / 2.0
+    length = drawn.span.end - drawn.span.start
+    return np.round(2.0 * drawn.parts * (x - drawn.span.start) / length) / 2.0
 
 
 def degrees(drawn: DrawnGraphs, x: Array) -> list[str]:
     """The driver's angle at places."""
-    return [f"{each + 0.0:.2f}" for each in np.round(drawn.range.driver_deg(x), 2)]
+    return [f"{each + 0.0:.2f}" for each in np.round(drawn.span.driver_deg(x), 2)]
 
 
 def written(values: Array, size: float) -> list[str]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from rich.console import Console
 
-from analytic.drawings.graphical import ORDERS, Order, ThreeGraphs
+from analytic.drawings.graphical import ORDERS, ThreeGraphs
 from models.array import Array
 from models.errors import harmless
+from models.motion import Order
 from reports.output.columns import plain_table
 from reports.output.numbers import listed
 from reports.sheets.graphs.graph_drawing import READ, DrawnGraphs
@@ -19,7 +20,7 @@ NOTHING = 1e-9
 
 def share(off: float) -> str:
     """An error over its size in per cent."""
-    return f"{100 * off:.2g} %" if off > NOTHING else "0 %"
+    return f"{float(f'{100 * off:.2g}'):g} %" if off > NOTHING else "0 %"
 
 
 def own_rates_off(drawn: DrawnGraphs, order: Order) -> float | None:
@@ -29,13 +30,13 @@ def own_rates_off(drawn: DrawnGraphs, order: Order) -> float | None:
     rates = drawn.log.at_divisions(order, drawn.parts)
     if not rates.x.size:
         return None
-    off = rates.y - drawn.range.exact(order, rates.x)
+    off = rates.y - drawn.span.exact(order, rates.x)
     return float(np.abs(off).max()) / drawn.sizes[order]
 
 
 def told_errors(drawn: DrawnGraphs, graphs: ThreeGraphs) -> str:
     """What the graphs that were derived are off by."""
-    symbols = drawn.range.symbols
+    symbols = drawn.span.symbols
     return ", ".join(
         f"{symbols[order]} off by up to {share(drawn.off(graphs, order))}"
         for order in drawn.derived
@@ -46,7 +47,7 @@ def told_log(drawn: DrawnGraphs) -> list[str]:
     """What the log's graphs are off by, of that the engine's part, and how it was read."""
     assert drawn.log is not None
     assert drawn.logged is not None
-    symbols, order = drawn.range.symbols, READ[drawn.by]
+    symbols, order = drawn.span.symbols, READ[drawn.by]
     parts = listed([
         f"{symbols[each]} {share(drawn.own_part(each))}" for each in drawn.derived
     ])  # fmt: skip
@@ -55,8 +56,10 @@ def told_log(drawn: DrawnGraphs) -> list[str]:
     lines = [
         f"{drawn.log.name}: {told_errors(drawn, drawn.logged)}; of that its own error, beside the "
         f"drawing of the reference: {parts}",
-        f"{symbols[order]} is read {how}; it is off by up to {read_off}",
+        f"{symbols[order]} is read {drawn.log.taken}, {how}; it is off by up to {read_off}",
     ]
+    if doubt := drawn.log.doubt(order, drawn.logged.graphs[order].x):
+        lines.append(doubt)
     own = [(each, own_rates_off(drawn, each)) for each in drawn.derived]
     said = [f"{symbols[each]} off by up to {share(off)}" for each, off in own if off is not None]
     if said:
@@ -66,7 +69,7 @@ def told_log(drawn: DrawnGraphs) -> list[str]:
 
 def show_graphs(console: Console, drawn: DrawnGraphs) -> None:
     """Print the table: what is read at each division, and what is drawn from it."""
-    of = drawn.range
+    of = drawn.span
     table = plain_table(gap=2)
     heads = ["no.", f"{of.scene.driver.link} deg"]
     places = _places(drawn)
@@ -90,8 +93,8 @@ def show_graphs(console: Console, drawn: DrawnGraphs) -> None:
 def _places(drawn: DrawnGraphs) -> Array:
     """All places at which something is plotted, by halves of parts."""
     halves = {float(each) for graph in drawn.reference.graphs for each in numbers(drawn, graph.x)}
-    length = drawn.range.end - drawn.range.start
-    return drawn.range.start + length * np.array(sorted(halves)) / drawn.parts
+    length = drawn.span.end - drawn.span.start
+    return drawn.span.start + length * np.array(sorted(halves)) / drawn.parts
 
 
 def _cells(drawn: DrawnGraphs, graphs: ThreeGraphs, order: Order, places: Array) -> list[str]:

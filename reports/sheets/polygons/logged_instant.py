@@ -18,24 +18,19 @@ from analytic.drawings.placed_mechanism import PlacedMechanism
 from analytic.drawings.polygon import Quantity
 from models.array import Array
 from models.errors import CrankcheckError, few
-from models.motion import Motion
+from models.motion import Motion, Order
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.compare.series import rate, second_rate
 from reports.describe.driver_at import angle_at
 from reports.logs.beside_truth import EVEN
 from reports.logs.channel import OwnLog, Reading
-from reports.logs.columns import read_columns
 from reports.logs.logged_motion import logged_motion
 from reports.logs.map_file import Map
-from reports.logs.meanings import understood, wanted
-from reports.own_log.free_log import known_log
-from reports.quantities.moving import Order
+from reports.sheets.sheet_log import SheetLog
 
 REPORTED, DIFFERENCED = "as the log reports them", "by central differences of logged positions"
-ELSEWHERE = 0.1
-"""What points are off by at most in the first row of a log of the scene, of its longest link."""
-ORDERS: Mapping[Quantity, Order] = {"velocity": 1, "acceleration": 2}
+ORDER_OF: Mapping[Quantity, Order] = {"velocity": 1, "acceleration": 2}
 
 
 @dataclass(frozen=True)
@@ -44,7 +39,8 @@ class LoggedInstant:
 
     ``placement`` is the reference at its time [s]; ``places`` are the errors of points [m], (2,)
     each; ``rates`` those of the ends of their vectors [m/s, m/s^2]. ``ways`` says where these come
-    from; ``missing`` names the points that the log does not say enough of.
+    from; ``missing`` names the points that the log does not say enough of; ``passes`` is how often
+    the log passes the angle that was asked for.
     """
 
     source: str
@@ -54,6 +50,12 @@ class LoggedInstant:
     rates: Mapping[Quantity, Mapping[str, Array]]
     ways: Mapping[Quantity, str]
     missing: tuple[str, ...] = ()
+    passes: int = 1
+
+    @property
+    def taken(self) -> str:
+        """Which of several passes of an angle it is, in words that follow the name of the log."""
+        return f" (the last of {self.passes} passes)" if self.passes > 1 else ""
 
 
 @dataclass(frozen=True)
@@ -68,41 +70,21 @@ class LogInstants:
     @staticmethod
     def of_file(scene: Scene, path: Path, map_: Map) -> LogInstants:
         """A file, read as `judge` does. Raises CrankcheckError for what is no log of the scene."""
-        if scene.elastic:
-            bent = few(scene.elastic, 4)
-            raise CrankcheckError(
-                f"--log {path}: {bent} of {scene.name} bends or stretches, and polygons are those "
-                "of rigid links; crankcheck judge holds such a log to the beam"
-            )
-        return LogInstants.of_log(
-            understood(read_columns(path, map_.layout, wanted(scene, map_)), scene, map_)
-        )
+        return LogInstants._of(SheetLog.of_file(scene, path, map_, "polygons"))
 
     @staticmethod
     def of_log(log: OwnLog) -> LogInstants:
-        """A log that was read. Raises CrankcheckError as `known_log`."""
-        if log.scene.is_free:
-            log, free = known_log(log, 0.0, {})
-            angle = free.at(log.time_s).links[log.scene.driver.link].theta
-            instants = LogInstants(log, free, angle)
-        else:
-            angle = log.scene.driver.law.at(log.time_s)[0]
-            instants = LogInstants(log, Truth(log.scene, bound=False), angle)
-        instants.refuse_another()
-        return instants
+        """A log that was read. Raises CrankcheckError as `SheetLog.of_log`."""
+        return LogInstants._of(SheetLog.of_log(log))
 
-    def refuse_another(self) -> None:
-        """Raises CrankcheckError for a log whose points do not begin where those of its scene do:
-        an engine begins there, however far it comes from it."""
-        scene = self.log.scene
-        off = {name: each[0] for name, each in self._errors(0, slice(0, 2)).items()}
-        far = max(off, key=lambda name: float(np.hypot(*off[name])), default="")
-        if far and not np.hypot(*off[far]) <= ELSEWHERE * scene.longest_m:
-            raise CrankcheckError(
-                f"{self.log.source}: in its first row, t = {self.log.time_s[0]:.6g} s, {far} is "
-                f"{np.hypot(*off[far]):.3g} m off where {scene.name} has it: it is of another "
-                "scene, speed or start; name its own, or count times from the start of the motion"
-            )
+    @staticmethod
+    def _of(beside: SheetLog) -> LogInstants:
+        log, driver = beside.log, beside.log.scene.driver
+        if log.scene.is_free:
+            angle = beside.truth.at(log.time_s).links[driver.link].theta
+        else:
+            angle = driver.law.at(log.time_s)[0]
+        return LogInstants(log, beside.truth, angle)
 
     def at_angle(self, at_deg: float) -> LoggedInstant:
         """At the sample that is nearest to an angle of the driver [deg], when it passes it for the
@@ -113,7 +95,8 @@ class LogInstants:
         rows = before + (np.abs(off[before + 1]) < np.abs(off[before]))
         within = rows[(rows > 0) & (rows < off.size - 1)]
         if rows.size:
-            return self._at(int((within if within.size else rows)[-1]))
+            rows = np.unique(within if within.size else rows)  # one on the angle ends two parts
+            return replace(self._at(int(rows[-1])), passes=rows.size)
         low, high = (
             round(math.degrees(each), 9) for each in (self.driver_rad.min(), self.driver_rad.max())
         )
@@ -141,7 +124,7 @@ class LogInstants:
         places = self._errors(0, rows)
         here = row - rows.start
         rates, ways = {}, {}
-        for quantity, order in ORDERS.items():
+        for quantity, order in ORDER_OF.items():
             errors = {name: each[here] for name, each in self._errors(order, rows).items()}
             ways[quantity] = REPORTED
             if not errors:

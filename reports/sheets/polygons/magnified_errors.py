@@ -13,9 +13,8 @@ from matplotlib.axes import Axes
 from models.array import Array
 from reports.figures.style import power_of_ten
 from reports.sheets.canvas import arrow, line
+from reports.sheets.sheet_log import LOGGED
 
-LOGGED = "#8e24aa"
-"""The colour of all that a log says."""
 MOST_MM = 8.0
 """The largest error is drawn no longer than this, and longer than a tenth of it, unless it is
 longer at its own scale."""

@@ -14,8 +14,9 @@ from reports.figures.style import INK, QUIET, SIZE, SMALL
 from reports.sheets.canvas import Canvas
 from reports.sheets.letters import Letter, together, write_letters
 from reports.sheets.paper import Box
-from reports.sheets.polygons.magnified_errors import LOGGED, STAR
+from reports.sheets.polygons.magnified_errors import STAR
 from reports.sheets.polygons.polygon_on_paper import DrawnPolygon
+from reports.sheets.sheet_log import LOGGED
 
 POLES: Mapping[Quantity, str] = {"velocity": "pᵥ", "acceleration": "pₐ"}
 NEAR_MM, APART_MM = 0.3, 1.2

@@ -43,7 +43,7 @@ def _heading(sheet: PolygonSheet) -> str:
     placement, log = sheet.drawn.placement, sheet.log
     scene, driver = placement.scene, placement.driver
     at_time = f", t = {sheet.time_s:.9g} s" if sheet.time_s is not None else ""
-    at_time += f" in {log.source}" if log is not None else ""
+    at_time += f" in {log.source}{log.taken}" if log is not None else ""
     alpha = f", {driver.alpha:g} rad/s^2" if driver.alpha else ""
     rigid = "; its elastic links are taken as rigid" if scene.elastic else ""
     return (

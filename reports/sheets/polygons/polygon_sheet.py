@@ -31,13 +31,14 @@ from reports.sheets.canvas import Canvas, text
 from reports.sheets.letters import Letter, write_letters
 from reports.sheets.paper import MM_PER_IN, Box, Paper
 from reports.sheets.polygons.logged_instant import LoggedInstant
-from reports.sheets.polygons.magnified_errors import LOGGED, STAR, MagnifiedErrors, draw_errors
+from reports.sheets.polygons.magnified_errors import STAR, MagnifiedErrors, draw_errors
 from reports.sheets.polygons.polygon_drawing import draw_polygon
 from reports.sheets.polygons.polygon_on_paper import DrawnPolygon, fitted, frame_of
 from reports.sheets.polygons.polygon_table import draw_table, link_rows, vector_rows
 from reports.sheets.polygons.polygon_words import at_rest, doubts
 from reports.sheets.scheme import draw_scheme, point_letters
 from reports.sheets.sheet_frame import draw_border, inner_box, write_head
+from reports.sheets.sheet_log import LOGGED
 
 GAP = 4.0
 LEFT_SHARE, SCHEME_SHARE = 0.38, 0.5

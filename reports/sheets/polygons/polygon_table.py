@@ -16,10 +16,11 @@ from reports.figures.style import POINTS, QUIET, TINY, width_in
 from reports.output.numbers import readable
 from reports.sheets.canvas import text
 from reports.sheets.paper import MM_PER_IN, Box, Paper
-from reports.sheets.polygons.magnified_errors import LOGGED, STAR
+from reports.sheets.polygons.magnified_errors import STAR
 from reports.sheets.polygons.polygon_letters import lower_case
 from reports.sheets.polygons.polygon_on_paper import DrawnPolygon
 from reports.sheets.polygons.polygon_words import drawn_links, image_words
+from reports.sheets.sheet_log import LOGGED
 
 ROW, GAP = 1.9, 3.0
 """The height of a row, in that of its letters; the room between columns [mm]."""

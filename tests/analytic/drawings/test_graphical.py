@@ -9,7 +9,6 @@ import pytest
 
 from analytic.drawings.graphical import (
     Method,
-    Order,
     Plotted,
     by_chords,
     by_tangents,
@@ -20,6 +19,7 @@ from analytic.drawings.graphical import (
 from analytic.kinematics import solve
 from models.array import Array
 from models.files import load_scene
+from models.motion import Order
 
 DIVISIONS = (24, 48, 96, 192)
 FIELDS = ("theta", "omega", "alpha")

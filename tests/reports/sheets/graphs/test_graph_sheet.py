@@ -17,9 +17,9 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.sheets.graphs.graph_drawing import drawn_graphs
 from reports.sheets.graphs.graph_page import caption, draw_graphs, laid_out
-from reports.sheets.graphs.graph_range import Over, over_period
 from reports.sheets.graphs.graph_scales import POLES_MM, graph_scales
 from reports.sheets.graphs.graph_sheet import GraphSheet
+from reports.sheets.graphs.graph_span import Over, over_period
 from reports.sheets.graphs.graph_table import table_cells
 from reports.sheets.paper import Paper
 
@@ -107,7 +107,7 @@ def test_graphs_and_table_stay_within_their_boxes(
 ) -> None:
     sheet = sheet_of(name, of, by, paper=paper)
     for panel in sheet.panels:
-        exact = sheet.drawn.range.exact(panel.order, sheet.drawn.range.dense)
+        exact = sheet.drawn.span.exact(panel.order, sheet.drawn.span.dense)
         high = panel.height_mm(np.concatenate([exact, sheet.drawn.reference.graphs[panel.order].y]))
         assert panel.box.bottom - 0.01 <= high.min()
         assert high.max() <= panel.box.bottom + panel.box.height + 0.01
@@ -128,14 +128,14 @@ def test_over_the_angle_of_a_steady_driver_rates_are_rates() -> None:
     time, angle = (
         sheet_of("fourbar-lecture-1", "rocker", over=over).drawn for over in ("time", "angle")
     )
-    assert angle.range.units == time.range.units
+    assert angle.span.units == time.span.units
     assert angle.reference.graphs[2].y == pytest.approx(time.reference.graphs[2].y)
-    assert angle.range.shown == pytest.approx(math.degrees(10.0))
+    assert angle.span.shown == pytest.approx(math.degrees(10.0))
 
 
 def test_over_the_angle_of_another_driver_rates_are_analogues() -> None:
     sheet = sheet_of("fourbar-double-rocker", "rocker", over="angle")
-    of = sheet.drawn.range
+    of = sheet.drawn.span
     assert (of.symbols[1], of.units[1]) == ("phi'", "rad/rad")
     assert np.degrees([of.start, of.end]) == pytest.approx([27.0, 57.0])
     # its rate over that of the driver, at an instant in the middle of the swing
@@ -148,7 +148,7 @@ def test_over_the_angle_of_another_driver_rates_are_analogues() -> None:
 def test_what_is_let_go_is_drawn_for_a_duration() -> None:
     scene = load_scene("fourbar-swing")
     drawn = drawn_graphs(over_period(scene, "rocker", "time", 0.5), "chords", 96)
-    assert drawn.range.end == 0.5
+    assert drawn.span.end == 0.5
     assert drawn.off(drawn.reference, 1) < 0.01
 
 
@@ -161,6 +161,7 @@ def test_what_is_let_go_is_drawn_for_a_duration() -> None:
         ("fourbar-lecture-1", "rocker", "time", 2.0, "drawn over its period of 0.628319 s"),
         ("fourbar-swing", "rocker", "time", None, "let go, and has no period.*--duration"),
         ("fourbar-swing", "rocker", "angle", 1.0, "may turn back; use --over time"),
+        ("fourbar-elastic-pulse", "rocker", "time", 0.1, "coupler bends .*`crankcheck solve`"),
         ("fourbar-swing", "rocker", "time", math.nan, "give seconds above 0"),
     ],
 )

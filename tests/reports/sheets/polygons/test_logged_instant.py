@@ -51,6 +51,7 @@ def test_what_rates_are_off_by_is_found_at_the_sample_that_is_asked_for() -> Non
     assert at.rates["velocity"]["B"] == pytest.approx([0.0, 0.0], abs=1e-12)
     assert at.ways == {"velocity": REPORTED, "acceleration": REPORTED}
     assert at.missing == ()
+    assert at.taken == " (the last of 2 passes)"
 
 
 def test_rates_that_are_not_reported_are_differenced() -> None:

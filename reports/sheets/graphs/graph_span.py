@@ -14,15 +14,14 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from analytic.drawings.graphical import Order
 from analytic.kinematics import solve_driven
 from models.array import Array
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, few
 from models.laws import ConstantSpeed, Oscillating
-from models.motion import Motion
+from models.motion import Motion, Order
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.sheets.graphs.graph_quantity import Quantity, quantity_of
+from reports.sheets.graphs.graph_quantity import GraphedQuantity, quantity_of
 
 Over = Literal["time", "angle"]
 OVERS: tuple[Over, ...] = get_args(Over)
@@ -34,13 +33,13 @@ STILL = 1e-9
 
 
 @dataclass(frozen=True)
-class Range:
+class GraphSpan:
     """A quantity from ``start`` to ``end`` of the abscissa x: time [s], or, of analogues, the
     driver's angle [rad]. ``motion_at`` solves at places; one unit of x is ``shown`` units of what
     is written along (s or deg)."""
 
     scene: Scene
-    quantity: Quantity
+    quantity: GraphedQuantity
     start: float
     end: float
     over: Over
@@ -93,12 +92,12 @@ class Range:
             return np.degrees(self.motion_at(x).links[self.scene.driver.link].theta)
         return np.degrees(self.scene.driver.law.at(x)[0])
 
-    def moved(self, start: float) -> Range:
+    def moved(self, start: float) -> GraphSpan:
         """One as long that starts elsewhere."""
         return replace(self, start=start, end=start + self.end - self.start)
 
 
-def over_period(scene: Scene, name: str, over: Over, duration_s: float | None) -> Range:
+def over_period(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
     """The quantity ``name`` of a scene over a period, or, let go, over a duration.
 
     Raises CrankcheckError for what the scene has not or what stands still in it, and for a duration
@@ -111,7 +110,7 @@ def over_period(scene: Scene, name: str, over: Over, duration_s: float | None) -
     return of
 
 
-def _driven(scene: Scene, name: str, over: Over, duration_s: float | None) -> Range:
+def _driven(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
     """Over a period of the driver."""
     if duration_s is not None:
         raise CrankcheckError(
@@ -124,10 +123,10 @@ def _driven(scene: Scene, name: str, over: Over, duration_s: float | None) -> Ra
     if over == "angle" and not isinstance(law, ConstantSpeed):
         return _by_angle(scene, quantity)
     shown = math.degrees(law.peak_speed_rad_s) if over == "angle" else 1.0
-    return Range(scene, quantity, 0.0, law.period_s, over, shown, truth.at, truth)
+    return GraphSpan(scene, quantity, 0.0, law.period_s, over, shown, truth.at, truth)
 
 
-def _by_angle(scene: Scene, quantity: Quantity) -> Range:
+def _by_angle(scene: Scene, quantity: GraphedQuantity) -> GraphSpan:
     """Over the driver's angle: a turn of it, or as far as it swings."""
     law = scene.driver.law
     if isinstance(law, Oscillating):
@@ -140,11 +139,17 @@ def _by_angle(scene: Scene, quantity: Quantity) -> Range:
     def motion_at(angle: Array) -> Motion:
         return solve_driven(scene, angle, np.ones(1), np.zeros(1), bound=False)
 
-    return Range(scene, quantity, start, end, "angle", math.degrees(1.0), motion_at, None)
+    return GraphSpan(scene, quantity, start, end, "angle", math.degrees(1.0), motion_at, None)
 
 
-def _let_go(scene: Scene, name: str, over: Over, duration_s: float | None) -> Range:
+def _let_go(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
     """Over the first seconds of a free motion."""
+    if scene.elastic:
+        raise CrankcheckError(
+            f"{scene.name}: {few(scene.elastic, 4)} bends or stretches and is let go, and graphs "
+            "are those of rigid links; `crankcheck solve` writes that motion with -o FILE.csv, or "
+            "take [elastic] out of the scene"
+        )
     if duration_s is None:
         raise CrankcheckError(
             f"{scene.name}: it is let go, and has no period to draw; say for how long: --duration "
@@ -161,4 +166,4 @@ def _let_go(scene: Scene, name: str, over: Over, duration_s: float | None) -> Ra
 
     truth = free_truth_until(scene, duration_s, 0.0)
     quantity = quantity_of(truth.at(np.zeros(1)), name)
-    return Range(scene, quantity, 0.0, duration_s, over, 1.0, truth.at, truth)
+    return GraphSpan(scene, quantity, 0.0, duration_s, over, 1.0, truth.at, truth)
