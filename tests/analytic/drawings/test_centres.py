@@ -56,7 +56,7 @@ def test_circles_by_their_definitions(name: str, alpha: float) -> None:
     drawn = drawn_at(name, 1.0, alpha)
     for link in drawn.placement.scene.links:
         body = drawn.rates[link]
-        circles = curvature_circles(body, link)
+        circles = curvature_circles(drawn, link)
         assert body.velocity_at(circles.pole) == pytest.approx([0.0, 0.0], abs=1e-12)
         assert body.acceleration_at(circles.acceleration_pole) == pytest.approx([0, 0], abs=1e-9)
         round_about = np.linspace(0.3, 6.0, 9)
@@ -75,7 +75,7 @@ def test_circles_by_their_definitions(name: str, alpha: float) -> None:
 def test_a_link_that_does_not_turn_has_no_circles() -> None:
     drawn = drawn_at("scotch-yoke", 1.0)
     with pytest.raises(CrankcheckError, match="does not turn"):
-        curvature_circles(drawn.rates["yoke"], "yoke")
+        curvature_circles(drawn, "yoke")
 
 
 def test_the_moving_centrode_rolls_on_the_fixed_one() -> None:

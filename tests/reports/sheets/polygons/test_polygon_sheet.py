@@ -108,10 +108,10 @@ def test_an_animation_has_a_frame_for_each_layer_that_is_drawn() -> None:
         assert picture.n_frames == 1 + 1 + 2 * 3 + 1
 
 
-@pytest.mark.slow  # 48 sheets: what it finds beside the others is that the scales stay
+@pytest.mark.slow  # 36 sheets: what it finds beside the others is that the scales stay
 def test_over_a_turn_all_sheets_have_one_scale() -> None:
     with Image.open(io.BytesIO(turning_file(sheet_of("fourbar-lecture-1", 1.0, "A5")))) as picture:
-        assert picture.n_frames == 48
+        assert picture.n_frames == 36
 
 
 def words_on(sheet: PolygonSheet) -> list[str]:
