@@ -126,7 +126,8 @@ def _centrodes_of(drawn: DrawnPolygons, link: str) -> Centrodes:
     scene = drawn.placement.scene
     theta = np.linspace(*range_about(scene, drawn.placement.driver.theta), DENSE)[1:-1]
     possible = assembled(scene, theta)
-    motion = solve_driven(scene, theta[possible], 1.0, 0.0, bound=False)
+    one = np.ones(1)
+    motion = solve_driven(scene, theta[possible], one, 0.0 * one, bound=False)
     some = centrodes(motion, link, next(iter(scene.links[link].points)))
     fixed, moving = (np.full((theta.size, 2), np.nan) for _ in range(2))
     fixed[possible], moving[possible] = some.fixed, some.moving

@@ -29,11 +29,13 @@ def assembled(scene: Scene, theta: Array) -> Mask:
     """At which driver angles (T,) the scene can be assembled; within a range there may be single
     ones, singular positions, at which it can not."""
     possible = np.ones(theta.shape, dtype=bool)
-    parts = [np.arange(theta.size)]
+    parts, one = [np.arange(theta.size)], np.ones(1)
     while parts:
         part = parts.pop()
         try:
-            solve_driven(scene, theta[part], 1.0, 0.0, links=(), points=(), sliders=(), bound=False)
+            solve_driven(
+                scene, theta[part], one, 0.0 * one, links=(), points=(), sliders=(), bound=False
+            )
         except ReachError:
             if part.size == 1:
                 possible[part] = False

@@ -15,8 +15,9 @@ from reports.sheets.sheet_note import sheet_note
 
 ANIMATED, PAGE = ".gif", ".html"
 ENDINGS = (".svg", ".pdf", ANIMATED, PAGE)
-FRAMES, MOST_FRAMES = 36, 60
-FRAME_S, STEP_S, LAST_S = 0.1, 1.2, 3.0
+FRAMES, MOST_FRAMES = 24, 40
+"""Of a turn, and at most of a free motion: each takes half a second to draw."""
+FRAME_S, STEP_S, LAST_S = 0.15, 1.2, 3.0
 DPI = 100
 
 

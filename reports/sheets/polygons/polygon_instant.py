@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.drawings.placed_mechanism import DriverState, PlacedMechanism
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, few
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import Scene
@@ -72,6 +72,12 @@ def _motion_at(scene: Scene, time_s: float) -> Motion:
     as it begins at 0."""
     if not scene.is_free:
         return true_motion(scene, np.array([time_s]))
+    if scene.elastic:
+        raise CrankcheckError(
+            f"{scene.name}: {few(scene.elastic, 4)} bends or stretches and is let go, and polygons "
+            "are those of rigid links; take [elastic] out of the scene, or name an --omega, with "
+            "which links are drawn as rigid"
+        )
     own_s = scene.driver.law.period_s
     if time_s > MOST_PERIODS * own_s:
         raise CrankcheckError(

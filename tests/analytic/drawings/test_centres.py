@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -87,3 +88,16 @@ def test_the_moving_centrode_rolls_on_the_fixed_one() -> None:
     assert steps[0] == pytest.approx(steps[1], rel=1e-4)
     still = replace(solve(scene, times[:3], bound=False))
     assert np.isfinite(centrodes(still, "rocker", "D").fixed).all()
+
+
+def test_a_link_that_turns_by_rounding_alone_does_not_turn() -> None:
+    """The coupler of a parallelogram is carried round: its circles would be 1e14 m large."""
+    drawn = drawn_at("fourbar-lecture-1", math.pi / 2)
+    coupler = replace(drawn.rates["coupler"], omega=1e-15)
+    drawn = replace(drawn, rates={**drawn.rates, "coupler": coupler})
+    with pytest.raises(CrankcheckError, match="coupler does not turn at this instant"):
+        curvature_circles(drawn, "coupler")
+    motion = solve(drawn.placement.scene, np.linspace(0.0, 0.1, 9), bound=False)
+    still = replace(motion.links["coupler"], omega=np.full(9, 1e-15))
+    with pytest.raises(CrankcheckError, match="coupler never turns"):
+        centrodes(replace(motion, links={**motion.links, "coupler": still}), "coupler", "B")
