@@ -13,6 +13,9 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 
+ROUNDING = 1e-12
+"""An angular velocity that is less than so much of the fastest link's is none."""
+
 
 @dataclass(frozen=True)
 class Centrodes:
@@ -29,7 +32,9 @@ def centrodes(motion: Motion, link: str, point: str) -> Centrodes:
     Raises CrankcheckError for a link that never turns.
     """
     body, at = motion.links[link], motion.points[point]
-    turning = np.abs(body.omega) > 1e-12 * max(float(np.abs(body.omega).max()), 1e-300)
+    # against the fastest link: one that is carried round turns by the rounding of its neighbours
+    fastest = max(float(np.abs(other.omega).max()) for other in motion.links.values())
+    turning = np.abs(body.omega) > ROUNDING * fastest
     if not turning.any():
         raise CrankcheckError(f"{link} never turns: it has no centrodes; take another link")
     omega = np.where(turning, body.omega, np.nan)[:, None]

@@ -15,12 +15,14 @@ a = a_P + alpha x r - omega^2 r.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from analytic.drawings.body_rates import BodyRates
+from analytic.drawings.drawn_polygons import DrawnPolygons
 from analytic.drawings.placed_mechanism import quarter_turn
+from analytic.drawings.similarity import link_rates
 from models.array import Array
 from models.errors import CrankcheckError
 
@@ -44,21 +46,22 @@ class CurvatureCircles:
     acceleration_pole: Array
 
 
-def velocity_pole(body: BodyRates) -> Array | None:
-    """The body's point without velocity [m], (2,); None where it does not turn."""
-    if body.omega == 0.0:
-        return None
+def velocity_pole(body: BodyRates) -> Array:
+    """The point without velocity [m], (2,), of a body that turns."""
     return np.asarray(body.place + quarter_turn(body.velocity) / body.omega)
 
 
-def curvature_circles(body: BodyRates, name: str) -> CurvatureCircles:
-    """The circles of a body at one instant. Raises CrankcheckError where it does not turn."""
-    pole = velocity_pole(body)
-    if pole is None:
+def curvature_circles(drawn: DrawnPolygons, link: str) -> CurvatureCircles:
+    """The circles of a link that was drawn. Raises CrankcheckError where it does not turn, but for
+    the rounding of the polygons."""
+    omega, alpha = link_rates(drawn, link)
+    if omega == 0.0:
         raise CrankcheckError(
-            f"{name} does not turn at this instant: its pole is at infinity, and it has no "
+            f"{link} does not turn at this instant: its pole is at infinity, and it has no "
             "inflection circle; take another angle, or another link"
         )
+    body = replace(drawn.rates[link], alpha=alpha)
+    pole = velocity_pole(body)
     at_pole = body.acceleration_at(pole)
     square = body.omega**2
     inflection = _through(pole, at_pole / square)

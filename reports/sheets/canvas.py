@@ -39,6 +39,10 @@ class Canvas:
         self.layers.append(axes)
         return axes
 
+    def named(self, name: str) -> Axes:
+        """The layer of a name that is there."""
+        return next(axes for axes in self.layers if axes.get_gid() == f"layer-{name}")
+
     def saved(self, kind: str, title: str) -> bytes:
         """The file of the sheet, of a kind in `reports.figures.saving.FORMATS`."""
         raw = saved(self.figure, kind, title)

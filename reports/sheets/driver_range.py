@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
-from analytic.kinematics import reach
-from models.errors import CrankcheckError
+from analytic.kinematics import reach, solve_driven
+from models.array import Array, Mask
+from models.errors import CrankcheckError, ReachError
 from models.laws import Oscillating
 from models.scene import Scene
 
@@ -22,6 +23,25 @@ def range_about(scene: Scene, theta: float) -> tuple[float, float]:
         if low + shift - 1e-9 <= theta <= high + shift + 1e-9:
             return low + shift, high + shift
     raise CrankcheckError(f"{scene.name}: can not be assembled at {math.degrees(theta):g} deg")
+
+
+def assembled(scene: Scene, theta: Array) -> Mask:
+    """At which driver angles (T,) the scene can be assembled; within a range there may be single
+    ones, singular positions, at which it can not."""
+    possible = np.ones(theta.shape, dtype=bool)
+    parts, one = [np.arange(theta.size)], np.ones(1)
+    while parts:
+        part = parts.pop()
+        try:
+            solve_driven(
+                scene, theta[part], one, 0.0 * one, links=(), points=(), sliders=(), bound=False
+            )
+        except ReachError:
+            if part.size == 1:
+                possible[part] = False
+            else:
+                parts += np.array_split(part, 2)
+    return possible
 
 
 def sense_of_law(scene: Scene) -> float:

@@ -50,7 +50,9 @@ def ink_of(figure: Figure) -> tuple[Ink, Ink]:
         canvas.draw()  # type: ignore[no-untyped-call]  # matplotlib has no annotation here
     figure.set_dpi(dpi)
     rows = np.asarray(canvas.buffer_rgba())[::-1]  # type: ignore[no-untyped-call]  # as above
-    dark = 255 - rows[..., :3].min(axis=2).astype(int)
+    # a minimum over the last axis takes five times as long
+    lightest = np.minimum(np.minimum(rows[..., 0], rows[..., 1]), rows[..., 2])
+    dark = 255 - lightest.astype(int)
     is_dark = dark > 255 * FAINT
     is_faint = (dark > 255 * TINT) & ~is_dark
     return _summed(np.where(is_dark, dark, 0)), _summed(np.where(is_faint, dark, 0))

@@ -94,9 +94,16 @@ def together(at: Mapping[str, Array], within_mm: float) -> dict[str, Array]:
     return spots
 
 
-def write_letters(canvas: Canvas, axes: Axes, letters: Iterable[Letter], box: Box) -> None:
-    """Letters in a box of the sheet, those that come first with the first choice."""
-    dark, faint = ink_of(canvas.figure)
+def write_letters(
+    canvas: Canvas,
+    axes: Axes,
+    letters: Iterable[Letter],
+    box: Box,
+    ink: tuple[Ink, Ink] | None = None,
+) -> None:
+    """Letters in a box of the sheet, those that come first with the first choice; ``ink`` is what
+    is drawn in the box, where that is known, as looking costs more than all else."""
+    dark, faint = ink or ink_of(canvas.figure)
     taken: list[tuple[Array, Array]] = []
     for letter in letters:
         middle, anchor = _best(letter, dark, faint, taken, box)

@@ -15,7 +15,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Arc, Circle
 
-from analytic.drawings.paper_scale import round_scale
 from analytic.drawings.placed_mechanism import DriverState, PlacedMechanism
 from analytic.kinematics import solve_driven
 from analytic.structure.groups import Group
@@ -27,7 +26,7 @@ from reports.sheets.canvas import Canvas, line
 from reports.sheets.driver_range import range_of_law, sense_of_law
 from reports.sheets.letters import NUMBER, Letter, write_letters
 from reports.sheets.paper import Box, Paper
-from reports.sheets.scheme import draw_scheme, point_letters, symbol_radius
+from reports.sheets.scheme import draw_scheme, extent_of, point_letters, symbol_radius
 from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 
 PADDING = 12.0
@@ -66,7 +65,9 @@ class PositionSheet:
 
 
 def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
-    """The scene with its crank circle in so many parts, from the driver's angle at time 0 on.
+    """The scene with its crank circle in so many parts, from the driver's angle at time 0 on; a
+    driver that does not turn fully is drawn from end to end of what it swings through or reaches.
+    The positions are numbered in the sense in which the driver starts.
 
     Raises CrankcheckError where the parts are too small to be told apart on the paper.
     """
@@ -78,15 +79,13 @@ def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
         angles = start + sense * math.tau * np.arange(divisions) / divisions
         dense = np.linspace(start, start + math.tau, LOCUS)
     else:
-        angles, dense = np.linspace(low, high, divisions), np.linspace(low, high, LOCUS)
+        first, last = (low, high) if sense > 0.0 else (high, low)
+        angles, dense = np.linspace(first, last, divisions), np.linspace(first, last, LOCUS)
     points, loci = (_points(scene, each) for each in (angles, dense))
-    places = np.concatenate(list(loci.values()))
-    corner, size = places.min(axis=0), np.ptp(places, axis=0)
-    box = inner_box(paper)
-    room = np.array([box.width, box.height]) - 2 * PADDING
-    scale = max(round_scale(s, r) for s, r in zip(size, room, strict=True) if s > 0.0)
     placement = PlacedMechanism.of(scene, DriverState(float(angles[0]), sense))
-    sheet = PositionSheet(scene, placement, angles, points, loci, scale, corner + size / 2, paper)
+    places = np.concatenate([*loci.values(), extent_of(placement)])
+    fitted = inner_box(paper).fitted(places, PADDING)
+    sheet = PositionSheet(scene, placement, angles, points, loci, *fitted, paper)
     _check_apart(sheet, divisions)
     return sheet
 
@@ -120,15 +119,14 @@ def draw_positions(sheet: PositionSheet, note: str) -> Canvas:
     _loci(canvas.layer("loci"), sheet)
     _positions(canvas.layer("positions"), sheet)
     _construction(canvas.layer("construction"), sheet)
-    first = {name: sheet.at(at[0]) for name, at in sheet.points.items()}
-    draw_scheme(canvas.layer("mechanism"), sheet.placement, first)
+    draw_scheme(canvas.layer("mechanism"), sheet.placement, sheet.at)
     write_letters(canvas, canvas.layer("letters"), _letters(sheet), sheet.box)
     return canvas
 
 
 def _frame(axes: Axes, sheet: PositionSheet, note: str) -> None:
-    count, law = len(sheet.angles), sheet.scene.driver.link
-    told = f"{sheet.scene.name}: {count} positions of {law}, K_l = {sheet.scale:g} m/mm"
+    count, driver = len(sheet.angles), sheet.scene.driver.link
+    told = f"{sheet.scene.name}: {count} positions of {driver}, K_l = {sheet.scale:g} m/mm"
     write_head(axes, sheet.paper, told, note)
     draw_border(axes, sheet.box)
 

@@ -1,10 +1,11 @@
-"""The scheme of a mechanism as books draw it: bars and plates, pins, hatched ground, blocks, slots,
-and the arrow of the driver's rotation."""
+"""The scheme of a mechanism as books draw it: bars and plates, pins, hatched ground, blocks, and
+the arrow of the driver's rotation."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -13,21 +14,16 @@ from matplotlib.patches import Arc, Circle
 from matplotlib.patches import Polygon as Patch
 
 from analytic.drawings.placed_mechanism import PlacedMechanism, quarter_turn
-from analytic.kinematics import solve_driven
 from models.array import Array
 from models.laws import Oscillating
 from models.scene import GROUND
 from reports.figures.style import INK
 from reports.sheets.canvas import arrow_head, line
-from reports.sheets.driver_range import range_about
 from reports.sheets.letters import Letter, together
+from reports.sheets.slots import draw_slots, travels
 
 PIN_MM, BLOCK_MM, FOOT_MM = 1.0, (6.0, 3.6), 3.8
 HATCH_MM, HATCHES = 1.3, 6
-SLOT_MM, SLOT_SPARE_MM = 1.5, 4.0
-"""Half the width of a slot in a link, and how far it goes on beyond the block's travel."""
-TRAVEL = 73
-"""Driver angles over which travel is looked for."""
 TURN_MM, TURN_SHARE, TURN_DEG = (5.0, 9.0), 0.4, (22.0, 85.0)
 """The arrow of rotation: least and largest radius, share of the crank, and angles off the crank."""
 FOOT_DEG = 42.0
@@ -38,10 +34,17 @@ FRONT = 6
 """Pins lie over everything."""
 
 
-def draw_scheme(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]) -> None:
-    """The mechanism with its points at ``places`` [mm]."""
+def extent_of(placement: PlacedMechanism) -> Array:
+    """What the scheme has to have room for: points, and ends of slots [m], (n, 2)."""
+    return np.array([*placement.points.values(), *chain(*travels(placement).values())])
+
+
+def draw_scheme(axes: Axes, placement: PlacedMechanism, at: Callable[[Array], Array]) -> None:
+    """The mechanism with its places [m] ``at`` those of the sheet [mm]."""
     scene = placement.scene
-    _slots(axes, placement, places)
+    places = {name: at(place) for name, place in placement.points.items()}
+    slots = {name: (at(low), at(high)) for name, (low, high) in travels(placement).items()}
+    draw_slots(axes, placement, places, slots)
     for name, slider in scene.sliders.items():
         along = placement.along(name)
         if slider.link is not None and slider.on == GROUND:
@@ -64,10 +67,10 @@ def draw_scheme(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Arr
     for point in scene.ground:
         if point in pinned:
             _foot(axes, places[point])
-    for point, at in places.items():
+    for point, spot in places.items():
         radius = PIN_MM if point in pinned else 0.5 * PIN_MM
         face = "white" if point in pinned else INK
-        axes.add_patch(Circle(tuple(at), radius, fc=face, ec=INK, lw=0.7, zorder=FRONT))
+        axes.add_patch(Circle(tuple(spot), radius, fc=face, ec=INK, lw=0.7, zorder=FRONT))
     _turning(axes, placement, places)
 
 
@@ -137,53 +140,6 @@ def _rails(axes: Axes, place: Array, along: Array) -> None:
     reach, aside = 1.2 * BLOCK_MM[0] * along, 0.5 * BLOCK_MM[1] * quarter_turn(along)
     for side in (-1.0, 1.0):
         _hatched(axes, place + side * (aside + reach), place + side * (aside - reach))
-
-
-def _slots(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]) -> None:
-    """Slots of moving links that are not along their bars, as long as the block travels."""
-    scene = placement.scene
-    slotted = [name for name, s in scene.sliders.items() if s.on != GROUND]
-    crossing = [n for n in slotted if not _along_bar(placement, places, n)]
-    if not crossing:
-        return
-    travels = _travels(placement, crossing)
-    scale = _paper_per_metre(placement, places)
-    for name in crossing:
-        along, block = placement.along(name), places[scene.sliders[name].point]
-        low, high = (scale * each for each in travels[name])
-        start, end = block + (low - SLOT_SPARE_MM) * along, block + (high + SLOT_SPARE_MM) * along
-        aside = SLOT_MM * quarter_turn(along)
-        corners = [start + aside, end + aside, end - aside, start - aside]
-        axes.add_patch(Patch(corners, closed=True, fc="white", ec=INK, lw=1.0, zorder=2))
-
-
-def _along_bar(placement: PlacedMechanism, places: Mapping[str, Array], name: str) -> bool:
-    """Whether a slider runs along the bar of its guide, which is drawn through its block then."""
-    slider = placement.scene.sliders[name]
-    points = placement.scene.links[slider.on].points
-    ends = [places[point] - places[slider.point] for point in points]
-    across = quarter_turn(placement.along(name))
-    return max(abs(float(end @ across)) for end in ends) < 0.5 * SLOT_MM
-
-
-def _travels(placement: PlacedMechanism, names: list[str]) -> dict[str, tuple[float, float]]:
-    """How far sliders go to both sides of where they are [m]."""
-    scene, here = placement.scene, placement.driver.theta
-    angles = np.append(np.linspace(*range_about(scene, here), TRAVEL)[1:-1], here)
-    ones = np.ones_like(angles)
-    motion = solve_driven(
-        scene, angles, ones, 0.0 * ones, links=(), points=(), sliders=names, bound=False
-    )
-    moved = {n: motion.sliders[n].displacement - motion.sliders[n].displacement[-1] for n in names}
-    return {name: (float(each.min()), float(each.max())) for name, each in moved.items()}
-
-
-def _paper_per_metre(placement: PlacedMechanism, places: Mapping[str, Array]) -> float:
-    """Millimetres of paper to a metre, from the two points that are farthest apart along x or y."""
-    real = np.array(list(placement.points.values()))
-    drawn = np.array([places[name] for name in placement.points])
-    axis = int(np.ptp(real, axis=0).argmax())
-    return float(np.ptp(drawn[:, axis]) / np.ptp(real[:, axis]))
 
 
 def _turning(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]) -> None:

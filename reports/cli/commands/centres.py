@@ -8,18 +8,14 @@ from analytic.drawings.drawn_polygons import draw_polygons
 from analytic.drawings.placed_mechanism import DriverState
 from models.array import Array
 from models.files import find_scene, load_scene
+from models.scene import Scene
 from reports.cli.commands.sheets import ENDINGS, save_sheet
 from reports.cli.drawing_sheets import CentresRequest
-from reports.describe.driver_at import angle_at
+from reports.describe.driver_at import angle_at, driver_at
 from reports.output.columns import plain_table
 from reports.output.write import check_file
-from reports.sheets.centre_sheet import (
-    CentreSheet,
-    body_numbers,
-    centres_of,
-    draw_centres,
-    name_of,
-)
+from reports.sheets.centre_column import body_numbers, centre_name
+from reports.sheets.centre_sheet import CentreSheet, centres_of, draw_centres
 from reports.sheets.driver_range import sense_of_law
 from reports.sheets.paper import Paper
 from reports.sheets.sheet_note import sheet_note
@@ -32,7 +28,7 @@ def run_centres(request: CentresRequest, console: Console) -> int:
         check_file(request.output, "-o", ENDINGS, inputs=[find_scene(request.scene)])
     scene = load_scene(request.scene)
     # Centres do not depend on the speed; circles ask for the acceleration at a constant one.
-    drawn = draw_polygons(scene, DriverState(angle_at(request.at_deg), sense_of_law(scene)))
+    drawn = draw_polygons(scene, DriverState(_angle(scene, request.at_deg), sense_of_law(scene)))
     sheet = centres_of(drawn, request.link, paper)
     if request.output is not None:
         told = f"instant centres of {scene.name} at {request.at_deg:g} deg"
@@ -40,6 +36,11 @@ def run_centres(request: CentresRequest, console: Console) -> int:
         return 0
     _show(console, sheet)
     return 0
+
+
+def _angle(scene: Scene, at_deg: float) -> float:
+    """The driver's angle [rad]. Raises CrankcheckError for one that its law never comes to."""
+    return angle_at(at_deg) if scene.is_free else driver_at(scene, at_deg)[0]
 
 
 def _show(console: Console, sheet: CentreSheet) -> None:
@@ -52,10 +53,10 @@ def _show(console: Console, sheet: CentreSheet) -> None:
     ranked = sorted(sheet.centres.items(), key=lambda each: sorted(numbers[b] for b in each[0]))
     for pair, centre in ranked:
         crossing = " and ".join(
-            "".join(f"{name_of(side, numbers)} " for side in sides).strip() for sides in centre.by
+            " ".join(centre_name(each, numbers) for each in pairs) for pairs in centre.by
         )
         found = f"where {crossing} cross" if crossing else "a joint"
-        table.add_row(name_of(pair, numbers), *_place(centre.place), found)
+        table.add_row(centre_name(pair, numbers), *_place(centre.place), found)
     console.print(table)
     if sheet.circles is not None:
         _show_circles(console, sheet)

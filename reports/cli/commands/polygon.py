@@ -26,7 +26,7 @@ from reports.sheets.polygons.polygon_listing import show_polygons
 from reports.sheets.polygons.polygon_sheet import PolygonSheet, laid_out
 from reports.sheets.polygons.polygon_words import doubts
 
-MOST_K = 1e3
+LEAST_K, MOST_K = 1e-3, 1e3
 
 
 def run_polygon(request: PolygonRequest, console: Console) -> int:
@@ -67,8 +67,8 @@ def _check(request: PolygonRequest) -> None:
         ending = request.output.suffix.lower()
     if request.turn and ending != ANIMATED:
         raise CrankcheckError(f"--turn: a turn is an animation; give -o FILE{ANIMATED}")
-    if request.k is not None and not 0.0 < request.k <= MOST_K:
-        raise CrankcheckError(f"--k {request.k:g}: give a number above 0, up to {MOST_K:g}")
+    if request.k is not None and not LEAST_K <= request.k <= MOST_K:
+        raise CrankcheckError(f"--k {request.k:g}: give a number from {LEAST_K:g} to {MOST_K:g}")
     if told := _contradiction(request, ending):
         raise CrankcheckError(f"{told}; leave one out")
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import base64
-import math
 from collections.abc import Mapping
 
 import numpy as np
 
 from analytic.free.free_motion import FreeMotion
 from reports.describe.free_motion import free_notes
+from reports.drawing.free_instants import instants
 from reports.drawing.moving import drawing
 from reports.page.sections.motion import scene_words
 from reports.page.sections.section import Section
@@ -21,17 +21,8 @@ CAPTIONS: Mapping[str, str] = {
     "phase": "The driver's angular velocity over its angle.",
 }
 """What stands under a figure; one that is not here has its name."""
-LEAST, MOST, IN_A_TURN, IN_A_SECOND = 121, 1201, 45, 60
-"""Instants of the drawing: at least and at most, in a turn, and in a second."""
 SHORTEST_MS, LONGEST_MS = 4000, 12000
 """What a round may take."""
-
-
-def instants(free: FreeMotion) -> int:
-    """How many a free motion is drawn at."""
-    turns = free.peak_speed_rad_s * free.until_s / math.tau
-    wanted = max(IN_A_TURN * turns, IN_A_SECOND * free.until_s)
-    return int(np.clip(wanted, LEAST, MOST))
 
 
 def build(free: FreeMotion, figures: Mapping[str, bytes]) -> Section:

@@ -13,7 +13,6 @@ from reports.figures.style import INK, TINY, width_in
 from reports.sheets.canvas import Canvas, arrow, line, text
 from reports.sheets.paper import MM_PER_IN, Box
 from reports.sheets.polygons.magnified_errors import draw_errors
-from reports.sheets.polygons.polygon_letters import write_images
 from reports.sheets.polygons.polygon_on_paper import DrawnPolygon, crossing_line, image_lines
 
 COLOURS: dict[Kind, str] = {
@@ -36,7 +35,8 @@ IMAGE = "#8a94a0"
 
 
 def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
-    """The polygon, a layer for each step of drawing, one for the images, one for the letters."""
+    """The polygon, a layer for each step of drawing, one for the images, one for letters, which
+    holds the legend alone."""
     quantity = drawn.polygon.quantity
     for number, step in enumerate(drawn.polygon.steps, 1):
         axes = canvas.layer(f"{quantity}-{number}-{_plain(step.title)}")
@@ -53,7 +53,6 @@ def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
         draw_errors(axes, drawn.logged, drawn.polygon.images.values(), f"{quantity}-error")
     axes = canvas.layer(f"{quantity}-letters")
     _legend(axes, drawn.polygon, box)
-    write_images(canvas, axes, drawn, box)
 
 
 def _draw_vector(drawn: DrawnPolygon, vector: Vector, axes: Axes, quantity: str) -> None:

@@ -15,8 +15,9 @@ from reports.sheets.sheet_note import sheet_note
 
 ANIMATED, PAGE = ".gif", ".html"
 ENDINGS = (".svg", ".pdf", ANIMATED, PAGE)
-FRAMES, MOST_FRAMES = 48, 96
-FRAME_S, STEP_S, LAST_S = 0.1, 1.2, 3.0
+FRAMES, MOST_FRAMES = 24, 40
+"""Of a turn, and at most of a free motion: each takes half a second to draw."""
+FRAME_S, STEP_S, LAST_S = 0.15, 1.2, 3.0
 DPI = 100
 
 
@@ -58,11 +59,13 @@ def _picture(figure: Figure) -> Image.Image:
     canvas = FigureCanvasAgg(figure)
     canvas.draw()  # type: ignore[no-untyped-call]  # matplotlib has no annotation here
     pixels = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]  # as above
-    return Image.fromarray(pixels).convert("RGB").quantize(64, dither=Image.Dither.NONE)
+    return Image.fromarray(pixels).convert("RGB")
 
 
 def _animated(frames: list[Image.Image], seconds: list[float]) -> bytes:
-    """Pictures one after the other, again and again."""
+    """Pictures one after the other, again and again, in the colours of the last, which has all."""
+    colours = frames[-1].quantize(64, dither=Image.Dither.NONE)
+    frames = [each.quantize(palette=colours, dither=Image.Dither.NONE) for each in frames]
     buffer = io.BytesIO()
     frames[0].save(
         buffer, "GIF", save_all=True, append_images=frames[1:],

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.drawings.placed_mechanism import DriverState, PlacedMechanism
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, few
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import Scene
@@ -18,6 +18,10 @@ from reports.drawing.true_motion import true_motion
 
 AT_DEG = 90.0
 """The angle where nothing is said."""
+LARGEST = 1e9
+"""A speed [rad/s] that a user names is no more than this, and no less than one over it."""
+MOST_PERIODS = 10.0
+"""So many of its own durations what is let go is followed for: that takes seconds."""
 REST = 1e-12
 """A speed [rad/s] that is less than so much of the root of the acceleration is rounding."""
 
@@ -32,10 +36,10 @@ def placed_at_angle(
     speed.
     """
     if omega is not None:
-        if not (math.isfinite(omega) and omega):
+        if not 1 / LARGEST <= abs(omega) <= LARGEST:  # or no number
             raise CrankcheckError(
-                f"--omega {omega:g}: give a speed other than 0 in rad/s; at rest there is "
-                "nothing to draw"
+                f"--omega {omega:g}: give a speed other than 0 in rad/s, from {1 / LARGEST:g} to "
+                f"{LARGEST:g} either way; at rest there is nothing to draw"
             )
         return PlacedMechanism.of(scene, DriverState(angle_at(at_deg), omega))
     if scene.is_free:
@@ -68,5 +72,18 @@ def _motion_at(scene: Scene, time_s: float) -> Motion:
     as it begins at 0."""
     if not scene.is_free:
         return true_motion(scene, np.array([time_s]))
-    lasts_s = max(time_s, LOOK * scene.driver.law.period_s)
+    if scene.elastic:
+        raise CrankcheckError(
+            f"{scene.name}: {few(scene.elastic, 4)} bends or stretches and is let go, and polygons "
+            "are those of rigid links; take [elastic] out of the scene, or name an --omega, with "
+            "which links are drawn as rigid"
+        )
+    own_s = scene.driver.law.period_s
+    if time_s > MOST_PERIODS * own_s:
+        raise CrankcheckError(
+            f"--at-s {time_s:g}: {scene.name} is let go, and its motion from t = 0 to there takes "
+            f"too long to find; give a time up to {MOST_PERIODS * own_s:.6g} s, {MOST_PERIODS:g} "
+            "times its own duration"
+        )
+    lasts_s = max(time_s, LOOK * own_s)
     return kept_motion(scene, lasts_s).at(np.array([time_s]), bound=False)

@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from analytic.drawings.polygon import Quantity
 from analytic.drawings.vector_equation import SUPERSCRIPTS
 from models.array import Array
 from reports.figures.style import INK, QUIET, SIZE, SMALL
-from reports.sheets.canvas import Canvas
-from reports.sheets.letters import Letter, together, write_letters
-from reports.sheets.paper import Box
+from reports.sheets.letters import Letter, together
 from reports.sheets.polygons.magnified_errors import STAR
 from reports.sheets.polygons.polygon_on_paper import DrawnPolygon
 from reports.sheets.sheet_log import LOGGED
@@ -26,17 +23,15 @@ NODE_MM = 0.6
 """Half the size of the circle about an image."""
 
 
-def write_images(canvas: Canvas, axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
-    """The letters of the images, of ends between them and of the pole, clear of lines and of one
-    another."""
+def polygon_letters(drawn: DrawnPolygon) -> list[Letter]:
+    """The letters of the images, of ends between them and of the pole."""
     images = _images(drawn)
     between = _between(drawn, [*images.values()])
     letters = [
         Letter(name, at[None], NODE_MM, SIZE, LOGGED if name.endswith(STAR) else INK)
         for name, at in images.items()
     ]
-    letters += [Letter(name, at[None], 0.0, SMALL, QUIET) for name, at in between.items()]
-    write_letters(canvas, axes, letters, box)
+    return letters + [Letter(name, at[None], 0.0, SMALL, QUIET) for name, at in between.items()]
 
 
 def _images(drawn: DrawnPolygon) -> dict[str, Array]:

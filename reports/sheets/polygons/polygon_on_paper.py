@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.drawings.paper_scale import round_scale
 from analytic.drawings.polygon import Polygon, Vector
 from analytic.drawings.similarity import POINT
 from models.array import Array
@@ -89,19 +88,16 @@ def frame_of(
     beside: Sequence[Array] = (),
 ) -> tuple[float, Array]:
     """The scale, and the place of the pole [mm], of polygons in a box; as `fitted`."""
-    corners = [*(corner for each in polygons for corner in extent(each)), *beside]
-    low, high = np.min(corners, axis=0), np.max(corners, axis=0)
-    room = np.array([box.width, box.height]) - 2 * PADDING_MM
-    if scale is None:
-        wanted = [round_scale(s, r) for s, r in zip(high - low, room, strict=True) if s > 0.0]
-        scale = max(wanted, default=1.0)
-    elif np.any(high - low > scale * room):
-        wide, tall = (high - low) / scale + 2 * PADDING_MM
+    corners = np.array([*(corner for each in polygons for corner in extent(each)), *beside])
+    finest, middle = box.fitted(corners, PADDING_MM)
+    wide, tall = np.ptp(corners, axis=0) / (scale or finest) + 2 * PADDING_MM
+    if scale is not None and (wide > box.width or tall > box.height):
         raise CrankcheckError(
             f"the {polygons[0].quantity} polygon needs {wide:.0f} x {tall:.0f} mm at this scale, "
             f"and has {box.width:.0f} x {box.height:.0f} mm; take larger paper, or a smaller --k"
         )
-    return scale, np.array(box.middle) - (low + high) / 2 / scale
+    scale = scale or finest
+    return scale, np.array(box.middle) - middle / scale
 
 
 def crossing_line(drawn: DrawnPolygon, vector: Vector) -> tuple[Array, Array] | None:

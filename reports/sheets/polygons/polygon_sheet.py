@@ -22,21 +22,23 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from analytic.drawings.drawn_polygons import DrawnPolygons
-from analytic.drawings.paper_scale import book_scales, round_scale
+from analytic.drawings.paper_scale import book_scales
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.figures.style import QUIET, SMALL, TINY, cut
 from reports.output.numbers import readable
 from reports.sheets.canvas import Canvas, text
+from reports.sheets.ink import ink_of
 from reports.sheets.letters import Letter, write_letters
 from reports.sheets.paper import MM_PER_IN, Box, Paper
 from reports.sheets.polygons.logged_instant import LoggedInstant
 from reports.sheets.polygons.magnified_errors import STAR, MagnifiedErrors, draw_errors
 from reports.sheets.polygons.polygon_drawing import draw_polygon
+from reports.sheets.polygons.polygon_letters import polygon_letters
 from reports.sheets.polygons.polygon_on_paper import DrawnPolygon, fitted, frame_of
 from reports.sheets.polygons.polygon_table import draw_table, link_rows, vector_rows
 from reports.sheets.polygons.polygon_words import at_rest, doubts
-from reports.sheets.scheme import draw_scheme, point_letters
+from reports.sheets.scheme import draw_scheme, extent_of, point_letters
 from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 from reports.sheets.sheet_log import LOGGED
 
@@ -89,13 +91,13 @@ def laid_out(
     Raises CrankcheckError for too small paper.
     """
     boxes = _boxes(paper)
-    places = [*drawn.placement.points.values()]
-    length_scale, middle = _scheme_frame(np.array(places), boxes["scheme"])
+    places = extent_of(drawn.placement)
+    length_scale, middle = boxes["scheme"].fitted(places, SCHEME_PADDING)
     if log is not None:  # which may have come apart: it is to be seen
         off = {name: error / length_scale for name, error in log.places.items()}
         if MagnifiedErrors.of(drawn.placement.points, off).is_large:
-            places += [drawn.placement.points[n] + error for n, error in log.places.items()]
-            length_scale, middle = _scheme_frame(np.array(places), boxes["scheme"])
+            own = [drawn.placement.points[n] + error for n, error in log.places.items()]
+            length_scale, middle = boxes["scheme"].fitted(np.array([*places, *own]), SCHEME_PADDING)
     scales: tuple[float | None, float | None] = (None, None)
     if k is not None:
         if drawn.placement.driver.alpha:
@@ -114,19 +116,11 @@ def laid_out(
     )
 
 
-def _scheme_frame(places: Array, box: Box) -> tuple[float, Array]:
-    """The scale of lengths [m/mm] for places (n, 2), and what is in the middle of the box [m]."""
-    low, high = places.min(axis=0), places.max(axis=0)
-    room = np.array([box.width, box.height]) - 2 * SCHEME_PADDING
-    scales = [round_scale(s, r) for s, r in zip(high - low, room, strict=True) if s > 0.0]
-    return max(scales), (low + high) / 2
-
-
 def over_positions(drawn: Sequence[DrawnPolygons], paper: Paper) -> list[PolygonSheet]:
     """A sheet for each position, all at the same scales and with the same pole."""
     boxes = _boxes(paper)
-    places = np.array([list(each.placement.points.values()) for each in drawn]).reshape(-1, 2)
-    scheme = _scheme_frame(places, boxes["scheme"])
+    places = np.concatenate([extent_of(each.placement) for each in drawn])
+    scheme = boxes["scheme"].fitted(places, SCHEME_PADDING)
     velocity = frame_of([each.velocity for each in drawn], boxes["velocity"])
     acceleration = frame_of([each.acceleration for each in drawn], boxes["acceleration"])
     return [
@@ -161,14 +155,24 @@ def draw_sheet(sheet: PolygonSheet, note: str) -> Canvas:
 
     Raises CrankcheckError for paper on which its table can not be read.
     """
-    canvas = Canvas(sheet.paper)
-    axes = canvas.layer("frame")
-    _frame(axes, sheet, note)
-    _scheme(canvas, sheet)
+    canvas = draw_lines(sheet, note)
+    ink = ink_of(canvas.figure)  # once: no box has ink in another
+    for name, letters in _letters(sheet).items():
+        layer = name if name == "scheme" else f"{name}-letters"
+        write_letters(canvas, canvas.named(layer), letters, sheet.boxes[name], ink)
     rows = [
         *vector_rows(sheet.velocity), *vector_rows(sheet.acceleration), *link_rows(sheet.drawn)
     ]  # fmt: skip
-    draw_table(canvas.layer("table"), rows, sheet.boxes["table"], sheet.paper)
+    draw_table(canvas.named("table"), rows, sheet.boxes["table"], sheet.paper)
+    return canvas
+
+
+def draw_lines(sheet: PolygonSheet, note: str) -> Canvas:
+    """All of the sheet but its letters and its table, whose layers are there."""
+    canvas = Canvas(sheet.paper)
+    _frame(canvas.layer("frame"), sheet, note)
+    _scheme(canvas.layer("scheme"), sheet)
+    canvas.layer("table")
     draw_polygon(canvas, sheet.velocity, sheet.boxes["velocity"])
     draw_polygon(canvas, sheet.acceleration, sheet.boxes["acceleration"])
     return canvas
@@ -234,17 +238,26 @@ def _logged(sheet: PolygonSheet) -> dict[str, str]:
     return told
 
 
-def _scheme(canvas: Canvas, sheet: PolygonSheet) -> None:
-    axes = canvas.layer("scheme")
-    placement, box = sheet.drawn.placement, sheet.boxes["scheme"]
-    places = {name: sheet.place(at) for name, at in placement.points.items()}
-    draw_scheme(axes, placement, places)
-    letters = point_letters(placement, places)
+def _scheme(axes: Axes, sheet: PolygonSheet) -> None:
+    scene = sheet.drawn.placement.scene
+    draw_scheme(axes, sheet.drawn.placement, sheet.place)
     if (log := sheet.misplaced) is not None:
-        draw_errors(axes, log, (x.points for x in placement.scene.links.values()), "scheme-error")
-        letters += [
+        draw_errors(axes, log, (x.points for x in scene.links.values()), "scheme-error")
+
+
+def _letters(sheet: PolygonSheet) -> dict[str, list[Letter]]:
+    """The letters of the scheme and of both polygons."""
+    placement = sheet.drawn.placement
+    places = {name: sheet.place(at) for name, at in placement.points.items()}
+    of_scheme = point_letters(placement, places)
+    if (log := sheet.misplaced) is not None:
+        of_scheme += [
             Letter(f"{name}{STAR}", tip[None], 0.0, SMALL, LOGGED)
             for name, tip in log.tips.items()
             if np.any(log.errors[name])
         ]
-    write_letters(canvas, axes, letters, box)
+    return {
+        "scheme": of_scheme,
+        "velocity": polygon_letters(sheet.velocity),
+        "acceleration": polygon_letters(sheet.acceleration),
+    }

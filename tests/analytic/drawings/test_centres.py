@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -56,7 +57,7 @@ def test_circles_by_their_definitions(name: str, alpha: float) -> None:
     drawn = drawn_at(name, 1.0, alpha)
     for link in drawn.placement.scene.links:
         body = drawn.rates[link]
-        circles = curvature_circles(body, link)
+        circles = curvature_circles(drawn, link)
         assert body.velocity_at(circles.pole) == pytest.approx([0.0, 0.0], abs=1e-12)
         assert body.acceleration_at(circles.acceleration_pole) == pytest.approx([0, 0], abs=1e-9)
         round_about = np.linspace(0.3, 6.0, 9)
@@ -75,7 +76,7 @@ def test_circles_by_their_definitions(name: str, alpha: float) -> None:
 def test_a_link_that_does_not_turn_has_no_circles() -> None:
     drawn = drawn_at("scotch-yoke", 1.0)
     with pytest.raises(CrankcheckError, match="does not turn"):
-        curvature_circles(drawn.rates["yoke"], "yoke")
+        curvature_circles(drawn, "yoke")
 
 
 def test_the_moving_centrode_rolls_on_the_fixed_one() -> None:
@@ -87,3 +88,16 @@ def test_the_moving_centrode_rolls_on_the_fixed_one() -> None:
     assert steps[0] == pytest.approx(steps[1], rel=1e-4)
     still = replace(solve(scene, times[:3], bound=False))
     assert np.isfinite(centrodes(still, "rocker", "D").fixed).all()
+
+
+def test_a_link_that_turns_by_rounding_alone_does_not_turn() -> None:
+    """The coupler of a parallelogram is carried round: its circles would be 1e14 m large."""
+    drawn = drawn_at("fourbar-lecture-1", math.pi / 2)
+    coupler = replace(drawn.rates["coupler"], omega=1e-15)
+    drawn = replace(drawn, rates={**drawn.rates, "coupler": coupler})
+    with pytest.raises(CrankcheckError, match="coupler does not turn at this instant"):
+        curvature_circles(drawn, "coupler")
+    motion = solve(drawn.placement.scene, np.linspace(0.0, 0.1, 9), bound=False)
+    still = replace(motion.links["coupler"], omega=np.full(9, 1e-15))
+    with pytest.raises(CrankcheckError, match="coupler never turns"):
+        centrodes(replace(motion, links={**motion.links, "coupler": still}), "coupler", "B")

@@ -45,7 +45,7 @@ def test_a_limit_position_is_drawn_as_far_as_it_is_determined() -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (("fourbar-lecture-1", "--k", "0"), "--k 0: give a number above 0"),
+        (("fourbar-lecture-1", "--k", "0"), "--k 0: give a number from 0.001 to 1000"),
         (("fourbar-lecture-1", "--k", "nan"), "--k nan: give a number"),
         (("fourbar-lecture-1", "--k", "50"), "larger paper, or a smaller --k"),
         (("fourbar-lecture-1", "--omega", "0"), "other than 0"),

@@ -69,3 +69,11 @@ def test_a_driver_that_swings_is_drawn_over_what_it_reaches() -> None:
 def test_divisions_that_fall_together_are_refused_with_how_many_fit() -> None:
     with pytest.raises(CrankcheckError, match=r"at most \d+ fit, or take larger paper"):
         sheet_of("shaper", 300)
+
+
+def test_a_driver_that_does_not_turn_fully_is_numbered_in_its_sense() -> None:
+    scene = load_scene("fourbar-double-rocker")
+    law = ConstantSpeed(start_rad=1.0, speed_rad_s=-1.0)
+    sheet = positions(replace(scene, driver=replace(scene.driver, law=law)), 6, A4)
+    assert np.all(np.diff(sheet.angles) < 0.0)
+    assert sheet.placement.driver.omega < 0.0

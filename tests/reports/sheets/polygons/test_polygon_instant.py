@@ -51,3 +51,14 @@ def test_a_driver_at_rest_has_nothing_to_draw() -> None:
     scene = load_scene("whitworth")
     with pytest.raises(CrankcheckError, match="other than 0"):
         placed_at_angle(scene, 90.0, 0.0)
+
+
+@pytest.mark.parametrize("omega", [1e200, 5e-324, float("nan")])
+def test_a_speed_out_of_all_bounds_is_refused(omega: float) -> None:
+    with pytest.raises(CrankcheckError, match="from 1e-09 to 1e\\+09 either way"):
+        placed_at_angle(load_scene("whitworth"), 90.0, omega)
+
+
+def test_a_time_that_takes_too_long_to_come_to_is_refused() -> None:
+    with pytest.raises(CrankcheckError, match="give a time up to 100 s"):
+        placed_at_time(load_scene("fourbar-swing"), 1000.0)

@@ -18,7 +18,7 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.sheets.paper import Paper
 from reports.sheets.polygons.polygon_files import polygon_file, turning_file
-from reports.sheets.polygons.polygon_sheet import PolygonSheet, draw_sheet, laid_out
+from reports.sheets.polygons.polygon_sheet import PolygonSheet, draw_lines, draw_sheet, laid_out
 
 MM_PER_POINT = 25.4 / 72.0
 TENTH_MM = 0.1
@@ -69,7 +69,7 @@ def check_measured(name: str, theta: float) -> None:
     """Every vector of both polygons to a tenth of a millimetre on paper."""
     ones = np.ones(1)
     sheet = sheet_of(name, theta)
-    measured = drawn_lines(polygon_file(sheet, ".svg"))
+    measured = drawn_lines(draw_lines(sheet, "").saved("svg", "lines"))
     solved = solve_driven(load_scene(name), theta * ones, 10.0 * ones, 0.0 * ones, bound=False)
     for drawn in (sheet.velocity, sheet.acceleration):
         quantity, nodes = drawn.polygon.quantity, drawn.polygon.nodes
@@ -108,10 +108,10 @@ def test_an_animation_has_a_frame_for_each_layer_that_is_drawn() -> None:
         assert picture.n_frames == 1 + 1 + 2 * 3 + 1
 
 
-@pytest.mark.slow  # 48 sheets: what it finds beside the others is that the scales stay
+@pytest.mark.slow  # 24 sheets: what it finds beside the others is that the scales stay
 def test_over_a_turn_all_sheets_have_one_scale() -> None:
     with Image.open(io.BytesIO(turning_file(sheet_of("fourbar-lecture-1", 1.0, "A5")))) as picture:
-        assert picture.n_frames == 48
+        assert picture.n_frames == 24
 
 
 def words_on(sheet: PolygonSheet) -> list[str]:
