@@ -25,10 +25,12 @@ from sim.mujoco.reactions import reactions
 from sim.mujoco.settings import (
     INTEGRATORS,
     held_iterations,
+    held_share,
     holds,
     integrator,
     not_used,
     velocity_shift,
+    weight_share,
     writing,
 )
 from sim.mujoco.stepped import VERSION, SteppedModel, compiled, heard
@@ -52,7 +54,7 @@ class MujocoSession(SteppedModel):
             model = compiled(build(scene, state, chosen, tree))
         self._weights = model.body_invweight0.copy()
         if chosen.free:
-            model.body_invweight0[:] *= float(settings["free_inverse_weight_share"])
+            model.body_invweight0[:] *= weight_share(scene, settings)
         self._hold(model, keyframe=0)
         self._servo = chosen.servo_gain is not None
         self._controlled = has_control(scene, chosen)
@@ -86,7 +88,7 @@ class MujocoSession(SteppedModel):
             "integrator": INTEGRATORS[int(opt.integrator)],
         }
         if self._free:
-            settings["free_inverse_weight_share"] = self._share_of_weights()
+            settings |= held_share(self._scene, self._settings, self._share_of_weights())
         if model.neq:
             settings["solref_timeconst_s"] = float(model.eq_solref[0, 0])
             settings["solref_dampratio"] = float(model.eq_solref[0, 1])

@@ -8,6 +8,7 @@ from models import mjcf, mjcf_options
 from models.motion import State
 from models.poses import inertia_scale
 from models.scene import Scene
+from models.springs import SegmentSpring
 from sim.engine import Drive, Profile, Setting, Settings, SettingValue
 from sim.settings import check_choices, check_ranges
 
@@ -46,6 +47,9 @@ OF_FREE = ("free_timeconst_steps", "free_inverse_weight_share")
 FREE_STEPS, FREE_WEIGHT_SHARE = 32.0, 1e-7
 """Time constant of the loop closures in steps, and the share of the bodies' inverse weights, where
 nothing drives: `benchmarks/free_loops.py` shows what others come to."""
+SEGMENTS_SHARE = 1e-4
+"""The least share for chains of elastic segments: of 16 it leaves 4e-8 of the deflection, weights
+as compiled 1e-7, and 1e-7 of them 5e-6."""
 
 AS_SHIPPED = Profile(
     "as-shipped",
@@ -171,14 +175,33 @@ def _iterating(scene: Scene, settings: Settings, drive: Drive) -> str:
     Friction: which of two signs it has makes the solver's problem more than quadratic. Springs: the
     integrator `discrete` solves inertia and stiffness together by conjugate gradients, as many of
     them as there are iterations, and gives the run up where they do not converge. Lower weights of
-    what is let go: so stiff a problem keeps what the first passes round, the more so beside springs.
+    what is let go: so stiff a problem keeps what the first passes round.
     """
     if scene.friction:
         return "friction"
-    lowered = drive == "free" and settings["free_inverse_weight_share"] != 1
-    if scene.springs and (lowered or integrator(settings, drive) == "discrete"):
+    if scene.springs and integrator(settings, drive) == "discrete":
         return "springs"
-    return "free_weight_share" if lowered else ""
+    return "free_weight_share" if drive == "free" and weight_share(scene, settings) != 1 else ""
+
+
+def weight_share(scene: Scene, settings: Settings) -> float:
+    """Of the inverse weights as compiled, those that the bodies of what is let go are given.
+
+    Rounding goes up as the weights go down, and makes chains of elastic segments ring, which
+    nothing damps: theirs go down less.
+    """
+    asked = float(settings["free_inverse_weight_share"])
+    ringing = any(isinstance(spring, SegmentSpring) for spring in scene.springs.values())
+    return max(asked, SEGMENTS_SHARE) if ringing and asked < 1.0 else asked
+
+
+def held_share(scene: Scene, settings: Settings, found: float) -> dict[str, SettingValue]:
+    """The share that a model was ``found`` with, as settings: that asked for, and beside it that of
+    segments."""
+    asked, given = float(settings["free_inverse_weight_share"]), weight_share(scene, settings)
+    if given != asked and found == given:
+        return {"free_inverse_weight_share": asked, "free_inverse_weight_share_of_segments": found}
+    return {"free_inverse_weight_share": found}
 
 
 def held_iterations(
