@@ -25,7 +25,7 @@ from reports.sheets.paper import MM_PER_IN, Box
 
 LETTER, NUMBER = 8.0, 5.5
 """Type of the letters of points, and of numbers along a circle [point]."""
-CLEAR_MM, AIRY_MM = 0.35, 1.0
+CLEAR_MM, AIRY_MM = 0.45, 1.0
 """Room around a text that has to be blank, and that had better be."""
 AWAY_MM = (0.3, 0.6, 1.0, 1.5, 2.0, 2.8, 3.6, 4.5, 6.0, 8.0, 10.0, 13.0, 16.0, 20.0)
 """How far the edge of a text may be from what it names."""
