@@ -40,7 +40,7 @@ LONGEST_S = 10.0
 """Of the processor's time: a machine with other work to do may take much longer for the same."""
 MOST_BYTES = 1_000_000_000
 SEED = 20260
-FAST, EACH, PARTS = 25, 250, 20
+FAST, EACH, PARTS = 40, 250, 20
 """Files of either kind: in the fast test, in each part of the slow ones, and the parts of those."""
 KINDS = ("made", "free", "elastic", "changed")
 HOME = Path(tempfile.gettempdir()) / f"crankcheck-misdeed-{os.getpid()}"
