@@ -94,10 +94,8 @@ def convergence(
     trend, order, floor = _read(first, second, third, rounding)
     if trend in ("grows", "does not shrink") and max(second, third) <= solved:
         trend, order, floor = "as solved", math.nan, math.nan
-    if (
-        trend not in ("at rounding", "as solved", "diverges", "grows")
-        and max(second, third) <= known
-    ):
+    stays_or_shrinks = trend in ("shrinks", "levels off", "does not shrink")
+    if stays_or_shrinks and max(second, third) <= known:
         trend, order, floor = "as the truth", math.nan, math.nan
     elif trend == "levels off" and floor <= known:
         trend, floor = "shrinks", math.nan

@@ -84,14 +84,11 @@ def _show_log(console: Console, drawn: DrawnPolygon, sheet: PolygonSheet) -> Non
     table = plain_table(gap=2)
     for head in ("point", unit, "mm", f"logged {unit}", "mm", f"error {unit}", "mm", "towards deg"):
         table.add_column(head, justify="left" if head == "point" else "right")
-    ends = drawn.polygon.ends
-    for name, error in drawn.logged.errors.items():
-        own = ends[name] + error * drawn.scale
-        sizes = [float(np.hypot(*each)) for each in (ends[name], own)]
+    for name, size, own, error in drawn.logged_sizes():
         off = float(np.hypot(*error))
         table.add_row(
             name,
-            *(text for size in sizes for text in (f"{size:.7g}", f"{size / drawn.scale:.2f}")),
+            f"{size:.7g}", f"{size / drawn.scale:.2f}", f"{own:.7g}", f"{own / drawn.scale:.2f}",
             readable(off * drawn.scale), readable(off), _towards(error),
         )  # fmt: skip
     console.print(table)

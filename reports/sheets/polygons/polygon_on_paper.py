@@ -41,6 +41,16 @@ class DrawnPolygon:
         """How long a vector is [its unit], 0 where that is the rounding of a crossing."""
         return vector.size if vector.size > POINT * self.polygon.largest else 0.0
 
+    def logged_sizes(self) -> Iterator[tuple[str, float, float, Array]]:
+        """Of each end of a vector that a log has: its name, how long that vector is, and how long
+        the log's is [its unit], and the error (2,) [mm]."""
+        if self.logged is None:
+            return
+        ends = self.polygon.ends
+        for name, error in self.logged.errors.items():
+            own = ends[name] + error * self.scale
+            yield name, float(np.hypot(*ends[name])), float(np.hypot(*own)), error
+
     def beside(
         self, errors: Mapping[str, Array], way: str, box: Box, scale: float | None = None
     ) -> DrawnPolygon:

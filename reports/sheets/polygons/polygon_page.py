@@ -86,11 +86,12 @@ def _embedded(drawn: Sequence[DrawnPolygons], quantity: Quantity) -> dict[str, o
         name: n for each in every for n, step in enumerate(each.steps) for name in step.nodes
     }
     points = [name for name in whole.ends if name in node_of or np.any(whole.ends[name])]
+    row_of = {name: 4 * number for number, name in enumerate(vectors)}
     rows = np.full((4 * len(vectors), len(every)), np.nan)
     places = np.full((2 * len(points), len(every)), np.nan)
     for at, polygon in enumerate(every):
         for vector in polygon.vectors:
-            first = 4 * [*vectors].index(vector.name)
+            first = row_of[vector.name]
             rows[first : first + 4, at] = [*vector.start, *vector.end]
         ends = polygon.ends
         for number, name in enumerate(points):

@@ -53,19 +53,14 @@ def vector_rows(drawn: DrawnPolygon) -> Iterator[Row]:
     quantity = drawn.polygon.quantity
     unit = UNITS[quantity].replace("^2", "²")
     yield Row("velocities" if quantity == "velocity" else "accelerations", kept=1)
-    for each in drawn.polygon.vectors:
-        size = drawn.size_of(each)
-        yield Row(each.name, f"{size / drawn.scale:.2f} mm", f"{readable(size)} {unit}")
-    if drawn.logged is None:
-        return
-    ends = drawn.polygon.ends
+    for vector in drawn.polygon.vectors:
+        size = drawn.size_of(vector)
+        yield Row(vector.name, f"{size / drawn.scale:.2f} mm", f"{readable(size)} {unit}")
     prime = "'" if quantity == "acceleration" else ""
-    for name, error in drawn.logged.errors.items():
-        own = ends[name] + error * drawn.scale
+    for name, size, own, error in drawn.logged_sizes():
         letter = lower_case(name) + prime
-        for called, vector in ((letter, ends[name]), (letter + STAR, own)):
-            size = float(np.hypot(*vector))
-            yield Row(called, f"{size / drawn.scale:.2f} mm", f"{size:.6g} {unit}", logged=True)
+        for called, each in ((letter, size), (letter + STAR, own)):
+            yield Row(called, f"{each / drawn.scale:.2f} mm", f"{each:.6g} {unit}", logged=True)
         off = float(np.hypot(*error))
         yield Row(
             f"{letter} {letter}{STAR}", f"{readable(off)} mm",
