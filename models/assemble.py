@@ -5,30 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from models.controlled import Controlled
 from models.degrees import within_a_turn
+from models.driver_of_table import driver_of
+from models.driver_tables import DriverTable
 from models.elastic_schema import ElasticTable
 from models.elastic_tables import elastic_of, faults_of_beams, mass_of
 from models.errors import SceneError
 from models.free_faults import faults_of_free_motion
 from models.friction import ConstantFriction, CoulombFriction, Friction
-from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.load_of_table import load_of
 from models.load_tables import LawOfLoad
-from models.released import Released
-from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
-from models.schema import (
-    AcceleratingDriver,
-    ControlledDriver,
-    DriverTable,
-    FreeDriver,
-    FrictionTable,
-    FromRestDriver,
-    LinkTable,
-    OscillatingDriver,
-    SceneTable,
-    SliderTable,
-)
+from models.scene import GROUND, Link, Point, Scene, Slider, span
+from models.schema import FrictionTable, LinkTable, SceneTable, SliderTable
 from models.spring_tables import springs_of
 from models.start_table import start_of
 from models.table_fields import LARGEST
@@ -64,7 +52,7 @@ def scene_from_table(
     sliders = {name: _slider(name, slider, longest) for name, slider in table.sliders.items()}
     found = {name: load_of(name, load, sliders, faults) for name, load in loads.items()}
     try:
-        law = _law(driver)
+        driven = driver_of(driver, table.ground.points, links, sliders)
     except ValueError as error:
         faults.append(f"driver: {error}")
     if longest == 0.0:
@@ -80,7 +68,7 @@ def scene_from_table(
         ground=dict(table.ground.points),
         links=links,
         sliders=sliders,
-        driver=Driver(driver.link, law),
+        driver=driven,
         branch=dict(table.branch),
         gravity_m_s2=table.gravity_m_s2,
         tolerance=dict(table.tolerance),
@@ -188,27 +176,6 @@ def _slider(name: str, table: SliderTable, longest: float) -> Slider:
         mass_kg=mass,
         inertia_kg_m2=inertia,
     )
-
-
-def _law(driver: DriverTable) -> Law:
-    """The law of motion of a driver table. Raises ValueError for numbers that drive nothing."""
-    if isinstance(driver, OscillatingDriver):
-        return Oscillating(
-            math.radians(driver.centre_deg),
-            math.radians(driver.amplitude_deg),
-            driver.frequency_rad_s,
-            within_a_turn(driver.phase_deg),
-        )
-    if isinstance(driver, FromRestDriver):
-        return FromRest(math.radians(driver.start_deg), driver.speed_rad_s, driver.rise_s)
-    start_rad = math.radians(driver.start_deg)
-    if isinstance(driver, FreeDriver):
-        return Released(start_rad, driver.speed_rad_s, driver.duration_s)
-    if isinstance(driver, AcceleratingDriver):
-        return Accelerating(start_rad, driver.speed_rad_s, driver.acceleration_rad_s2)
-    if isinstance(driver, ControlledDriver):
-        return Controlled(start_rad, driver.speed_rad_s, driver.kp_n_m_rad, driver.kd_n_m_s)
-    return ConstantSpeed(start_rad, driver.speed_rad_s)
 
 
 def _friction(joint: str, table: FrictionTable) -> Friction:

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 
 from models.assemble import scene_from_table
 from models.controlled import Controlled
+from models.driver_tables import DRIVERS, SLIDES, DriverTable
 from models.errors import CrankcheckError, SceneError, cut, few, nearest, shown, suggestion
 from models.load_tables import LOADS, LawOfLoad
 from models.names import faults_of_names
@@ -18,7 +19,7 @@ from models.one_or_more import names_in
 from models.regular import UnreadableError, regular_text
 from models.released import Released
 from models.scene import Scene
-from models.schema import DRIVERS, DriverTable, SceneTable
+from models.schema import SceneTable
 from models.toml_text import tables
 
 SCENE_FOLDER = Path(__file__).parent / "scenes"
@@ -189,9 +190,10 @@ def _driver(raw: object, faults: list[str]) -> DriverTable | None:
     if not isinstance(raw, Mapping):
         return None  # already a fault of SceneTable
     law = raw.get("law", "constant")
-    model = DRIVERS.get(law) if isinstance(law, str) else None
+    known = SLIDES if "slider" in raw else DRIVERS
+    model = known.get(law) if isinstance(law, str) else None
     if model is None:
-        faults.append(f"driver.law: found {shown(law)}; use one of {', '.join(DRIVERS)}")
+        faults.append(f"driver.law: found {shown(law)}; use one of {', '.join(known)}")
         return None
     if isinstance(raw.get("link"), list):
         faults.append(f"driver.link: found {shown(raw['link'])}; a scene has one driver, one link")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
@@ -19,6 +19,8 @@ another unit."""
 class Law(ABC):
     """A smooth law of motion of the driver. Raises ValueError for numbers that drive nothing.
 
+    Its coordinate is an angle, in rad as the names say; of a slider that is driven it is the
+    displacement, in m, and the same names stand for m, m/s and m/s^2 (`models.scene.Driver`).
     ``period_s`` is what one "turn" of a run means for the law, and ``peak_speed_rad_s`` the
     speed that errors of velocity are divided by; both are positive. ``offset_rad``,
     ``phase_rad`` and ``fastest_rad_s``, the constant parts of the angle and of the phase and the
@@ -74,10 +76,24 @@ class Law(ABC):
 
 @dataclass(frozen=True)
 class _ToSpeed(Law):
-    """A law that starts at an angle and comes to one speed."""
+    """A law that starts at an angle and comes to one speed.
+
+    ``travel_rad`` is the way that counts as one "turn" of a run: a whole turn, where a slider is
+    not driven, for which there is none.
+    """
 
     start_rad: float
     speed_rad_s: float
+    travel_rad: float = field(default=math.tau, kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.travel_rad > 0.0:
+            raise ValueError(f"the way of a run is {self.travel_rad:g}: give one above 0")
+
+    @property
+    def period_s(self) -> float:
+        return self.travel_rad / self.peak_speed_rad_s
 
     @property
     def offset_rad(self) -> float:
@@ -198,13 +214,14 @@ class Accelerating(_ToSpeed):
     def _first_turn(self) -> tuple[float, float]:
         """How long it takes [s], and the largest speed within it [rad/s]."""
         speed, rate = abs(self.speed_rad_s), abs(self.acceleration_rad_s2)
+        turn = self.travel_rad
         slows_down = self.speed_rad_s * self.acceleration_rad_s2 < 0.0
-        if slows_down and speed**2 >= 2.0 * math.tau * rate:
-            return 2.0 * math.tau / (speed + math.sqrt(speed**2 - 2.0 * math.tau * rate)), speed
-        end = math.sqrt(speed**2 + 2.0 * math.tau * rate)
+        if slows_down and speed**2 >= 2.0 * turn * rate:
+            return 2.0 * turn / (speed + math.sqrt(speed**2 - 2.0 * turn * rate)), speed
+        end = math.sqrt(speed**2 + 2.0 * turn * rate)
         if slows_down:  # it turns round within the turn, and passes its start
             return (speed + end) / rate, end
-        return 2.0 * math.tau / (speed + end), end
+        return 2.0 * turn / (speed + end), end
 
     @property
     def period_s(self) -> float:

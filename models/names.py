@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain, islice
 from typing import Any
 
+from models.driver_names import faults_of_driver
 from models.elastic_tables import faults_of_elastic
 from models.errors import cut
 from models.friction_names import faults_of_friction
@@ -18,6 +19,8 @@ from models.scene import GROUND
 from models.spring_tables import faults_of_springs
 from models.start_table import faults_of_start
 
+MOST_ASSEMBLIES = 6
+"""Of a group of four links: the real ones that it has at most."""
 LISTED = 12
 """Names that a message lists."""
 
@@ -30,7 +33,7 @@ def faults_of_names(raw: Mapping[str, Any]) -> list[str]:
     return [
         *_links(points, sliders),
         *_sliders(sliders, points, ground),
-        *_driver(_table(raw, "driver"), points, ground),
+        *faults_of_driver(_table(raw, "driver"), points, sliders, ground),
         *_loads(_table(raw, "loads"), points, sliders),
         *faults_of_friction(_table(raw, "friction"), ground, points, sliders),
         *faults_of_springs(_table(raw, "springs"), ground, points, sliders),
@@ -38,7 +41,7 @@ def faults_of_names(raw: Mapping[str, Any]) -> list[str]:
         *faults_of_elastic(
             _table(raw, "elastic"), ground, points, sliders, _table(raw, "driver").get("link")
         ),
-        *_branch(_table(raw, "branch"), ground.union(*points.values(), sliders)),
+        *_branch(_table(raw, "branch"), ground.union(*points.values(), sliders), points),
     ]
 
 
@@ -101,19 +104,6 @@ def _sliders(
             yield f"{key}.point: no body has a point {cut(point)}; set point to one of {all_points}"
 
 
-def _driver(
-    driver: Mapping[str, Any], points: Mapping[str, set[str]], ground: set[str]
-) -> Iterator[str]:
-    """A driver that is no link, or turns about nothing."""
-    link = driver.get("link")
-    if not isinstance(link, str):
-        return
-    if link not in points:
-        yield f"driver.link: found {cut(link)}; use one of {_list(points)}"
-    elif not points[link] & ground:
-        yield f"driver.link: {cut(link)} has no ground pin to turn about; give it a ground point"
-
-
 def _loads(
     loads: Mapping[str, Any], points: Mapping[str, set[str]], sliders: Mapping[str, Any]
 ) -> Iterator[str]:
@@ -135,7 +125,19 @@ def _loads(
             yield f"{key}.point: {cut(str(link))} has no point {cut(point)}; it has {has}"
 
 
-def _branch(branch: Mapping[str, Any], choices: set[str]) -> Iterator[str]:
-    for name in branch:
-        if name not in choices:
-            yield f"branch.{cut(name)}: no pin or slider of that name"
+def _branch(
+    branch: Mapping[str, Any], choices: set[str], links: Mapping[str, Any]
+) -> Iterator[str]:
+    """Assemblies of nothing, and sides and numbers that there are not."""
+    for name, chosen in branch.items():
+        if name not in choices and name not in links:
+            yield f"branch.{cut(name)}: no pin, slider or link of that name"
+        elif not isinstance(chosen, int):
+            continue  # already a fault of the schema
+        elif name in links and not 1 <= chosen <= MOST_ASSEMBLIES:
+            yield (
+                f"branch.{cut(name)}: found {cut(str(chosen))}; the assemblies of a group about a "
+                f"link are numbered from 1 to at most {MOST_ASSEMBLIES}"
+            )
+        elif name not in links and chosen not in (-1, 1):
+            yield f"branch.{cut(name)}: found {cut(str(chosen))}; use 1 or -1"

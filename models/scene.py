@@ -78,10 +78,41 @@ class Slider:
 
 @dataclass(frozen=True)
 class Driver:
-    """The link that is driven about its ground pin, and the law it follows."""
+    """The joint that is driven, and the law that its coordinate follows.
+
+    Body ``link`` moves against body ``base``. With neither ``pin`` nor ``slider`` that is a link
+    about its pin to the ground, and the coordinate its angle [rad]. With ``pin`` it is the angle of
+    the link less that of the base, two bodies that share this pin [rad]; with ``slider`` the
+    displacement of that slider [m], of which ``link`` is the body that slides (a link or a block).
+    """
 
     link: str
     law: Law
+    base: str = GROUND
+    pin: str | None = None
+    slider: str | None = None
+
+    @property
+    def is_crank(self) -> bool:
+        """Whether it is a link whose own angle is told, at its pin to the ground."""
+        return self.pin is None and self.slider is None
+
+    @property
+    def is_inner(self) -> bool:
+        """Whether it drives two moving bodies against each other."""
+        return self.base != GROUND and self.link != GROUND
+
+    @property
+    def joint(self) -> str:
+        """The driven joint in words: what a message calls it."""
+        if self.slider is not None:
+            return f"slider {self.slider}"
+        return self.link if self.pin is None else f"pin {self.pin} of {self.base} and {self.link}"
+
+    @property
+    def unit(self) -> str:
+        """Of its coordinate: rad or m."""
+        return "rad" if self.slider is None else "m"
 
 
 @dataclass(frozen=True)
@@ -91,11 +122,13 @@ class Scene:
     ``branch`` holds +1 or -1 per assembly choice, by the name of the pin (dyad of two links: +1
     where the pin lies to the left of the line from the first outer pin to the second, the links
     in the order of the file) or of the slider (+1: along the direction of the line); +1 where it
-    is silent. ``tolerance`` overrides default tolerances by quantity. ``gravity_m_s2`` is zero
-    unless the scene has it; ``loads`` act from outside, ``friction`` in joints of two bodies,
-    ``springs`` between bodies. ``start`` says more of the start of free motion than the driver.
-    ``elastic`` are the links that bend or stretch, by name; the others are rigid. ``beams`` are
-    what such a link is where an engine is given nodes for it (`models.beamed`).
+    is silent. Of a group of class III it holds, by the name of its central link, the number of the
+    assembly at time 0: from 1 on, by that link's angle in (-pi, pi]; 1 where it is silent.
+    ``tolerance`` overrides default tolerances by quantity. ``gravity_m_s2`` is zero unless the
+    scene has it; ``loads`` act from outside, ``friction`` in joints of two bodies, ``springs``
+    between bodies. ``start`` says more of the start of free motion than the driver. ``elastic`` are
+    the links that bend or stretch, by name; the others are rigid. ``beams`` are what such a link is
+    where an engine is given nodes for it (`models.beamed`).
     """
 
     name: str
@@ -148,7 +181,9 @@ class Scene:
 
     @property
     def driver_pivot(self) -> str:
-        """The point that pins the driver to the ground."""
+        """The pin that is driven: of a crank, that to the ground. There is none of a slider."""
+        if self.driver.pin is not None:
+            return self.driver.pin
         return next(point for point in self.links[self.driver.link].points if point in self.ground)
 
 

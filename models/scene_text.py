@@ -6,13 +6,10 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from numbers import Integral
 
-from models.controlled import Controlled
+from models.driver_of_table import driver_table
 from models.elastic import ElasticLink
-from models.errors import CrankcheckError
 from models.friction import ConstantFriction, Friction
-from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.load_text import in_degrees, load_table
-from models.released import Released
 from models.scene import Scene, Slider
 from models.springs import LineSpring, PinSpring, Spring
 from models.start import Start
@@ -54,7 +51,7 @@ def _tables(scene: Scene, flywheels: Mapping[str, float]) -> Iterator[tuple[str,
         )
     for name, slider in scene.sliders.items():
         yield f"sliders.{name}", _slider(slider)
-    yield "driver", {"link": scene.driver.link, **_law(scene.driver.law)}
+    yield "driver", driver_table(scene.driver)
     yield "branch", scene.branch
     yield "tolerance", scene.tolerance
     for name, load in scene.loads.items():
@@ -123,31 +120,6 @@ def _slider(slider: Slider) -> Table:
     if slider.link is not None:
         return {**table, "link": slider.link, "angle_deg": in_degrees(slider.angle_rad)}
     return {**table, "mass_kg": slider.mass_kg, "inertia_kg_m2": slider.inertia_kg_m2}
-
-
-def _law(law: Law) -> Table:
-    if isinstance(law, Oscillating):
-        return {
-            "law": "oscillating",
-            "centre_deg": in_degrees(law.centre_rad),
-            "amplitude_deg": in_degrees(law.amplitude_rad),
-            "frequency_rad_s": law.frequency_rad_s,
-            "phase_deg": in_degrees(law.phase_rad),
-        }
-    if not isinstance(law, ConstantSpeed | FromRest | Accelerating | Released):
-        name = type(law).__name__
-        raise CrankcheckError(f"law {name}: a scene file has no words for it; take another")
-    start = {"start_deg": in_degrees(law.start_rad), "speed_rad_s": law.speed_rad_s}
-    if isinstance(law, Released):
-        return {"law": "free", **start, "duration_s": law.duration_s}
-    if isinstance(law, Controlled):
-        gains = {"kp_n_m_rad": law.kp_n_m_rad, "kd_n_m_s": law.kd_n_m_s}
-        return {"law": "controlled", **start, **gains}
-    if isinstance(law, FromRest):
-        return {"law": "from-rest", **start, "rise_s": law.rise_s}
-    if isinstance(law, Accelerating):
-        return {"law": "accelerating", **start, "acceleration_rad_s2": law.acceleration_rad_s2}
-    return start
 
 
 def _value(value: object) -> str:

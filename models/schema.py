@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field, StringConstraints, model_validator
+from pydantic import Field, StrictInt, StringConstraints, model_validator
 
 from models.elastic_schema import ElasticTable
 from models.table_fields import (
@@ -12,15 +12,12 @@ from models.table_fields import (
     MOST_POINTS,
     Coordinates,
     Degrees,
-    Duration,
     Name,
     NonNegative,
     Number,
     Positive,
-    RateNumber,
     Table,
     Text,
-    not_tiny,
 )
 
 
@@ -70,59 +67,6 @@ class SliderTable(Table):
         if self.link is None and self.angle_deg != 0.0:
             raise ValueError("angle_deg needs link = ...: a block has the direction of its line")
         return self
-
-
-class ConstantDriver(Table):
-    link: Name
-    law: Literal["constant"] = "constant"
-    speed_rad_s: RateNumber
-    start_deg: Degrees = 0.0
-
-
-class OscillatingDriver(Table):
-    link: Name
-    law: Literal["oscillating"]
-    centre_deg: Degrees
-    amplitude_deg: Annotated[Degrees, AfterValidator(not_tiny)]
-    frequency_rad_s: RateNumber
-    phase_deg: Degrees = 0.0
-
-
-class FromRestDriver(Table):
-    link: Name
-    law: Literal["from-rest"]
-    speed_rad_s: RateNumber
-    rise_s: Positive
-    start_deg: Degrees = 0.0
-
-
-class AcceleratingDriver(Table):
-    link: Name
-    law: Literal["accelerating"]
-    speed_rad_s: RateNumber
-    acceleration_rad_s2: RateNumber
-    start_deg: Degrees = 0.0
-
-
-class ControlledDriver(Table):
-    """A link that a torque holds to a constant speed, by a controller with two gains."""
-
-    link: Name
-    law: Literal["controlled"]
-    speed_rad_s: RateNumber
-    kp_n_m_rad: NonNegative
-    kd_n_m_s: NonNegative
-    start_deg: Degrees = 0.0
-
-
-class FreeDriver(Table):
-    """A link that is let go, with a speed or from rest, for a duration."""
-
-    link: Name
-    law: Literal["free"]
-    speed_rad_s: RateNumber = 0.0
-    start_deg: Degrees = 0.0
-    duration_s: Duration = 10.0
 
 
 class SpringTable(Table):
@@ -198,8 +142,8 @@ class FrictionTable(Table):
 
 
 class SceneTable(Table):
-    """A whole scene file; its driver is checked by `DRIVERS` after its law is known, its loads by
-    `models.load_tables.LOADS`."""
+    """A whole scene file; its driver is checked by `models.driver_tables.DRIVERS` after its law is
+    known, its loads by `models.load_tables.LOADS`."""
 
     name: Name
     source: Annotated[Text, StringConstraints(min_length=1)]
@@ -208,7 +152,7 @@ class SceneTable(Table):
     links: dict[Name, LinkTable] = Field(min_length=1, max_length=MOST_BODIES)
     sliders: dict[Name, SliderTable] = Field(default_factory=dict, max_length=MOST_BODIES)
     driver: dict[str, object]
-    branch: dict[Name, Literal[-1, 1]] = Field(default_factory=dict)
+    branch: dict[Name, StrictInt] = Field(default_factory=dict)
     gravity_m_s2: Coordinates = (0.0, 0.0)
     tolerance: dict[Name, Positive] = Field(default_factory=dict)
     loads: dict[Name, dict[str, object]] = Field(default_factory=dict, max_length=MOST_BODIES)
@@ -216,21 +160,3 @@ class SceneTable(Table):
     springs: dict[Name, SpringTable] = Field(default_factory=dict, max_length=MOST_BODIES)
     start: StartTable = Field(default_factory=StartTable)
     elastic: dict[Name, ElasticTable] = Field(default_factory=dict, max_length=MOST_BODIES)
-
-
-DriverTable = (
-    ConstantDriver
-    | OscillatingDriver
-    | FromRestDriver
-    | AcceleratingDriver
-    | ControlledDriver
-    | FreeDriver
-)
-DRIVERS: dict[str, type[DriverTable]] = {
-    "constant": ConstantDriver,
-    "oscillating": OscillatingDriver,
-    "from-rest": FromRestDriver,
-    "accelerating": AcceleratingDriver,
-    "controlled": ControlledDriver,
-    "free": FreeDriver,
-}

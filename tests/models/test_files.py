@@ -170,7 +170,7 @@ FAULTS = {
     "branch of nothing": (
         "[driver]",
         "[branch]\nZ = 1\n[driver]",
-        "branch.Z: no pin or slider of that name",
+        "branch.Z: no pin, slider or link of that name",
     ),
     "branch other than 1": ("[driver]", "[branch]\nC = 2\n[driver]", "branch.C: found 2"),
     "slider on nothing": (
@@ -290,8 +290,8 @@ def test_very_many_faults_are_counted() -> None:
     with pytest.raises(SceneError) as error:
         parse_scene(text, "file.toml")
     assert len(error.value.faults) == 1000
-    assert str(error.value).endswith("driver.x19: unknown key; known: link, law, speed_rad_s, "
-                                     "start_deg\n  and 980 more")  # fmt: skip
+    assert str(error.value).endswith("driver.x19: unknown key; known: link, pin, links, law, "
+                                     "speed_rad_s, start_deg\n  and 980 more")  # fmt: skip
 
 
 @pytest.mark.parametrize(
