@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
+from analytic.dyads.driven import driver_scale
 from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Real
 from analytic.prepared import Driven, prepared, spans
 from analytic.reach import Range, ranges
@@ -87,7 +88,8 @@ def solve_driven(
     """The motion of a scene whose driver has the given angles, rates and accelerations.
 
     As `solve`, but for driver angles [rad], rates [rad/s] and accelerations [rad/s^2], shape (T,),
-    that are taken as exact: the geometry at the angle that an engine logged, say. One rate, or one
+    (of a slider that is driven its displacements, speeds and accelerations in m) that are taken as
+    exact: the geometry at the angle that an engine logged, say. One rate, or one
     acceleration, counts for all samples. Whole turns are counted from the angle that the scene's
     law has at time 0. ``time_s`` only labels the samples.
     """
@@ -100,7 +102,8 @@ def solve_driven(
         return theta[span], omega[span], alpha[span], error
 
     ready = prepared(scene)
-    return ready.motion(Selection.of(scene, links, points, sliders), labels, driver, bound=bound)
+    chosen = Selection.of(scene, links, points, sliders)
+    return ready.motion(chosen, labels, _scaled(scene, driver), bound=bound)
 
 
 def chunks(scene: Scene, time_s: Array, *, bound: bool) -> Iterator[tuple[slice, Chunk]]:
@@ -134,8 +137,10 @@ def counted_angle(chunk: Chunk, link: str) -> Array:
 
 
 def reach(scene: Scene) -> list[Range]:
-    """The driver angles, within a turn, in which the scene can be assembled (`analytic.reach`)."""
-    return ranges(prepared(scene).stretched)
+    """The driver angles [rad], within a turn, in which the scene can be assembled
+    (`analytic.reach`); of a slider that is driven, its displacements [m]."""
+    scale = driver_scale(scene)
+    return [(low * scale, high * scale) for low, high in ranges(prepared(scene).stretched)]
 
 
 def _driver_of(scene: Scene, time_s: Array, *, bound: bool) -> Callable[[slice], Driven]:
@@ -152,7 +157,22 @@ def _driver_of(scene: Scene, time_s: Array, *, bound: bool) -> Callable[[slice],
         theta, omega, alpha = _law_at(law, t)
         return theta, omega, alpha, _rounding_of(law, t, theta) if bound else None
 
-    return driver
+    return _scaled(scene, driver)
+
+
+def _scaled(scene: Scene, driver: Callable[[slice], Driven]) -> Callable[[slice], Driven]:
+    """The driver's coordinate as the reference's driver angle (`analytic.dyads.driven`)."""
+    scale = driver_scale(scene)
+    if scale == 1.0:
+        return driver
+
+    def scaled(span: slice) -> Driven:
+        theta, omega, alpha, error = driver(span)
+        if error is not None:
+            error = AngleError(error.theta / scale, error.omega / scale, error.alpha / scale)
+        return theta / scale, omega / scale, alpha / scale, error
+
+    return scaled
 
 
 def _law_at(law: Law, t: Array) -> tuple[Array, Real, Real]:

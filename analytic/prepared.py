@@ -16,6 +16,7 @@ import numpy as np
 from analytic.change_points.find import passages, passed
 from analytic.change_points.sign import ChangePoints
 from analytic.dyads.chunk import Chunk, Passage
+from analytic.dyads.driven import driver_scale, told
 from analytic.dyads.parts import OpenError
 from analytic.dyads.plane import AngleError, Real
 from analytic.dyads.steps import Step, prepare, stretched
@@ -49,7 +50,7 @@ def prepared(scene: Scene) -> Prepared:
 @lru_cache(maxsize=KEPT)
 def _prepared(same: Same) -> Prepared:
     steps = prepare(same.scene, analyse(same.scene))
-    start = float(same.scene.driver.law.at(np.zeros(1))[0][0])
+    start = float(same.scene.driver.law.at(np.zeros(1))[0][0]) / driver_scale(same.scene)
     return Prepared(same.scene, steps, passages(same.scene, steps), start)
 
 
@@ -116,7 +117,7 @@ class Prepared:
         """Where the loop cannot close, by how much, and where it can."""
         scene, index = self.scene, int(np.argmax(short_m))
         return (
-            f"{scene.name}: {scene.driver.link} at {math.degrees(theta[index]):.6g} deg: the loop "
+            f"{scene.name}: {scene.driver.joint} at {told(scene, theta[index])}: the loop "
             f"cannot close at {step.key}, it is open by {float(np.ravel(short_m)[index]):.3g} m. "
             f"{describe_reach(scene, self.stretched)}"
         )

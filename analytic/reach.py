@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
+from analytic.dyads.driven import driver_scale, told
 from models.array import Array, Mask
 from models.scene import Scene
 
@@ -64,16 +65,19 @@ def _bisect(stretched: Stretched, low: Array, high: Array, closes_low: Mask) -> 
 
 def describe_reach(scene: Scene, stretched: Stretched) -> str:
     """The reachable range in words, for a message."""
-    reachable = ranges(stretched)
+    reachable, driver = ranges(stretched), scene.driver
     if not reachable:
         grid = np.linspace(-math.pi, math.pi, SCAN + 1)
         short = shortage(stretched, grid)
         best = int(np.argmin(short))
+        where = "angle" if driver.slider is None else "place"
         return (
-            f"It cannot be assembled at any angle of {scene.driver.link}: it comes nearest at "
-            f"{math.degrees(grid[best]):.4g} deg, open by {short[best]:.3g} m; change a length."
+            f"It cannot be assembled at any {where} of {driver.joint}: it comes nearest at "
+            f"{told(scene, grid[best])}, open by {short[best]:.3g} m; change a length."
         )
-    spans = " and ".join(
-        f"{math.degrees(a):.6g} to {math.degrees(b):.6g} deg" for a, b in reachable
+    slides, scale = driver.slider is not None, driver_scale(scene)
+    unit, by = ("m", scale) if slides else ("deg", math.degrees(1.0))
+    spans = " and ".join(f"{a * by:.6g} to {b * by:.6g} {unit}" for a, b in reachable)
+    return (
+        f"{driver.joint} can stand at {spans}{'' if slides else ' (and whole turns from there)'}."
     )
-    return f"{scene.driver.link} can stand at {spans} (and whole turns from there)."

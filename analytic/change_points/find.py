@@ -26,12 +26,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.change_points.sign import AT_START, SIDE, ChangePoints, whole_turns_off
+from analytic.dyads.driven import driver_scale, told
 from analytic.dyads.parts import CLOSED
 from analytic.dyads.plane import Real
 from analytic.dyads.steps import Step, stretched
 from models.array import Array, Mask
 from models.errors import CrankcheckError
-from models.laws import Law
 from models.motion import Crossing
 from models.scene import Scene
 
@@ -58,7 +58,7 @@ def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, ChangePoints]:
     CrankcheckError
         A dyad is as good as in a change point where one before it goes through its own.
     """
-    start = _start(scene.driver.law)
+    start = _start(scene)
     passing: dict[str, ChangePoints] = {}
     period = math.tau
     theta = _grid(start, period)
@@ -161,8 +161,8 @@ class _ValleySearch:
         unsure = near & ~touched & (short <= UNSURE * rounding)
         if unsure.any():
             raise CrankcheckError(
-                f"{self.scene.name}: at {self.scene.driver.link} "
-                f"{math.degrees(whole_turns_off(float(theta[unsure][0]))):.6g} deg the dyad of "
+                f"{self.scene.name}: at {self.scene.driver.joint} "
+                f"{told(self.scene, whole_turns_off(float(theta[unsure][0])))} the dyad of "
                 f"{self.steps[-1].key} is singular to within the rounding of the change point of "
                 "a dyad before it, so that its motion is not determined there, nor which branch "
                 "it is on beyond: change a length"
@@ -178,18 +178,19 @@ class _ValleySearch:
         return np.asarray((short < 0.0).all(axis=0) & (growth > 1.4) & (growth < 2.9))
 
 
-def _start(law: Law) -> float:
+def _start(scene: Scene) -> float:
     """The driver's angle just after the time at which the branch is stated.
 
     A law may rest for longer than its period: it is looked at over twice the time until it moves,
     and there ever closer, as it may turn back between two looks.
     """
+    law, scale = scene.driver.law, driver_scale(scene)
     low, high = 0.0, law.period_s
-    first = float(law.at(np.zeros(1))[0][0])
+    first = float(law.at(np.zeros(1))[0][0]) / scale
     way, closer = 1.0, 0
     while closer < CLOSER and high < LONGEST_REST * law.period_s:
         time_s = np.linspace(low, high, SCAN + 1)
-        off = law.at(time_s)[0] - first
+        off = law.at(time_s)[0] / scale - first
         moved = np.flatnonzero(np.abs(off) > AT_START)
         if moved.size:
             k = int(moved[0])

@@ -10,6 +10,7 @@ import numpy as np
 
 from analytic.change_points.smooth import WINDOW, Index, Piece, Rates, Unknown, put
 from analytic.dyads.chunk import Chunk
+from analytic.dyads.driven import told
 from analytic.dyads.parts import Dyad, First, OpenError, Second
 from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError
 from analytic.dyads.steps import Step
@@ -92,9 +93,10 @@ class ChangePoints:
         """
         inside = np.abs(x) < SIDE
         if not chunk.stretch and inside.any():
-            angle = math.degrees(whole_turns_off(float(chunk.theta[inside][0])))
+            angle = whole_turns_off(float(chunk.theta[inside][0]))
             raise CrankcheckError(
-                f"{self.scene.name}: at {self.scene.driver.link} {angle:.6g} deg the dyad of "
+                f"{self.scene.name}: at {self.scene.driver.joint} {told(self.scene, angle)} the "
+                "dyad of "
                 f"{self.key} is in a change point with no smooth motion through it that can be "
                 "told from others to within rounding; another singular position is too near: "
                 "change a length, or keep the driver's range away from there"

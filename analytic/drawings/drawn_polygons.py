@@ -29,7 +29,8 @@ from analytic.drawings.vector_equation import (
     crossing,
     sine_between,
 )
-from analytic.structure.groups import Bridge, Group
+from analytic.structure.cranked import refuse_other_than_cranked
+from analytic.structure.groups import Bridge, Group, Triad
 from models.array import Array
 from models.scene import GROUND, Scene
 
@@ -59,16 +60,22 @@ def draw_polygons(scene: Scene, driver: DriverState) -> DrawnPolygons:
     """The velocity and the acceleration polygon of a scene with its driver in a state.
 
     Where two directions of a group are parallel (a limit position, a change point) it and what
-    hangs on it is left out and named. Raises as `analytic.kinematics.solve`.
+    hangs on it is left out and named. Raises as `analytic.kinematics.solve`, and CrankcheckError
+    where the driver is no crank or a group is of class III.
     """
     return polygons_of(PlacedMechanism.of(scene, driver))
 
 
 def polygons_of(placement: PlacedMechanism) -> DrawnPolygons:
     """As `draw_polygons`, of a mechanism that stands already."""
+    refuse_other_than_cranked(placement.scene, "a vector polygon", placement.structure)
     table = _Table(placement)
     table.draw_driver()
-    undetermined = [said for part in placement.structure.order if (said := table.draw(part))]
+    undetermined = [
+        said
+        for part in placement.structure.order
+        if not isinstance(part, Triad) and (said := table.draw(part))
+    ]
     velocity, acceleration = (
         Polygon(
             quantity,

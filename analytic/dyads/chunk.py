@@ -6,25 +6,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
-import numpy as np
-
-from analytic.dyads.parts import Closure, Dyad, First, Second, Sliding
+from analytic.dyads.driven import SINES, driver_scale, sliding_driver, turning_driver
+from analytic.dyads.parts import Closure, Dyad, First, Second, SlideError, Sliding
 from analytic.dyads.plane import (
-    EPS,
     AngleError,
     BodyKinematics,
     PointKinematics,
     Real,
-    Vec,
     fixed_body,
     fixed_point,
 )
 from models.array import Array
 from models.joints import local_point
 from models.scene import GROUND, Scene
-
-SINES = 2 * EPS
-"""What the driver's direction is off by for the rounding of sine and cosine [rad]."""
 
 
 class Passage(Protocol):
@@ -39,6 +33,24 @@ class Passage(Protocol):
         ...
 
 
+@dataclass(frozen=True, slots=True)
+class DrivenCoordinate:
+    """The driver's angle, rate and acceleration as the reference has them (`driver_scale`), and
+    their bounds if asked for."""
+
+    theta: Array
+    omega: Real
+    alpha: Real
+    error: AngleError | None
+
+    def sliding(self, scale_m: float) -> Sliding:
+        """The displacement of a slider that is driven."""
+        e, error = self.error, None
+        if e is not None:
+            error = SlideError(e.theta * scale_m, e.omega * scale_m, e.alpha * scale_m)
+        return Sliding(self.theta * scale_m, self.omega * scale_m, self.alpha * scale_m, error)
+
+
 @dataclass(slots=True)
 class Chunk:
     """What is known so far of a chunk of samples; ``passages`` by the key of the dyad, and
@@ -48,6 +60,7 @@ class Chunk:
     certified: bool
     stretch: bool
     bodies: dict[str, BodyKinematics]
+    driver: DrivenCoordinate
     passages: Mapping[str, Passage] = field(default_factory=dict)
     sliders: dict[str, Sliding] = field(default_factory=dict)
     sines: dict[str, Real] = field(default_factory=dict)
@@ -68,31 +81,37 @@ class Chunk:
         passages: Mapping[str, Passage] | None = None,
         roots: Mapping[str, Real] | None = None,
     ) -> Chunk:
-        """A chunk in which the ground and the driver are known; certified where ``error`` is."""
-        pivot = scene.driver_pivot
-        local = scene.links[scene.driver.link].points[pivot]
-        anchor = fixed_point(scene.ground[pivot])
-        if error is not None:
-            error = replace(error, theta=error.theta + SINES)
-        driver = BodyKinematics(
-            local, anchor, Vec(np.cos(theta), np.sin(theta)), omega, alpha, error, theta
-        )
+        """A chunk in which the ground and what the driver moves against it are known; certified
+        where ``error`` is."""
         certified = error is not None
-        bodies = {GROUND: fixed_body(certified=certified), scene.driver.link: driver}
-        chunk = Chunk(scene, certified, stretch, bodies, passages or {}, roots=roots or {})
-        chunk.points[pivot] = anchor
+        if error is not None and scene.driver.slider is None:
+            error = replace(error, theta=error.theta + SINES)
+        driver = DrivenCoordinate(theta, omega, alpha, error)
+        bodies = {GROUND: fixed_body(certified=certified)}
+        chunk = Chunk(scene, certified, stretch, bodies, driver, passages or {}, roots=roots or {})
+        chunk._place_driver()
         return chunk
 
-    @property
-    def driver(self) -> BodyKinematics:
-        return self.bodies[self.scene.driver.link]
+    def _place_driver(self) -> None:
+        """Add the body that is driven against the ground; two that are driven against each other
+        wait for the group that they are in."""
+        driver, link, own = self.scene.driver, self.scene.driver.link, self.driver
+        if driver.is_inner:
+            return
+        if driver.slider is not None:
+            self.sliders[driver.slider] = found = own.sliding(driver_scale(self.scene))
+            self.bodies[link] = sliding_driver(self.scene, found)
+            return
+        pivot = self.scene.driver_pivot
+        self.bodies[link] = turning_driver(
+            self.scene, pivot, own.theta, own.omega, own.alpha, own.error
+        )
+        self.points[pivot] = self.bodies[link].anchor
 
     @property
     def theta(self) -> Array:
         """The driver's angles [rad], (T,)."""
-        theta = self.driver.theta
-        assert theta is not None
-        return np.asarray(theta)
+        return self.driver.theta
 
     def point(self, body: str, name: str) -> PointKinematics:
         """A named point by way of ``body``, worked out once."""

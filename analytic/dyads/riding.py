@@ -22,6 +22,7 @@ from analytic.dyads.plane import (
     Vec,
     direction,
 )
+from analytic.dyads.rounding import rounding_of_angles
 from analytic.structure.mobility import Structure
 from models.joints import less, local_point, sliding_body, turned
 from models.scene import Point, Scene
@@ -29,19 +30,6 @@ from models.scene import Point, Scene
 
 def total(*points: Point) -> Point:
     return (math.fsum(p[0] for p in points), math.fsum(p[1] for p in points))
-
-
-def rounding_of_angles(*angles: float) -> float:
-    """Rounding of the direction of a sum of constant angles [rad]; 0 where all are.
-
-    Within a turn they may come from degrees, which are rounded to radians; larger ones are as they
-    were given. The sum may be small where they are large: what is lost is that of the large ones.
-    """
-    sizes = [abs(angle) for angle in angles if angle]
-    if not sizes:
-        return 0.0
-    summed = sum(sizes) if len(sizes) > 1 else 0.0
-    return EPS * (3.0 + sum(min(size, math.tau) for size in sizes) + summed)
 
 
 def rounding_of(angles: tuple[float, ...], *vectors: Point, onto: Point = (0.0, 0.0)) -> float:

@@ -19,14 +19,15 @@ from analytic.dyads.riding import (
     following_body,
     riding_point,
     rounding_of,
-    rounding_of_angles,
     total,
     turning_body,
     without_lead,
 )
-from analytic.structure.groups import Bridge, Group
+from analytic.dyads.rounding import rounding_of_angles
+from analytic.structure.groups import Bridge, Group, Triad
 from analytic.structure.mobility import Structure
 from models.array import Array
+from models.errors import StructureError
 from models.joints import less, sliding_body, turned
 from models.scene import GROUND, Scene
 
@@ -44,15 +45,20 @@ class Step(Protocol):
 
 def prepare(scene: Scene, structure: Structure) -> list[Step]:
     """The steps of all groups, in solving order."""
-    known = {GROUND, scene.driver.link}
+    driver, compound = scene.driver, structure.compound
+    known = {GROUND} if compound is not None else {GROUND, driver.link}
     steps: list[Step] = []
     for part in structure.order:
         placed = Placed(scene, structure, frozenset(known))
         if isinstance(part, Bridge):
             steps.append(BridgeStep(placed, part))
+        elif isinstance(part, Triad) or (compound is not None and compound.name in part.bodies):
+            raise StructureError(f"{scene.name}: not yet")
         else:
             steps.append(_STEPS[part.kind](placed, part))
         known.update(part.bodies)
+        if compound is not None and compound.name in part.bodies:
+            known.update((compound.base, compound.link))
     return steps
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
-from analytic.dyads.riding import rounding_of_angles
+from analytic.dyads.rounding import rounding_of_angles
 from analytic.forces.bounded import Bounded
 from analytic.forces.free_body import FreeBody
 from models.array import Array

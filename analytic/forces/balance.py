@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from analytic.dyads.riding import rounding_of_angles
+from analytic.dyads.rounding import rounding_of_angles
 from analytic.forces.bounded import NOWHERE, Bounded, BoundedVec
 from analytic.forces.free_body import FreeBody
 from analytic.structure.groups import Group

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.dyads.chunk import SINES, Chunk
+from analytic.dyads.chunk import Chunk, DrivenCoordinate
+from analytic.dyads.driven import SINES, driver_scale
 from analytic.dyads.parts import SlideError, Sliding
 from analytic.dyads.plane import (
     AngleError,
@@ -18,8 +19,9 @@ from analytic.dyads.plane import (
     direction,
     fixed_body,
 )
-from analytic.dyads.riding import rounding_of_angles
+from analytic.dyads.rounding import rounding_of_angles
 from analytic.prepared import CHUNK
+from models.driver_course import driver_course
 from models.errors import CrankcheckError
 from models.joints import block_name
 from models.motion import Motion
@@ -81,11 +83,33 @@ class _Span:
         for slider in self.scene.sliders.values():
             if slider.link is None:
                 bodies[block_name(slider)] = self._block(slider, bodies[slider.on])
-        chunk = Chunk(self.scene, certified, False, bodies)
+        chunk = Chunk(self.scene, certified, False, bodies, self._driver())
         chunk.points.update({name: self._point(name) for name in self.motion.points})
         chunk.sines.update({key: s[self.span] for key, s in self.motion.conditioning.items()})
         chunk.sliders.update({name: self._sliding(name) for name in self.scene.sliders})
         return chunk
+
+    def _driver(self) -> DrivenCoordinate:
+        """The driven joint, as the motion has it."""
+        scale, span, driver = driver_scale(self.scene), self.span, self.scene.driver
+        theta, omega, alpha = (one[span] / scale for one in driver_course(self.scene, self.motion))
+        if self.bound is None:
+            return DrivenCoordinate(theta, omega, alpha, None)
+        if driver.slider is not None:
+            off = self.bound.sliders[driver.slider]
+            each = (off.displacement, off.speed, off.acceleration)
+            error = AngleError(*(one[span] / scale for one in each))
+            return DrivenCoordinate(theta, omega, alpha, error)
+        error = AngleError(SINES, 0.0, 0.0)
+        for name in (driver.link, driver.base):
+            if name != GROUND:
+                own = self.bound.links[name]
+                error = AngleError(
+                    error.theta + own.theta[span],
+                    error.omega + own.omega[span],
+                    error.alpha + own.alpha[span],
+                )
+        return DrivenCoordinate(theta, omega, alpha, error)
 
     def _link(self, name: str) -> BodyKinematics:
         one, span = self.motion.links[name], self.span

@@ -1,11 +1,21 @@
-"""The class II Assur groups and the redundant links of a mechanism, in solving order."""
+"""The Assur groups and the redundant links of a mechanism, in solving order.
+
+::
+
+      class II, order 2              class III, order 3 (a triad)
+
+            o                            o---[leg]---o=======o---[leg]---o
+        link  link                                   |central|
+       o          o                                  \\===o===//
+                                                         [leg]
+                                                           o
+    two links, three pairs            four links, six pairs
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-
-from models.scene import GROUND
 
 JointKey = tuple[str, str]
 """R or P, and the name of the pin or the slider."""
@@ -43,6 +53,43 @@ class Group:
 
 
 @dataclass(frozen=True)
+class Leg:
+    """A link of a triad between a known body, by its pair ``outer``, and the central link, by
+    ``inner``."""
+
+    body: str
+    outer: JointKey
+    inner: JointKey
+
+    @property
+    def kind(self) -> str:
+        """Outer, inner: RR, PR (it slides on a known body), RP (on the central link), PP."""
+        return self.outer[0] + self.inner[0]
+
+
+@dataclass(frozen=True)
+class Triad:
+    """A class III Assur group of order 3: a ``central`` link on three legs."""
+
+    central: str
+    legs: tuple[Leg, Leg, Leg]
+
+    @property
+    def kind(self) -> str:
+        return "-".join(leg.kind for leg in self.legs)
+
+    @property
+    def branch_key(self) -> str:
+        """The link that ``Scene.branch`` names the assembly by."""
+        return self.central
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """What is placed with it."""
+        return self.central, *(leg.body for leg in self.legs)
+
+
+@dataclass(frozen=True)
 class Bridge:
     """A redundant link: two or more of its ``pins`` lie on bodies that are placed without it."""
 
@@ -58,6 +105,9 @@ class Bridge:
     def bodies(self) -> tuple[str, ...]:
         """What is placed with it."""
         return (self.link,)
+
+
+Part = Group | Triad | Bridge
 
 
 class Pairs:
@@ -93,22 +143,27 @@ class Pairs:
 
 
 def decompose(
-    bodies: tuple[str, ...], driver: str, pairs: Pairs
-) -> tuple[tuple[Group | Bridge, ...], list[str]]:
+    bodies: tuple[str, ...], known: frozenset[str], pairs: Pairs
+) -> tuple[tuple[Part, ...], list[str]]:
     """The groups and redundant links, each after what it hangs on; and what is left over.
 
-    A link is taken for redundant only where no further group can be placed.
+    Groups are taken as small as they come; a link is taken for redundant only where no further
+    group can be placed. ``known`` is what the driver and the ground place.
     """
-    known = {GROUND, driver}
-    outer = {body: pairs.outer(body, known) for body in bodies if body not in known}
-    order: list[Group | Bridge] = []
-    while part := next(_dyads(outer, known, pairs), None) or next(_bridges(outer), None):
+    placed = set(known)
+    outer = {body: pairs.outer(body, placed) for body in bodies if body not in placed}
+    order: list[Part] = []
+    while (
+        part := next(_dyads(outer, placed, pairs), None)
+        or next(_triads(outer, placed, pairs), None)
+        or next(_bridges(outer), None)
+    ):
         order.append(part)
-        known.update(part.bodies)
+        placed.update(part.bodies)
         for body in part.bodies:
             del outer[body]
-        for body in outer.keys() & {b for placed in part.bodies for b in pairs.neighbours(placed)}:
-            outer[body] = pairs.outer(body, known)
+        for body in outer.keys() & {b for one in part.bodies for b in pairs.neighbours(one)}:
+            outer[body] = pairs.outer(body, placed)
     return tuple(order), list(outer)
 
 
@@ -133,6 +188,21 @@ def _dyad(a: str, b: str, outer1: JointKey, inner: JointKey, outer2: JointKey) -
     if kind in ("PRR", "PPR"):
         return Group(kind[::-1], b, a, nb, ni, na)
     return Group(kind, a, b, na, ni, nb)
+
+
+def _triads(outer: Mapping[str, list[JointKey]], known: set[str], pairs: Pairs) -> Iterator[Triad]:
+    """The triads that can be placed next, in the order of their central links."""
+    for central, held in outer.items():
+        if held:
+            continue
+        legs = []
+        for body in outer:
+            if body != central and len(outer[body]) == 1:
+                inner = pairs.inner(central, body, known)
+                if len(inner) == 1:
+                    legs.append(Leg(body, outer[body][0], inner[0]))
+        if len(legs) == 3 and sum(leg.kind == "PP" for leg in legs) < 2:
+            yield Triad(central, (legs[0], legs[1], legs[2]))
 
 
 def _bridges(outer: Mapping[str, list[JointKey]]) -> Iterator[Bridge]:

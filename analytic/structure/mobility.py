@@ -15,7 +15,8 @@ import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from analytic.structure.groups import Bridge, Group, Pairs, decompose
+from analytic.structure.compound import Compound, compound_of
+from analytic.structure.groups import Bridge, Group, Pairs, Part, Triad, decompose
 from models.errors import StructureError, few
 from models.joints import block_name, joined_at, sliding_body
 from models.scene import GROUND, Scene
@@ -31,18 +32,26 @@ SHOWN = 8
 class Structure:
     """Bodies, pairs, mobility and groups of a scene.
 
-    ``order`` holds the groups and the redundant links, each after what it hangs on.
+    ``order`` holds the groups and the redundant links, each after what it hangs on. Where the
+    driver moves two moving bodies against each other, one of the groups has the two as one link of
+    changing shape: the ``compound``.
     """
 
     bodies: tuple[str, ...]
     pins: Mapping[str, tuple[str, ...]]
     prismatics: Mapping[str, tuple[str, str]]
-    order: tuple[Group | Bridge, ...]
+    order: tuple[Part, ...]
+    compound: Compound | None = None
 
     @property
     def groups(self) -> tuple[Group, ...]:
-        """The Assur groups in solving order."""
+        """The class II groups in solving order."""
         return tuple(part for part in self.order if isinstance(part, Group))
+
+    @property
+    def triads(self) -> tuple[Triad, ...]:
+        """The class III groups in solving order."""
+        return tuple(part for part in self.order if isinstance(part, Triad))
 
     @property
     def redundant(self) -> tuple[Bridge, ...]:
@@ -90,8 +99,14 @@ def analyse(scene: Scene) -> Structure:
     bodies = (*scene.links, *blocks)
     pins = joined_at(scene)
     prismatics = {s.name: (sliding_body(s), s.on) for s in scene.sliders.values()}
-    order, left = decompose(bodies, scene.driver.link, Pairs(pins, prismatics))
-    structure = Structure(bodies, pins, prismatics, order)
+    compound = compound_of(scene)
+    if compound is None:
+        known = {scene.driver.base, scene.driver.link, GROUND}
+        order, left = decompose(bodies, frozenset(known), Pairs(pins, prismatics))
+    else:
+        units = compound.units(bodies)
+        order, left = decompose(units, frozenset({GROUND}), compound.pairs(pins, prismatics))
+    structure = Structure(bodies, pins, prismatics, order, compound)
     if left or structure.mobility != 1:
         raise StructureError(f"{scene.name}: {_fault(structure, left)}")
     _check_held(scene, structure.groups)

@@ -1,0 +1,53 @@
+"""Two moving bodies that the driver moves against each other: one link of changing shape.
+
+With the driven pair held still the two are one rigid link, and what is left falls into Assur groups
+as it does of any mechanism: the class depends on the pair that drives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from analytic.structure.groups import Pairs
+from models.scene import Scene
+
+
+@dataclass(frozen=True)
+class Compound:
+    """The bodies ``base`` and ``link``, as the ``name`` of one unit; ``pin`` or ``slider`` is the
+    driven pair between them."""
+
+    name: str
+    base: str
+    link: str
+    pin: str | None
+    slider: str | None
+
+    def unit(self, body: str) -> str:
+        """What stands for a body."""
+        return self.name if body in (self.base, self.link) else body
+
+    def units(self, bodies: tuple[str, ...]) -> tuple[str, ...]:
+        """What stands for the bodies, each once."""
+        return tuple(dict.fromkeys(self.unit(body) for body in bodies))
+
+    def pairs(
+        self, pins: Mapping[str, tuple[str, ...]], prismatics: Mapping[str, tuple[str, str]]
+    ) -> Pairs:
+        """The pins and prismatic pairs that are left between units."""
+        joined = {pin: tuple(dict.fromkeys(map(self.unit, on))) for pin, on in pins.items()}
+        sliding = {n: (self.unit(a), self.unit(b)) for n, (a, b) in prismatics.items()}
+        return Pairs(
+            {pin: names for pin, names in joined.items() if len(names) > 1},
+            {name: ends for name, ends in sliding.items() if ends[0] != ends[1]},
+        )
+
+
+def compound_of(scene: Scene) -> Compound | None:
+    """The compound of a scene; None where the driver moves a body against the ground."""
+    driver = scene.driver
+    if not driver.is_inner:
+        return None
+    name = f"{driver.base} + {driver.link}"  # no body has such a name
+    return Compound(name, driver.base, driver.link, driver.pin, driver.slider)
