@@ -1,0 +1,125 @@
+"""The equation of a triad in one unknown, exactly: t = tan(phi/2) of the central link's angle.
+
+With w = 1 + t^2 every row, times w, is a polynomial in t and at most quadratic in the place P,
+
+    circle: w P.P + u.P + k = 0          others: u.P + k = 0,       u, k of degree 2 in t,
+
+and differences of circles are like the others. Two such rows give P = N / D by Cramer's rule; in
+the third they leave one polynomial, the eliminant: of degree 6 for three circles, but for factors
+w, which have no real root. The numbers of the rows are rational numbers, as all floats are, and so
+are the coefficients: nothing is rounded.
+
+Source: C. Gosselin and J. Sefrioui, Polynomial solutions for the direct kinematic problem of planar
+three-degree-of-freedom parallel manipulators, 1991 (three circles: 6 assemblies).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flint import fmpq, fmpq_poly
+
+from analytic.assur.leg_rows import AngleRow, CircleRow, LegRow, LineRow, ThroughRow
+from models.scene import Point
+
+W = fmpq_poly([1, 0, 1])
+Turn = tuple[fmpq, fmpq]
+"""Cosine and sine of an angle that has both rational."""
+
+
+@dataclass(frozen=True)
+class RowPolynomial:
+    """A row as (w P.P) + u.P + k: whether it has the first term, u and k."""
+
+    is_circle: bool
+    u: tuple[fmpq_poly, fmpq_poly]
+    k: fmpq_poly
+
+    def less(self, other: RowPolynomial) -> RowPolynomial:
+        """The difference of two circles."""
+        u = (self.u[0] - other.u[0], self.u[1] - other.u[1])
+        return RowPolynomial(False, u, self.k - other.k)
+
+
+@dataclass(frozen=True)
+class Eliminant:
+    """The polynomial of all assemblies but those in which the two rows that give the place are
+    parallel; these are at roots of ``parallel``.
+
+    ``place`` is N, and ``over`` D; ``rows`` the two that give it and, last, the third.
+    """
+
+    polynomial: fmpq_poly
+    place: tuple[fmpq_poly, fmpq_poly]
+    over: fmpq_poly
+    parallel: fmpq_poly
+    rows: tuple[RowPolynomial, RowPolynomial, RowPolynomial]
+
+
+def rational(value: float) -> fmpq:
+    """A float as the rational number that it is."""
+    return fmpq(*float(value).as_integer_ratio())
+
+
+def row_polynomial(row: LegRow, turn: Turn) -> RowPolynomial:
+    """A row whose link frame is first turned by a constant angle."""
+    if isinstance(row, CircleRow):
+        reach, pin = _turning(row.a, turn), _pair(row.pin)
+        square = sum((c * c for c in (*_pair(row.a), *pin)), fmpq(0)) - rational(row.length) ** 2
+        u = tuple(2 * (r - W * p) for r, p in zip(reach, pin, strict=True))
+        k = W * square - 2 * (reach[0] * pin[0] + reach[1] * pin[1])
+        return RowPolynomial(True, (u[0], u[1]), k)
+    if isinstance(row, LineRow):
+        reach, n, p = _turning(row.a, turn), _pair(row.normal), _pair(row.through)
+        k = reach[0] * n[0] + reach[1] * n[1] - W * (n[0] * p[0] + n[1] * p[1])
+        return RowPolynomial(False, (W * n[0], W * n[1]), k)
+    assert isinstance(row, ThroughRow)
+    n, pin = _turning(row.normal, turn), _pair(row.pin)
+    m, b = _pair(row.normal), _pair(row.b)
+    k = n[0] * pin[0] + n[1] * pin[1] - W * (m[0] * b[0] + m[1] * b[1])
+    return RowPolynomial(False, (-n[0], -n[1]), k)
+
+
+def eliminant(rows: tuple[LegRow, LegRow, LegRow], turn: Turn) -> Eliminant:
+    """The eliminant of three rows of which none is of an angle."""
+    assert not any(isinstance(row, AngleRow) for row in rows)
+    own = sorted((row_polynomial(row, turn) for row in rows), key=lambda row: row.is_circle)
+    last = own[2]
+    one, other = (row.less(last) if row.is_circle else row for row in own[:2])
+    over = one.u[0] * other.u[1] - one.u[1] * other.u[0]
+    place = (
+        one.u[1] * other.k - one.k * other.u[1],
+        one.k * other.u[0] - one.u[0] * other.k,
+    )
+    shared = _without_w(over.gcd(place[0]).gcd(place[1]))
+    if over != 0 or any(n != 0 for n in place):
+        over, place = over / shared, (place[0] / shared, place[1] / shared)
+    polynomial = last.u[0] * place[0] + last.u[1] * place[1] + last.k * over
+    if last.is_circle:
+        polynomial = W * (place[0] ** 2 + place[1] ** 2) + over * polynomial
+    else:
+        polynomial = _without(polynomial, over)  # there the place is infinitely far away
+    return Eliminant(_without_w(polynomial), place, over, shared, (one, other, last))
+
+
+def _without_w(polynomial: fmpq_poly) -> fmpq_poly:
+    """A polynomial without its factors 1 + t^2."""
+    return polynomial if polynomial == 0 else _without(polynomial, W)
+
+
+def _without(polynomial: fmpq_poly, factor: fmpq_poly) -> fmpq_poly:
+    """A polynomial without all that it has in common with another."""
+    while polynomial != 0 and (common := polynomial.gcd(factor)).degree() > 0:
+        polynomial = polynomial / common
+    return polynomial
+
+
+def _pair(vector: Point) -> tuple[fmpq, fmpq]:
+    return rational(vector[0]), rational(vector[1])
+
+
+def _turning(vector: Point, turn: Turn) -> tuple[fmpq_poly, fmpq_poly]:
+    """w R a, a vector of the link's frame in the plane, as polynomials in t."""
+    (x, y), (c, s) = _pair(vector), turn
+    x, y = c * x - s * y, s * x + c * y
+    return fmpq_poly([x, -2 * y, -x]), fmpq_poly([y, 2 * x, -y])
