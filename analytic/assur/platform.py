@@ -1,0 +1,240 @@
+"""The central link of a triad over a chunk of samples, from a guess: place, rates, bounds.
+
+Three rows, linear in each level of motion by one and the same matrix of wrenches: place by Newton's
+method, rates and second rates directly. The certificate is that of `analytic.dyads.closure` in
+three unknowns: residuals and errors of what is known, through the inverse of the matrix, bound the
+unknowns to first order, and up to twice that bounds them fully where the matrix changes little over
+that distance (Newton-Kantorovich). Then the assembly there is the only one nearby. Where that fails
+no angle is certain, nor any rate.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.assur.sampled_rows import Gap, SampledRow
+from analytic.dyads.plane import (
+    EPS,
+    EXACT_ANGLE,
+    EXACT_POINT,
+    ZERO,
+    AngleError,
+    BodyKinematics,
+    PointError,
+    PointKinematics,
+    Real,
+    Vec,
+)
+from models.array import Array, Mask
+from models.motion import Order
+from models.scene import Point
+
+STEPS = 12
+"""Of Newton's method, at most; a good guess takes two or three."""
+TURN = 0.5
+"""The largest turn of one step [rad]."""
+Three = tuple[Real, Real, Real]
+
+
+@dataclass(frozen=True)
+class Wrenches:
+    """The inverse of the matrix whose rows are n and r x n over a length: by column three numbers,
+    the last over that length; ``det`` over the product of the lengths of the rows is in [-1, 1]."""
+
+    columns: tuple[Three, Three, Three]
+    size_m: float
+    det: Real
+
+    @staticmethod
+    def of(rows: Sequence[SampledRow], body: BodyKinematics, size_m: float) -> Wrenches:
+        own = []
+        for row in rows:
+            n, turning = row.wrench(body)
+            own.append((n.x, n.y, turning / size_m))
+        a, b, c = own
+        crosses = (_cross(b, c), _cross(c, a), _cross(a, b))
+        det = _dot(a, crosses[0])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            inverse = 1.0 / det
+            columns = tuple((x * inverse, y * inverse, z * inverse) for x, y, z in crosses)
+            sine = det / np.sqrt(_dot(a, a) * _dot(b, b) * _dot(c, c))
+        return Wrenches((columns[0], columns[1], columns[2]), size_m, sine)
+
+    def solve(self, gaps: Three) -> tuple[Vec, Real]:
+        """The shift [m] and the turn [rad] that lower the rows by so much."""
+        x, y, z = (
+            sum(column[i] * gap for column, gap in zip(self.columns, gaps, strict=True))
+            for i in range(3)
+        )
+        return Vec(x, y), z / self.size_m
+
+    def bound(self, gaps: Three) -> tuple[Real, Real]:
+        """The largest shift and turn for rows that are wrong by no more."""
+        x, y, z = (
+            sum(np.abs(column[i]) * gap for column, gap in zip(self.columns, gaps, strict=True))
+            for i in range(3)
+        )
+        return np.hypot(x, y), z / self.size_m
+
+
+@dataclass(frozen=True)
+class SolvedPlatform:
+    """The central link, with bounds if asked for; ``det`` in [-1, 1] is singular at 0, and of one
+    sign from one singular position to the next. ``closed`` says where Newton's method came to an
+    end at an assembly, and ``sure`` where that is the only one within the bounds."""
+
+    body: BodyKinematics
+    det: Array
+    closed: Mask
+    sure: Mask
+
+
+@np.errstate(all="ignore")
+def solve_platform(
+    rows: Sequence[SampledRow],
+    place: Vec,
+    turn: Vec,
+    size_m: float,
+    *,
+    certified: bool,
+) -> SolvedPlatform:
+    """The central link near a guess.
+
+    Parameters
+    ----------
+    rows : three of them
+    place, turn : Vec
+        The guess: the anchor [m] and the direction of the link's frame, shape (T,).
+    size_m : float
+        A length of the link, by which angles are weighed against distances.
+    certified : bool
+        Give bounds; what the rows are made of must then carry its own.
+    """
+    body, closed = _placed(rows, place, turn, size_m)
+    wrenches = Wrenches.of(rows, body, size_m)
+    body = _moving(rows, body, wrenches)
+    det = np.asarray(wrenches.det)
+    if not certified:
+        return SolvedPlatform(body, det, closed, closed)
+    body, sure = _bounded(rows, body, wrenches)
+    return SolvedPlatform(body, det, closed, sure)
+
+
+def _placed(
+    rows: Sequence[SampledRow], place: Vec, turn: Vec, size_m: float
+) -> tuple[BodyKinematics, Mask]:
+    """Newton's method, and where it came to an end."""
+    body = _still(place, turn)
+    last = np.full(np.shape(place.x), np.inf)
+    for _ in range(STEPS):
+        wrenches = Wrenches.of(rows, body, size_m)
+        gaps = [row.gap(0, body)[0] for row in rows]
+        shift, by = wrenches.solve((gaps[0], gaps[1], gaps[2]))
+        least = np.minimum(1.0, TURN / np.maximum(np.abs(by) + shift.norm() / size_m, 1e-300))
+        move = shift.norm() + size_m * np.abs(by)
+        place, by = place - shift * least, -by * least
+        turn = turn.turned(Vec(np.cos(by), np.sin(by)))
+        turn = turn * (1.0 / turn.norm())
+        body = _still(place, turn)
+        settled = ~(move > 64 * EPS * (size_m + place.norm())) | ~(move < 0.5 * last)
+        last = move
+        if settled.all():
+            break
+    far = [np.abs(row.gap(0, body)[0]) for row in rows]
+    worst = np.maximum(np.maximum(far[0], far[1]), far[2])
+    return body, np.asarray(worst <= 1e-10 * (size_m + place.norm()))
+
+
+def _still(place: Vec, turn: Vec) -> BodyKinematics:
+    anchor = PointKinematics(place, ZERO, ZERO, None)
+    return BodyKinematics((0.0, 0.0), anchor, turn, 0.0, 0.0, None)
+
+
+def _moving(
+    rows: Sequence[SampledRow], body: BodyKinematics, wrenches: Wrenches
+) -> BodyKinematics:
+    """The rates, from those of the rows of a link at rest, and the second ones likewise."""
+    velocity, omega = wrenches.solve(_gaps(rows, 1, body))
+    anchor = PointKinematics(body.anchor.p, -velocity, ZERO, None)
+    body = replace(body, anchor=anchor, omega=-omega)
+    pull, alpha = wrenches.solve(_gaps(rows, 2, body))
+    return replace(body, anchor=replace(anchor, a=-pull), alpha=-alpha)
+
+
+def _gaps(rows: Sequence[SampledRow], order: Order, body: BodyKinematics) -> Three:
+    one, two, three = (row.gap(order, body)[0] for row in rows)
+    return one, two, three
+
+
+def _bounded(
+    rows: Sequence[SampledRow], body: BodyKinematics, wrenches: Wrenches
+) -> tuple[BodyKinematics, Mask]:
+    """The link with bounds of all levels, and where they are certain."""
+    size = wrenches.size_m
+    exact = replace(body, anchor=replace(body.anchor, error=EXACT_POINT), error=EXACT_ANGLE)
+    shift, by = wrenches.bound(_loose(rows, 0, exact))
+    # Up to twice the first order, and so much that neither is 0.
+    e, t = 2.02 * shift + EPS * size, 2.02 * by + EPS
+    near = _within(body, PointError(e, 0.0, 0.0), AngleError(t, 0.0, 0.0))
+    sway = [row.sway(near) for row in rows]
+    change = tuple(
+        lean * e + (turning + 8 * EPS * size) * t + 8 * EPS * e for lean, turning in sway
+    )
+    grown, more = wrenches.bound((change[0], change[1], change[2]))
+    # The second order takes no more than the first, and a rate no more than half of itself.
+    share = np.maximum(grown / e, more / t)
+    sure = np.asarray((share <= 0.5) & np.isfinite(e) & (t < 1.0))
+    e, t = np.where(sure, e, np.inf), np.where(sure, t, math.pi)
+    lost = np.where(sure, 1.0 / (1.0 - share), np.inf)
+    near = _within(body, PointError(e, 0.0, 0.0), AngleError(t, 0.0, 0.0))
+    v, w = _weighed(wrenches.bound(_loose(rows, 1, near)), lost, size)
+    near = _within(body, PointError(e, v, 0.0), AngleError(t, w, 0.0))
+    a, g = _weighed(wrenches.bound(_loose(rows, 2, near)), lost, size)
+    point = PointError(e, _infinite(v, sure), _infinite(a, sure))
+    return _within(body, point, AngleError(t, _infinite(w, sure), _infinite(g, sure))), sure
+
+
+def _weighed(bound: tuple[Real, Real], lost: Real, size_m: float) -> tuple[Real, Real]:
+    """Bounds through an inverse that is known but for a share, in the larger of both measures."""
+    shift, by = bound
+    most = np.maximum(shift, size_m * by) * (lost - 1.0)
+    return shift + most, by + most / size_m
+
+
+def _infinite(bound: Real, sure: Mask) -> Real:
+    return np.where(sure & ~np.isnan(bound), bound, np.inf)
+
+
+def _within(body: BodyKinematics, point: PointError, angle: AngleError) -> BodyKinematics:
+    return replace(body, anchor=replace(body.anchor, error=point), error=angle)
+
+
+def _loose(rows: Sequence[SampledRow], order: Order, body: BodyKinematics) -> Three:
+    """What the rows may be open by."""
+
+    def whole(gap: Gap) -> Real:
+        return np.abs(gap[0]) + gap[1]
+
+    one, two, three = (whole(row.gap(order, body)) for row in rows)
+    return one, two, three
+
+
+def _cross(a: Three, b: Three) -> Three:
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+def _dot(a: Three, b: Three) -> Real:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def place_of(local: Point) -> Vec:
+    """A point of a link's frame as a vector."""
+    return Vec(*local)
