@@ -75,7 +75,9 @@ def _at_roots(rows: LegRows) -> list[Assembly]:
     for turn in TURNS:
         own = eliminant(rows, turn)
         if own.polynomial == 0 or own.parallel == 0:
-            raise ContinuumError("the central link can move while all that it hangs on stands still")
+            raise ContinuumError(
+                "the central link can move while all that it hangs on stands still"
+            )
         if not _may_be_at_half_a_turn(rows, turn):
             break
     else:

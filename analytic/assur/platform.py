@@ -154,9 +154,7 @@ def _still(place: Vec, turn: Vec) -> BodyKinematics:
     return BodyKinematics((0.0, 0.0), anchor, turn, 0.0, 0.0, None)
 
 
-def _moving(
-    rows: Sequence[SampledRow], body: BodyKinematics, wrenches: Wrenches
-) -> BodyKinematics:
+def _moving(rows: Sequence[SampledRow], body: BodyKinematics, wrenches: Wrenches) -> BodyKinematics:
     """The rates, from those of the rows of a link at rest, and the second ones likewise."""
     velocity, omega = wrenches.solve(_gaps(rows, 1, body))
     anchor = PointKinematics(body.anchor.p, -velocity, ZERO, None)

@@ -176,7 +176,9 @@ class Circle:
         return lean, arm * (lean + body.error.theta) + self.point.error.position
 
     def at(self, index: int) -> LegRow:
-        return CircleRow(_one(self.point.p, index), _one(self.pin.p, index), _number(self.length, index))
+        return CircleRow(
+            _one(self.point.p, index), _one(self.pin.p, index), _number(self.length, index)
+        )
 
 
 @dataclass(frozen=True, slots=True)

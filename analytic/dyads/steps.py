@@ -27,7 +27,6 @@ from analytic.dyads.rounding import rounding_of_angles
 from analytic.structure.groups import Bridge, Group, Triad
 from analytic.structure.mobility import Structure
 from models.array import Array
-from models.errors import StructureError
 from models.joints import less, sliding_body, turned
 from models.scene import GROUND, Scene
 
@@ -53,13 +52,21 @@ def prepare(scene: Scene, structure: Structure) -> list[Step]:
         if isinstance(part, Bridge):
             steps.append(BridgeStep(placed, part))
         elif isinstance(part, Triad) or (compound is not None and compound.name in part.bodies):
-            raise StructureError(f"{scene.name}: not yet")
+            steps.append(_step_of_class_three(placed, part, steps))
         else:
             steps.append(_STEPS[part.kind](placed, part))
         known.update(part.bodies)
         if compound is not None and compound.name in part.bodies:
             known.update((compound.base, compound.link))
     return steps
+
+
+def _step_of_class_three(placed: Placed, part: Group | Triad, before: Sequence[Step]) -> Step:
+    """The step of a triad, or of a dyad with a compound: most scenes have none, nor load it."""
+    from analytic.assur.mounting import Mounting
+    from analytic.assur.step import AssurStep
+
+    return AssurStep(Mounting(placed, part), before)
 
 
 def stretched(

@@ -1,0 +1,128 @@
+"""How the central link of a group is mounted: its frame, and the legs or joints that hold it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from analytic.assur.central_frame import CentralFrame
+from analytic.assur.legs import (
+    BarLeg,
+    DoublySlidingLeg,
+    GuidedLeg,
+    Leg,
+    PinnedThere,
+    SlidingLeg,
+    SlidingThere,
+)
+from analytic.assur.sampled_rows import SampledRow
+from analytic.dyads.chunk import Chunk
+from analytic.dyads.plane import BodyKinematics
+from analytic.dyads.riding import Placed
+from analytic.structure.groups import Group, JointKey, Triad
+from analytic.structure.groups import Leg as LegOfGroup
+from models.errors import StructureError
+from models.scene import Point, Scene, span
+
+
+class Mounting:
+    """The central link of a triad, or of a dyad with a compound, and what holds it."""
+
+    def __init__(self, placed: Placed, group: Triad | Group) -> None:
+        self.placed, self.group = placed, group
+        scene, compound = placed.scene, placed.structure.compound
+        own = compound if compound is not None and compound.name in group.bodies else None
+        if own is not None and isinstance(group, Triad) and group.central != own.name:
+            raise StructureError(
+                f"{scene.name}: the driver is {scene.driver.joint}, in a leg of the class III group "
+                f"about {group.central}, which has no solution here; drive another joint"
+            )
+        if isinstance(group, Triad):
+            central, held = group.central, list(group.legs)
+        else:
+            assert own is not None
+            central, held = own.name, [_leg_of_dyad(group, own.name)]
+        body = central if own is None else own.base
+        frame = CentralFrame(scene, body, (0.0, 0.0), own)
+        self.size_m = _size(scene, frame)
+        self.frame = frame
+        legs = [self._leg(one) for one in held]
+        if isinstance(group, Group):
+            legs.append(self._joint(_joint_of_dyad(group, central)))
+        points = [place for leg in legs for part, place in leg.locals() if part == body]
+        middle = _middle(points) if points else next(iter(scene.links[body].points.values()))
+        self.frame = replace(frame, origin=middle)
+        self.legs: list[Leg] = [self._leg(one) for one in held]
+        if isinstance(group, Group):
+            self.legs.append(self._joint(_joint_of_dyad(group, central)))
+
+    def rows(self, chunk: Chunk) -> list[SampledRow]:
+        """The three rows of the central link."""
+        return [row for leg in self.legs for row in leg.rows(chunk)]
+
+    def place(self, chunk: Chunk, body: BodyKinematics) -> None:
+        """Add the central link and all that its legs are."""
+        self.frame.place(chunk, body)
+        for leg in self.legs:
+            leg.place(chunk, body)
+
+    def holder(self, chunk: Chunk, pin: str) -> str:
+        """A body that carries a pin, of those that stand."""
+        return next(body for body in self.placed.structure.pins[pin] if body in chunk.bodies)
+
+    def _part(self, joint: JointKey) -> str:
+        """The body of the central link that has a joint."""
+        kind, name = joint
+        for body in self.frame.bodies:
+            if kind == "R" and body in self.placed.structure.pins[name]:
+                return body
+            if kind == "P" and body in self.placed.structure.prismatics[name]:
+                return body
+        raise AssertionError(f"{name} is no joint of {self.frame.bodies}")
+
+    def _leg(self, leg: LegOfGroup) -> Leg:
+        part, outer, inner = self._part(leg.inner), leg.outer[1], leg.inner[1]
+        given = (self.frame, self.placed, part, leg.body, outer, inner)
+        if leg.kind == "RR":
+            return BarLeg(*given)
+        if leg.kind == "PR":
+            return SlidingLeg(*given)
+        if leg.kind == "RP":
+            return GuidedLeg(*given)
+        return DoublySlidingLeg(*given, self.size_m)
+
+    def _joint(self, joint: JointKey) -> Leg:
+        part = self._part(joint)
+        if joint[0] == "R":
+            return PinnedThere(self.frame, self.placed, part, joint[1])
+        return SlidingThere(self.frame, self.placed, part, joint[1], self.size_m)
+
+
+def _leg_of_dyad(group: Group, central: str) -> LegOfGroup:
+    """The other link of a dyad, as a leg of its central one."""
+    inner = (group.kind[1], group.inner)
+    if group.first == central:
+        return LegOfGroup(group.second, (group.kind[2], group.outer2), inner)
+    return LegOfGroup(group.first, (group.kind[0], group.outer1), inner)
+
+
+def _joint_of_dyad(group: Group, central: str) -> JointKey:
+    """The joint by which the central link itself hangs on a known body."""
+    if group.first == central:
+        return group.kind[0], group.outer1
+    return group.kind[2], group.outer2
+
+
+def _middle(points: list[Point]) -> Point:
+    return (
+        math.fsum(p[0] for p in points) / len(points),
+        math.fsum(p[1] for p in points) / len(points),
+    )
+
+
+def _size(scene: Scene, frame: CentralFrame) -> float:
+    """A length of the central link, or of the longest where it has none [m]."""
+    longest = max(
+        (span(scene.links[b].points) for b in frame.bodies if b in scene.links), default=0.0
+    )
+    return longest or scene.longest_m

@@ -1,0 +1,166 @@
+"""A triad, or a dyad in which the driver moves two bodies of one link, as a step of the solution."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from analytic.assur.assemblies import Assembly, assemblies
+from analytic.assur.mounting import Mounting
+from analytic.assur.platform import SolvedPlatform, solve_platform
+from analytic.assur.sampled_rows import SampledRow
+from analytic.assur.track import Track, start_node
+from analytic.dyads.chunk import Chunk, Passage
+from analytic.dyads.driven import driver_scale, told
+from analytic.dyads.parts import Closure, OpenError
+from analytic.dyads.plane import STEADY, AngleError, Vec
+from analytic.structure.groups import Group
+from models.array import Array
+from models.errors import ReachError, StructureError
+from models.scene import Scene
+
+
+class Before:
+    """What a step hangs on: the steps before it."""
+
+    def __init__(self, scene: Scene, steps: Sequence[object]) -> None:
+        self.scene, self.steps = scene, tuple(steps)
+
+    def chunk(self, theta: Array, half: Array | float, passages: Mapping[str, Passage]) -> Chunk:
+        """All that stands before it at driver angles that are uncertain by so much [rad]."""
+        error = AngleError(np.broadcast_to(half, theta.shape), 0.0, 0.0)
+        chunk = Chunk.begin(self.scene, theta, 1.0, STEADY, error, stretch=True, passages=passages)
+        for step in self.steps:
+            step.advance(chunk)  # type: ignore[attr-defined]  # steps, which import this one
+        return chunk
+
+
+class AssurStep:
+    """The central link of a group on its legs, followed from its assembly at time 0."""
+
+    def __init__(self, mounting: Mounting, before: Sequence[object]) -> None:
+        self.mounting, self.key = mounting, mounting.group.branch_key
+        self.scene = mounting.placed.scene
+        self.before = Before(self.scene, before)
+        self._tracks: dict[frozenset[str], Track] = {}
+
+    def advance(self, chunk: Chunk) -> None:
+        """Add the group's bodies and sliders. Raises OpenError."""
+        track = self.track(chunk.passages)
+        theta = track.home(chunk.theta)
+        solved = self._solved(chunk, *track.guess(theta))
+        beyond = track.beyond(theta)
+        closes = solved.closed & track.on_side(solved.det) & (beyond <= 0.0)
+        # The end is known to rounding; beside it an assembly may be told open, or closed.
+        short = self.mounting.size_m * np.where(
+            closes, np.minimum(beyond, -1e-15), np.maximum(beyond, 1e-15)
+        )
+        if not chunk.stretch and not closes.all():
+            raise OpenError(short)
+        error = chunk.driver.error
+        slack = 0.0 if error is None else self.mounting.size_m * error.theta
+        chunk.sines[self.key] = np.where(closes, np.abs(solved.det), 0.0)
+        if chunk.stretch:
+            chunk.shortage[self.key] = short
+            chunk.closures[self.key] = Closure(None, short, 0.0, slack)
+        self.mounting.place(chunk, solved.body)
+
+    def _solved(self, chunk: Chunk, place: Vec, turn: Vec) -> SolvedPlatform:
+        rows = self.mounting.rows(chunk)
+        return solve_platform(rows, place, turn, self.mounting.size_m, certified=chunk.certified)
+
+    def track(self, passages: Mapping[str, Passage]) -> Track:
+        """The way of the assembly that the scene names, with such change points before it.
+
+        Raises
+        ------
+        ReachError
+            It has none at the start, or none of that number.
+        """
+        own = frozenset(passages) & {step.key for step in self.before.steps}  # type: ignore[attr-defined]
+        if own not in self._tracks:
+            self._tracks[own] = self._follow({key: passages[key] for key in own})
+        return self._tracks[own]
+
+    def _follow(self, passages: Mapping[str, Passage]) -> Track:
+        scene = self.scene
+        start = float(scene.driver.law.at(np.zeros(1))[0][0]) / driver_scale(scene)
+        chosen = self._chosen(start, passages)
+
+        def solve(theta: Array, half: Array, place: Vec, turn: Vec) -> SolvedPlatform:
+            return self._solved(self.before.chunk(theta, half, passages), place, turn)
+
+        node = start_node(
+            start, solve(np.array([start]), np.zeros(1), *_pose(chosen)), chosen.angle_rad
+        )
+        slides = scene.driver.slider is not None
+        periods = [math.tau]
+        periods += [one.period for key, one in passages.items()]  # type: ignore[attr-defined]
+        periods += [
+            one.track(passages).period or math.tau
+            for one in self.before.steps
+            if isinstance(one, AssurStep)
+        ]
+        repeats = None if slides else max(periods)
+        return Track.of(solve, self.mounting.size_m, node, repeats, math.pi)
+
+    def rows_at(self, theta: float, passages: Mapping[str, Passage]) -> list[SampledRow]:
+        """The rows at one driver angle."""
+        return self.mounting.rows(self.before.chunk(np.array([theta]), 0.0, passages))
+
+    def assemblies(self, theta: float, passages: Mapping[str, Passage]) -> tuple[Assembly, ...]:
+        """All at one driver angle, in the order of their numbers."""
+        one, two, three = (row.at(0) for row in self.rows_at(theta, passages))
+        return assemblies((one, two, three))
+
+    def _side(self, start: float, one: Assembly, passages: Mapping[str, Passage]) -> float:
+        """By what the two assemblies of a dyad are told apart: above 0, or more, on side +1."""
+        group = self.mounting.group
+        assert isinstance(group, Group)
+        chunk = self.before.chunk(np.array([start]), 0.0, passages)
+        self.mounting.place(chunk, self._solved(chunk, *_pose(one)).body)
+        if group.kind != "RRR":
+            return float(chunk.sliders[group.branch_key].s[0])
+        first, inner, second = (
+            chunk.point(self.mounting.holder(chunk, pin), pin).p
+            for pin in (group.outer1, group.inner, group.outer2)
+        )
+        return float((second - first).cross(inner - first)[0])
+
+    def _chosen(self, start: float, passages: Mapping[str, Passage]) -> Assembly:
+        """The assembly at the start that the scene's branch names."""
+        every = self.assemblies(start, passages)
+        scene = self.scene
+        at = f"at {scene.driver.joint} {told(scene, start)}"
+        if not every:
+            raise ReachError(
+                f"{scene.name}: {at}, where it starts, the group about {self.key} has no assembly; "
+                "start elsewhere, or change a length"
+            )
+        sides = isinstance(self.mounting.group, Group)
+        number = scene.branch.get(self.key, 1)
+        if sides:
+            ordered = sorted(every, key=lambda one: self._side(start, one, passages))
+            chosen = ordered[-1 if number > 0 else 0]
+        elif number > len(every):
+            raise StructureError(
+                f"{scene.name}: branch.{self.key} is {number}, and {at}, where it starts, the group "
+                f"has {len(every)} assemblies; give a number from 1 to {len(every)}"
+            )
+        else:
+            chosen = every[number - 1]
+        if chosen.count > 1:
+            raise ReachError(
+                f"{scene.name}: {at}, where it starts, two assemblies of the group about {self.key} "
+                "fall together: it is singular there, and goes on with either; start elsewhere"
+            )
+        return chosen
+
+
+def _pose(one: Assembly) -> tuple[Vec, Vec]:
+    """An assembly as one sample."""
+    place = Vec(np.array([one.place[0]]), np.array([one.place[1]]))
+    turn = Vec(np.array([math.cos(one.angle_rad)]), np.array([math.sin(one.angle_rad)]))
+    return place, turn
