@@ -27,13 +27,15 @@ from analytic.dyads.plane import Vec
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 
-FIRST, WIDEST, NARROWEST = 0.02, 0.1, 1e-9
+FIRST, WIDEST, NARROWEST = 0.02, 0.1, 1e-6
 """Cells of the driver's angle [rad]: the first that is tried, the widest, and the narrowest, beside
 which the assembly ends."""
 MOST_TURNS = 24
 """Of the driver, after which an assembly that has not come back is given up."""
 SAME = 1e-7
 """Of the link's size and of an angle [rad]: two poses that are one."""
+AT_ONCE = 6
+"""Cells that are looked at together: one look costs hardly more than one cell."""
 BISECTIONS = 48
 
 EndKind = Literal["limit position", "change point"]
@@ -62,12 +64,17 @@ class Node:
     dy: float
     dphi: float
     det: float
+    seconds: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def ahead(self, by: Array) -> tuple[Vec, Vec]:
-        """The pose that the rates lead to."""
-        phi = self.phi + self.dphi * by
-        place = Vec(self.x + self.dx * by, self.y + self.dy * by)
-        return place, Vec(np.cos(phi), np.sin(phi))
+        """The pose that the rates, and second rates, lead to."""
+        x, y, phi = (
+            at + (rate + 0.5 * second * by) * by
+            for at, rate, second in zip(
+                (self.x, self.y, self.phi), (self.dx, self.dy, self.dphi), self.seconds, strict=True
+            )
+        )
+        return Vec(x, y), Vec(np.cos(phi), np.sin(phi))
 
 
 @dataclass
@@ -84,7 +91,7 @@ class Track:
     period: float | None = None
     low: End | None = None
     high: End | None = None
-    table: Array = field(default_factory=lambda: np.empty((0, 8)))
+    table: Array = field(default_factory=lambda: np.empty((0, 7)))
 
     @staticmethod
     def of(
@@ -102,8 +109,8 @@ class Track:
         track = Track(solve, size_m, [start])
         track._go(+1.0, repeats, farthest)
         if track.period is None:
-            track._go(-1.0, None if track.high is None else None, farthest, start)
-        rows = [[n.theta, n.x, n.y, n.phi, n.dx, n.dy, n.dphi, n.det] for n in track.nodes]
+            track._go(-1.0, repeats, farthest)
+        rows = [[n.theta, n.x, n.y, n.phi, n.dx, n.dy, n.dphi] for n in track.nodes]
         track.table = np.array(sorted(rows))
         return track
 
@@ -112,61 +119,63 @@ class Track:
         """The sign of the determinant all along."""
         return math.copysign(1.0, self.nodes[0].det)
 
-    def _go(
-        self, way: float, repeats: float | None, farthest: float, start: Node | None = None
-    ) -> None:
+    def _go(self, way: float, repeats: float | None, farthest: float) -> None:
         """On from the start, to an end, until it repeats, or as far as is looked."""
         node = first = self.nodes[0]
         width, due = FIRST, repeats
-        limit = MOST_TURNS * math.tau if repeats is not None or start is None else farthest
         while True:
-            stop = math.inf if due is None else abs(due)
-            gone = abs(node.theta - first.theta)
-            step = min(width, max(stop - gone, 0.0)) if stop > gone else width
-            found = self._cell(node, way * step)
-            if found is None:
-                width = 0.5 * step
+            left = (math.inf if due is None else due) - abs(node.theta - first.theta)
+            count = min(AT_ONCE, max(1, math.ceil(left / width))) if due is not None else AT_ONCE
+            step = min(width, left / count)
+            found = self._cells(node, way * step, count)
+            self.nodes += found
+            if not found:
+                width = 0.3 * step
                 if width < NARROWEST:
                     self._end(node, way)
                     return
                 continue
-            node, width = found, min(1.6 * max(step, width if step < width else step), WIDEST)
-            self.nodes.append(node)
+            node = found[-1]
+            width = min(1.5 * max(width, step), WIDEST) if len(found) == count else 0.5 * width
             gone = abs(node.theta - first.theta)
-            if due is not None and gone >= abs(due) * (1.0 - 1e-12):
+            if due is not None and repeats is not None and gone >= due * (1.0 - 1e-12):
                 if self._same(node, first):
-                    self.period = abs(due)
+                    self.period = due
                     return
-                assert repeats is not None
-                due = due + repeats
-            if repeats is None and abs(node.theta) >= farthest:
+                due += repeats
+            if due is None and abs(node.theta) >= farthest:
                 return
-            if gone > limit:
+            if gone > MOST_TURNS * math.tau:
                 raise CrankcheckError("the assembly has not come back after many turns")
 
-    def _cell(self, node: Node, step: float) -> Node | None:
-        """The node at the other end of a cell; None where the cell is too wide."""
-        by = np.array([0.5 * step, step])
-        place, turn = node.ahead(by)
-        half = np.array([0.5 * abs(step) * (1.0 + 1e-9), 0.0])
-        solved = self.solve(node.theta + by, half, place, turn)
+    def _cells(self, node: Node, step: float, count: int) -> list[Node]:
+        """The nodes at the ends of cells one after the other, of those that are sure."""
+        ends = step * np.arange(1.0, count + 1.0)
+        by = np.concatenate([ends - 0.5 * step, ends])
+        half = np.repeat([0.5 * abs(step) * (1.0 + 1e-9), 0.0], count)
+        solved = self.solve(node.theta + by, half, *node.ahead(by))
         body = solved.body
-        if not (solved.closed.all() and solved.sure.all()):
-            return None
-        if np.any(np.sign(solved.det) != math.copysign(1.0, node.det)):
-            return None
         assert body.error is not None
         assert body.anchor.error is not None
-        e, t = float(body.anchor.error.position[0]), float(body.error.theta[0])
-        x, y = body.anchor.p.x, body.anchor.p.y
-        phi = np.arctan2(body.turn.y, body.turn.x)
-        ends = ((node.x, node.y, node.phi), (float(x[1]), float(y[1]), float(phi[1])))
-        for px, py, angle in ends:
-            off = abs(math.remainder(angle - float(phi[0]), math.tau))
-            if math.hypot(px - float(x[0]), py - float(y[0])) > e or off > t:
-                return None
-        nearest = node.phi + math.remainder(float(phi[1]) - node.phi, math.tau)
-        return _node(node.theta + step, solved, 1, nearest)
+        good = solved.closed & solved.sure & self.on_side(solved.det)
+        x, y, phi = body.anchor.p.x, body.anchor.p.y, np.arctan2(body.turn.y, body.turn.x)
+        e, t = body.anchor.error.position, body.error.theta
+        found: list[Node] = []
+        for k in range(count):
+            last = found[-1] if found else node
+            inside = [
+                math.hypot(px - x[k], py - y[k]) <= e[k]
+                and abs(math.remainder(angle - phi[k], math.tau)) <= t[k]
+                for px, py, angle in (
+                    (last.x, last.y, last.phi),
+                    (x[count + k], y[count + k], phi[count + k]),
+                )
+            ]
+            if not (good[k] and good[count + k] and all(inside)):
+                break
+            nearest = last.phi + math.remainder(float(phi[count + k]) - last.phi, math.tau)
+            found.append(_node(node.theta + float(ends[k]), solved, count + k, nearest))
+        return found
 
     def _same(self, node: Node, first: Node) -> bool:
         apart = math.hypot(node.x - first.x, node.y - first.y)
@@ -263,9 +272,11 @@ def _speed(node: Node, size_m: float) -> float:
 def _node(theta: float, solved: SolvedPlatform, index: int, phi: float) -> Node:
     body = solved.body
     at = body.anchor
-    each = (at.p.x, at.p.y, at.v.x, at.v.y, body.omega, solved.det)
-    x, y, dx, dy, dphi, det = (float(np.broadcast_to(v, solved.det.shape)[index]) for v in each)
-    return Node(theta, x, y, phi, dx, dy, dphi, det)
+    each = (at.p.x, at.p.y, at.v.x, at.v.y, body.omega, solved.det, at.a.x, at.a.y, body.alpha)
+    x, y, dx, dy, dphi, det, *seconds = (
+        float(np.broadcast_to(one, solved.det.shape)[index]) for one in each
+    )
+    return Node(theta, x, y, phi, dx, dy, dphi, det, (seconds[0], seconds[1], seconds[2]))
 
 
 def start_node(theta: float, solved: SolvedPlatform, phi: float) -> Node:
