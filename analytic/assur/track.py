@@ -27,7 +27,7 @@ from analytic.dyads.plane import Vec
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 
-FIRST, WIDEST, NARROWEST = 0.02, 0.1, 1e-6
+FIRST, WIDEST, NARROWEST = 0.02, 0.1, 1e-5
 """Cells of the driver's angle [rad]: the first that is tried, the widest, and the narrowest, beside
 which the assembly ends."""
 MOST_TURNS = 24
@@ -36,7 +36,8 @@ SAME = 1e-7
 """Of the link's size and of an angle [rad]: two poses that are one."""
 AT_ONCE = 6
 """Cells that are looked at together: one look costs hardly more than one cell."""
-BISECTIONS = 48
+FITTED, APART = 6, 1.6
+"""Nodes beside an end that tell where it is, and by how much their determinants differ."""
 
 EndKind = Literal["limit position", "change point"]
 Solve = Callable[[Array, Array, Vec, Vec], SolvedPlatform]
@@ -46,10 +47,19 @@ at unit speed."""
 
 @dataclass(frozen=True)
 class End:
-    """Where the assembly meets another one, at a driver angle [rad]."""
+    """Where the assembly meets another one: a driver angle [rad], and the pose there."""
 
     theta: float
     kind: EndKind
+    pose: tuple[float, float, float]
+
+    def guess(self, theta: Array, last: Array) -> list[Array]:
+        """The pose between the last node, a row of the table, and the end: as the root of the
+        distance from a limit position, and as that itself where two assemblies cross."""
+        share = np.clip((theta - self.theta) / (last[0] - self.theta), 0.0, 1.0)
+        if self.kind == "limit position":
+            share = np.sqrt(share)
+        return [end + share * (at - end) for end, at in zip(self.pose, last[1:4], strict=True)]
 
 
 @dataclass(frozen=True)
@@ -183,33 +193,26 @@ class Track:
         return apart <= SAME * self.size_m and turned <= SAME
 
     def _end(self, last: Node, way: float) -> None:
-        """The end beside a node: where it no longer closes on its side, or where it can not be
-        told from another that it crosses."""
-        open_ = last.theta + way * 4.0 * self._room(last)
-        closes = last.theta
-        for _ in range(BISECTIONS):
-            middle = 0.5 * (closes + open_)
-            if self._closes(last, middle):
-                closes = middle
-            else:
-                open_ = middle
-        kind: EndKind = "change point" if self._crosses(last, closes, way) else "limit position"
-        end = End(closes, kind)
+        """The end beside a node, by the angle as a function of the determinant, at 0: a series that
+        has no linear term at a limit position, and one where two assemblies cross."""
+        crosses = self._crosses(last, way)
+        beside = [last]
+        for node in sorted(self.nodes, key=lambda n: -way * n.theta):
+            if len(beside) < FITTED and abs(node.det) > APART * abs(beside[-1].det):
+                beside.append(node)
+        dets = np.array([node.det for node in beside]) / beside[-1].det
+        powers = np.arange(len(beside)) + (0 if crosses else np.arange(len(beside)) > 0)
+        thetas = np.array([node.theta - last.theta for node in beside])
+        theta = last.theta + float(np.linalg.solve(dets[:, None] ** powers, thetas)[0])
+        poses = np.array([(node.x, node.y, node.phi) for node in beside])
+        x, y, phi = np.linalg.solve(dets[:, None] ** np.arange(len(beside)), poses)[0].tolist()
+        end = End(theta, "change point" if crosses else "limit position", (x, y, phi))
         if way > 0.0:
             self.high = end
         else:
             self.low = end
 
-    def _room(self, last: Node) -> float:
-        """About how far a limit position is: the determinant goes as the root of the distance."""
-        return max(abs(last.det) / max(abs(last.dphi), 1e-300), 16.0 * NARROWEST)
-
-    def _closes(self, last: Node, theta: float) -> bool:
-        place, turn = Vec(np.array([last.x]), np.array([last.y])), last.ahead(np.zeros(1))[1]
-        solved = self.solve(np.array([theta]), np.zeros(1), place, turn)
-        return bool(solved.closed[0]) and float(solved.det[0]) * self.side > 0.0
-
-    def _crosses(self, last: Node, end: float, way: float) -> bool:
+    def _crosses(self, last: Node, way: float) -> bool:
         """Whether the rates stay finite: at a limit position they grow as the determinant falls."""
         before = next(
             (n for n in reversed(self.nodes) if way * (last.theta - n.theta) > 0.0
@@ -257,6 +260,13 @@ class Track:
             + h[2] * right[:, i] + h[3] * width * right[:, i + 3]
             for i in (1, 2, 3)
         )  # fmt: skip
+        for end, last, outside in (
+            (self.low, table[0], theta < table[0, 0]),
+            (self.high, table[-1], theta > table[-1, 0]),
+        ):
+            if end is not None and outside.any():
+                poses = end.guess(theta, last)
+                x, y, phi = (np.where(outside, *each) for each in zip(poses, (x, y, phi), strict=True))
         return Vec(x, y), Vec(np.cos(phi), np.sin(phi))
 
     def on_side(self, det: Array) -> Mask:
