@@ -266,7 +266,9 @@ class Track:
         ):
             if end is not None and outside.any():
                 poses = end.guess(theta, last)
-                x, y, phi = (np.where(outside, *each) for each in zip(poses, (x, y, phi), strict=True))
+                x, y, phi = (
+                    np.where(outside, *each) for each in zip(poses, (x, y, phi), strict=True)
+                )
         return Vec(x, y), Vec(np.cos(phi), np.sin(phi))
 
     def on_side(self, det: Array) -> Mask:
