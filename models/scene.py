@@ -180,10 +180,16 @@ class Scene:
         return [n for n, one in self.friction.items() if isinstance(one, CoulombFriction)]
 
     @property
+    def driver_arm_m(self) -> float:
+        """What the driver's coordinate is over an angle: 1 of an angle; of the displacement of a
+        slider the longest length [m], so that its speed over it is a rate of turning."""
+        return 1.0 if self.driver.slider is None else self.longest_m
+
+    @property
     def driver_pivot(self) -> str:
-        """The pin that is driven: of a crank, that to the ground. There is none of a slider."""
-        if self.driver.pin is not None:
-            return self.driver.pin
+        """The pin that is driven, of a crank that to the ground; empty where a slider is."""
+        if self.driver.pin is not None or self.driver.slider is not None:
+            return self.driver.pin or ""
         return next(point for point in self.links[self.driver.link].points if point in self.ground)
 
 
