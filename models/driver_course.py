@@ -26,6 +26,14 @@ def driver_course(scene: Scene, motion: Motion) -> Course:
     return link.theta - base.theta, link.omega - base.omega, link.alpha - base.alpha
 
 
+def driver_place(scene: Scene, motion: Motion) -> Array | None:
+    """The driver's coordinate [rad or m], (T,); None where the motion does not tell it."""
+    try:
+        return driver_course(scene, motion)[0]
+    except KeyError:
+        return None
+
+
 def driver_rates(scene: Scene, state: State) -> tuple[float, float]:
     """The rate and the second rate of the driver's coordinate in a state."""
     driver = scene.driver
@@ -35,3 +43,11 @@ def driver_rates(scene: Scene, state: State) -> tuple[float, float]:
     if driver.base == GROUND:
         return omega, alpha
     return omega - state.omega[driver.base], alpha - state.alpha[driver.base]
+
+
+def driver_place_in(scene: Scene, state: State) -> float:
+    """The driver's coordinate in a state [rad or m]."""
+    driver = scene.driver
+    if driver.slider is not None:
+        return state.displacement[driver.slider]
+    return state.theta[driver.link] - (state.theta[driver.base] if driver.is_inner else 0.0)

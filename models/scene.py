@@ -110,6 +110,11 @@ class Driver:
         return self.link if self.pin is None else f"pin {self.pin} of {self.base} and {self.link}"
 
     @property
+    def name(self) -> str:
+        """What it is called in a table: the slider, or the link that turns."""
+        return self.slider or self.link
+
+    @property
     def unit(self) -> str:
         """Of its coordinate: rad or m."""
         return "rad" if self.slider is None else "m"
@@ -184,6 +189,11 @@ class Scene:
         """What the driver's coordinate is over an angle: 1 of an angle; of the displacement of a
         slider the longest length [m], so that its speed over it is a rate of turning."""
         return 1.0 if self.driver.slider is None else self.longest_m
+
+    @property
+    def pace_rad_s(self) -> float:
+        """The driver's largest speed, of a slider over the longest length [rad/s]."""
+        return self.driver.law.peak_speed_rad_s / self.driver_arm_m
 
     @property
     def driver_pivot(self) -> str:

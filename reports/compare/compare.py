@@ -78,7 +78,7 @@ def _of_driven(beside: Beside) -> Errors:
         notes=(*notes, *borne.notes),
         curvature=curvature(scene, beside.whole),
         conditioning=conditioning(reference, at.driver_rad),
-        step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
+        step_rad=scene.pace_rad_s * run.dt_s,
         missing=beside.missing,
         incomplete=beside.incomplete or borne.incomplete,
         uncertain=uncertain(beside) | dict(borne.unsure),
