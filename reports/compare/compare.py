@@ -87,6 +87,7 @@ def _of_driven(beside: Beside) -> Errors:
         jolt=float(jolt[0]),
         worst_jolt=float(np.max(jolt)),
         mass_ratio=mass_ratio(scene),
+        drives_within=scene.driver.is_inner,
         starts_in_passage=bool(np.any(at.passed[: at.first])),
         uneven=far,
         uneven_rates=unevenly_turned(scene, far),
