@@ -50,7 +50,7 @@ FLOORS: Mapping[str, str] = {
         change_points check reach result
         turns assur
         dyads
-        structure multibody
+        structure multibody chains
     """,
     "sim": f"""
         {" ".join(ENGINES)}
