@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from analytic.chains.chain import Chain, Joint
 
-ROMAN = ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII")
+ROMAN = ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
 
 
 @dataclass(frozen=True)
@@ -74,9 +74,8 @@ class Mechanism:
         alike = {link: own[0] for own in marked.orbits for link in own}
         return sorted({alike[link] for link in self.chain.neighbours[self.ground]})
 
-    def classes(self) -> dict[int, int | None]:
-        """The class of the mechanism for each driving link at the ground; None where the driver
-        leaves another link loose, or is held itself."""
+    def classes(self) -> dict[int, int]:
+        """The class of the mechanism for each driving link at the ground; of mobility 1."""
         return {link: mechanism_class(self.chain, self.ground, link) for link in self.drivers()}
 
 
@@ -88,9 +87,12 @@ def inversions(chain: Chain, name: str) -> list[Mechanism]:
     if len(grounds) == 1:
         return [Mechanism(chain, grounds[0], name)]
     return [
-        Mechanism(chain, ground, f"{name} {ROMAN[k]}" if k < len(ROMAN) else f"{name} {k}")
-        for k, ground in enumerate(grounds, 1)
+        Mechanism(chain, ground, f"{name} {_number(k)}") for k, ground in enumerate(grounds, 1)
     ]
+
+
+def _number(k: int) -> str:
+    return ROMAN[k] if k < len(ROMAN) else f"{k}"
 
 
 def _rank(chain: Chain, link: int) -> tuple[object, ...]:
@@ -100,14 +102,12 @@ def _rank(chain: Chain, link: int) -> tuple[object, ...]:
     return chain.degrees[link], [-degree for degree in beside], link
 
 
-def assur_groups(chain: Chain, ground: int, driver: int) -> list[AssurGroup] | None:
-    """The groups in solving order, with ``driver`` turned against the ground; None where what is
-    left does not fall into groups."""
+def assur_groups(chain: Chain, ground: int, driver: int) -> list[AssurGroup]:
+    """The groups in solving order, with ``driver`` moved against the ground, of mobility 1: with no
+    rigid part, what is left then always falls into groups."""
     placed, order = {ground, driver}, []
     while len(placed) < chain.links:
-        group = next(_groups_on(chain, placed), None)
-        if group is None:
-            return None
+        group = next(_groups_on(chain, placed))
         order.append(group)
         placed.update(group.links)
     return order
@@ -129,9 +129,6 @@ def _groups_on(chain: Chain, placed: set[int]) -> Iterator[AssurGroup]:
                 yield AssurGroup(some, inner, outer)
 
 
-def mechanism_class(chain: Chain, ground: int, driver: int) -> int | None:
-    """The highest class of its groups; None where it does not fall into groups."""
-    groups = assur_groups(chain, ground, driver)
-    if groups is None:
-        return None
-    return max((group.class_number for group in groups), default=1)
+def mechanism_class(chain: Chain, ground: int, driver: int) -> int:
+    """The highest class of its groups."""
+    return max(group.class_number for group in assur_groups(chain, ground, driver))

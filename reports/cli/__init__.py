@@ -9,7 +9,14 @@ from reports.cli import changes, measuring
 from reports.cli import judging, showing  # --help lists commands in the order of these lines
 
 # isort: split
-from reports.cli import drawing_polygons, drawing_sheets, graph_sheets, regulating, vibrating
+from reports.cli import (
+    drawing_polygons,
+    drawing_sheets,
+    graph_sheets,
+    regulating,
+    structures,
+    vibrating,
+)
 
 # isort: split
 from reports.cli import recipes
@@ -29,5 +36,6 @@ __all__ = [
     "recipes",
     "regulating",
     "showing",
+    "structures",
     "vibrating",
 ]
