@@ -50,7 +50,8 @@ FLOORS: Mapping[str, str] = {
         change_points check reach result
         turns assur
         dyads
-        structure multibody chains
+        structure multibody
+        chains
     """,
     "sim": f"""
         {" ".join(ENGINES)}

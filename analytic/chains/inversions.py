@@ -6,58 +6,12 @@ groups that hang on what is placed are taken away, the smallest first.
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator
 from dataclasses import dataclass
 
-from analytic.chains.chain import Chain, Joint
+from analytic.chains.assur_group import AssurGroup, groups_on
+from analytic.chains.chain import Chain
 
 ROMAN = ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
-
-
-@dataclass(frozen=True)
-class AssurGroup:
-    """A group: its ``links``, and the joints among them and to what is placed."""
-
-    links: tuple[int, ...]
-    inner: tuple[Joint, ...]
-    outer: tuple[Joint, ...]
-
-    @property
-    def order(self) -> int:
-        """The joints by which it hangs on what is placed."""
-        return len(self.outer)
-
-    @property
-    def class_number(self) -> int:
-        """2 of a dyad; else the corners of its largest closed contour: a link with so many inner
-        joints, or a ring of links without a shorter way across (I. I. Artobolevskii)."""
-        if len(self.links) == 2:
-            return 2
-        ends = [link for joint in self.inner for link in joint]
-        own = max(ends.count(link) for link in self.links)
-        return max(3, own, *self._rings())
-
-    def _rings(self) -> Iterator[int]:
-        """The sizes of the closed rings of links; 0 where there is none."""
-        yield 0
-        inner = set(self.inner)
-        for size in range(4, len(self.links) + 1):
-            for some in itertools.combinations(self.links, size):
-                held = [pair for pair in itertools.combinations(sorted(some), 2) if pair in inner]
-                ends = [link for pair in held for link in pair]
-                is_ring = len(held) == size and all(ends.count(link) == 2 for link in some)
-                # two rings apart have as many joints, of six links or more
-                if is_ring and _is_one(some, held):
-                    yield size
-
-
-def _is_one(links: tuple[int, ...], joints: list[Joint]) -> bool:
-    """Whether joints hold all the links together."""
-    reached = {links[0]}
-    for _ in links:
-        reached |= {b for joint in joints for b in joint if reached & set(joint)}
-    return reached == set(links)
 
 
 @dataclass(frozen=True)
@@ -102,31 +56,16 @@ def _rank(chain: Chain, link: int) -> tuple[object, ...]:
     return chain.degrees[link], [-degree for degree in beside], link
 
 
-def assur_groups(chain: Chain, ground: int, driver: int) -> list[AssurGroup]:
+def assur_groups(chain: Chain, ground: int, driver: int) -> list[AssurGroup[int]]:
     """The groups in solving order, with ``driver`` moved against the ground, of mobility 1: with no
     rigid part, what is left then always falls into groups."""
-    placed, order = {ground, driver}, []
+    placed = {ground, driver}
+    order: list[AssurGroup[int]] = []
     while len(placed) < chain.links:
-        group = next(_groups_on(chain, placed))
+        group = next(groups_on(chain.joints, range(chain.links), placed))
         order.append(group)
         placed.update(group.links)
     return order
-
-
-def _groups_on(chain: Chain, placed: set[int]) -> Iterator[AssurGroup]:
-    """The groups that hang on what is placed, the smallest first."""
-    left = [link for link in range(chain.links) if link not in placed]
-    for size in range(2, len(left) + 1, 2):
-        for some in itertools.combinations(left, size):
-            own = set(some)
-            inner = tuple(joint for joint in chain.joints if own.issuperset(joint))
-            outer = tuple(
-                joint
-                for joint in chain.joints
-                if len(own.intersection(joint)) == 1 and placed.intersection(joint)
-            )
-            if 3 * size == 2 * (len(inner) + len(outer)):
-                yield AssurGroup(some, inner, outer)
 
 
 def mechanism_class(chain: Chain, ground: int, driver: int) -> int:

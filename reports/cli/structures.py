@@ -10,6 +10,7 @@ import typer
 
 from reports.cli.application import command
 from reports.cli.drawing_sheets import PaperSize
+from reports.cli.showing import SceneName
 from reports.output.console import terminal
 
 
@@ -39,3 +40,31 @@ def chains(request: ChainsRequest) -> int:
     from reports.cli.commands import chains as verb
 
     return verb.run_chains(request, terminal())
+
+
+@dataclass(frozen=True)
+class StructureRequest:
+    """What `structure` was asked for, as given."""
+
+    scene: SceneName
+    at_deg: Annotated[
+        float | None,
+        typer.Option(metavar="DEG", help="The driver's angle; default: where the scene starts."),
+    ] = None
+    at_m: Annotated[
+        float | None, typer.Option(metavar="M", help="The place of a slider that drives.")
+    ] = None
+    paper: PaperSize = "A4"
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Draw all assemblies: .svg in layers, or .pdf."),
+    ] = None
+
+
+@command
+def structure(request: StructureRequest) -> int:
+    """Show what a scene is made of: links and joints, mobility, Assur groups with class and order,
+    the class with every other joint as the driver, and all its assemblies at one place."""
+    from reports.cli.commands import structure as verb
+
+    return verb.run_structure(request, terminal())
