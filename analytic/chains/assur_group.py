@@ -61,7 +61,7 @@ class AssurGroup(Generic[Name]):
                     yield size
 
 
-def _is_one(links: tuple[Name, ...], joints: list[Joint]) -> bool:
+def _is_one(links: tuple[Name, ...], joints: Sequence[tuple[Name, Name]]) -> bool:
     """Whether joints hold all the links together."""
     reached = {links[0]}
     for _ in links:

@@ -59,9 +59,7 @@ def canonical(corners: int, edges: Mapping[Edge, int], colours: Sequence[int]) -
 
 def _form(beside: list[dict[int, int]], colours: Sequence[int], order: list[int]) -> Form:
     """The graph as it reads with its corners in an order."""
-    rows = (
-        tuple(beside[a].get(b, 0) for b in order[: k + 1]) for k, a in enumerate(order)
-    )
+    rows = (tuple(beside[a].get(b, 0) for b in order[: k + 1]) for k, a in enumerate(order))
     return (tuple(colours[corner] for corner in order), *rows)
 
 

@@ -121,15 +121,19 @@ def _split(links: int, ends: int, most: int) -> list[tuple[int, ...]]:
         return [(links,)] if 2 * links == ends else []
     ways: list[tuple[int, ...]] = []
     for count in range(min(links, (ends - 2 * links) // (most - 2)) + 1):
-        for rest in _split(links - count, ends - most * count, most - 1):
-            ways.append((*rest, *[0] * (most - 2 - len(rest)), count) if count else rest)
+        ways += (
+            (*rest, *[0] * (most - 2 - len(rest)), count) if count else rest
+            for rest in _split(links - count, ends - most * count, most - 1)
+        )
     return ways
 
 
 def assortment_in_words(counts: tuple[int, ...]) -> str:
     """4 binary, 2 ternary."""
     return ", ".join(
-        f"{count} {NAMES_OF_LINKS.get(k, f'{k}-joint')}" for k, count in enumerate(counts, 2) if count
+        f"{count} {NAMES_OF_LINKS.get(k, f'{k}-joint')}"
+        for k, count in enumerate(counts, 2)
+        if count
     )
 
 
@@ -144,8 +148,6 @@ def has_rigid_part(chain: Chain) -> bool:
         if part.bit_count() > 1 and mobility_by_count(part.bit_count(), inside[part]) <= 0:
             return True
     return False
-
-
 
 
 def _sorted(joint: Joint) -> Joint:

@@ -40,9 +40,7 @@ def inversions(chain: Chain, name: str) -> list[Mechanism]:
     )
     if len(grounds) == 1:
         return [Mechanism(chain, grounds[0], name)]
-    return [
-        Mechanism(chain, ground, f"{name} {_number(k)}") for k, ground in enumerate(grounds, 1)
-    ]
+    return [Mechanism(chain, ground, f"{name} {_number(k)}") for k, ground in enumerate(grounds, 1)]
 
 
 def _number(k: int) -> str:

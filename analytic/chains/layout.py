@@ -18,9 +18,9 @@ from models.array import Array
 
 SEED, SPRUNG, PULLS, RINGS = 18, 24, 40, 48
 """Of the chance; starts by springs and how often these pull; starts with a loop outside."""
-KEPT, TRIES, ROUNDS, REACH, GOOD = 20, 10, 240, (0.35, 0.012), 0.5
+KEPT, TRIES, ROUNDS, REACH, GOOD = 20, 10, 240, (0.35, 0.012), 0.12
 """Starts that are improved; steps of each tried at once, how often, the length of the first and the
-last [bars], and a cost that is as good as none."""
+last [bars], and a cost for each joint above six that is as good as none."""
 FINAL = 4
 """After this share of the rounds this share of the starts is left."""
 CLEAR = 0.42
@@ -109,7 +109,7 @@ class _Pattern:
         to, way = at[:, point] - a[:, edge], along[:, edge]
         share = (to * way).sum(axis=2) / np.maximum((way * way).sum(axis=2), 1e-12)
         left = to - np.clip(share, 0.0, 1.0)[..., None] * way
-        return np.hypot(left[..., 0], left[..., 1])
+        return np.asarray(np.hypot(left[..., 0], left[..., 1]))
 
     def _sharpness(self, at: Array) -> Array:
         """By how much the cosine of angles at joints, between two links, is too large."""
@@ -183,7 +183,9 @@ def _with_loops_outside(chain: Chain, pattern: _Pattern, draw: np.random.Generat
     loops = sorted(_loops(chain), key=len, reverse=True)
     starts = []
     for loop, chance in zip(itertools.cycle(loops), np.linspace(0.05, 0.4, RINGS), strict=False):
-        ring = [place[(min(pair), max(pair))] for pair in zip(loop, loop[1:] + loop[:1], strict=True)]
+        ring = [
+            place[(min(pair), max(pair))] for pair in zip(loop, loop[1:] + loop[:1], strict=True)
+        ]
         inner = [k for k in range(pattern.joints) if k not in ring]
         laplace = np.zeros((pattern.joints, pattern.joints))
         for a, b in pattern.edges:
@@ -229,7 +231,7 @@ def _improved(pattern: _Pattern, at: Array, draw: np.random.Generator) -> Array:
         better = costs[each, chosen] < value
         at = np.where(better[:, None, None], tried[each, chosen], at)
         value = np.where(better, costs[each, chosen], value)
-        if value.min() < GOOD:
+        if value.min() < GOOD * max(pattern.joints - 6, 0.1):
             break
     return np.asarray(at[int(np.argmin(value))])
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from analytic.chains.assur_group import AssurGroup, groups_on
 from analytic.structure.compound import Compound
-from analytic.structure.groups import Group, Pairs, Part, Triad, decompose
+from analytic.structure.groups import Group, Pairs, Triad, decompose
 from analytic.structure.mobility import Structure
 from models.scene import GROUND, Scene
 
@@ -49,8 +49,10 @@ class ClassedGroup:
 
 @dataclass(frozen=True)
 class StructureByDriver:
-    """The groups in solving order with one joint driven; ``left`` are links that fall into none: the
-    joint can not move then, or leaves them loose."""
+    """The groups in solving order with one joint driven.
+
+    ``left`` are links that fall into none: the joint can not move then, or leaves them loose.
+    """
 
     joint: DrivenJoint
     groups: tuple[ClassedGroup, ...]
@@ -98,7 +100,7 @@ def _driven(scene: Scene, structure: Structure, joint: DrivenJoint) -> Structure
         pairs = own.pairs(structure.pins, structure.prismatics)
         ends = _ends(structure, own)
     order, left = decompose(units, frozenset(known), pairs)
-    groups = [classed(part) for part in order if not _is_bridge(part)]  # type: ignore[arg-type]  # told apart
+    groups = [classed(part) for part in order if isinstance(part, Group | Triad)]
     groups, left = _with_larger(groups, left, ends, set(units) | known)
     is_own = joint.slider == scene.driver.slider and (
         joint.slider is not None
@@ -108,10 +110,6 @@ def _driven(scene: Scene, structure: Structure, joint: DrivenJoint) -> Structure
         )
     )
     return StructureByDriver(joint, tuple(groups), tuple(left), is_own)
-
-
-def _is_bridge(part: Part) -> bool:
-    return not isinstance(part, Group | Triad)
 
 
 def _ends(structure: Structure, own: Compound | None) -> list[tuple[str, str]]:

@@ -43,23 +43,18 @@ def draw_assemblies(
     boxes = [
         Box(one.left, one.bottom + WORDS_MM, one.width, one.height - WORDS_MM) for one in fields
     ]
-    placed = [extent_of(placement) for placement, _, _ in drawn]
-    fits = [box.fitted(points, PADDING) for box, points in zip(boxes, placed, strict=True)]
-    scale = max(one for one, _ in fits)
-    for (placement, words, is_own), field, box, (_, middle) in zip(
-        drawn, fields, boxes, fits, strict=True
-    ):
+    everything = np.concatenate([extent_of(placement) for placement, _, _ in drawn])
+    scale, middle = boxes[0].fitted(everything, PADDING)
+    for (placement, words, is_own), field, box in zip(drawn, fields, boxes, strict=True):
         draw_border(frame, field)
         at = partial(_at, box=box, scale=scale, middle=middle)
         draw_scheme(schemes, placement, at)
         short = cut(words, (field.width - 4.0) / MM_PER_IN, SMALL)
         left = field.middle[0] - MM_PER_IN * width_in(short, SMALL) / 2
-        look = {"color": INK, "weight": "bold"} if is_own else {"color": QUIET}
-        text(frame, left, field.bottom + 2.5, short, **look)
-    for (placement, _, _), box, (_, middle) in zip(drawn, boxes, fits, strict=True):
-        places = {
-            name: _at(place, box, scale, middle) for name, place in placement.points.items()
-        }
+        weight, color = ("bold", INK) if is_own else ("normal", QUIET)
+        text(frame, left, field.bottom + 2.5, short, weight=weight, color=color)
+    for (placement, _, _), box in zip(drawn, boxes, strict=True):
+        places = {name: _at(place, box, scale, middle) for name, place in placement.points.items()}
         write_letters(canvas, letters, point_letters(placement, places), box)
     return canvas
 
@@ -72,7 +67,7 @@ def _at(places: Array, box: Box, scale: float, middle: Array) -> Array:
 def _fields(many: int, paper: Paper) -> list[Box]:
     """A field for each, side by side and then below, about as wide as high."""
     inner = inner_box(paper)
-    columns = min(many, max(1, round(math.sqrt(many * inner.width / inner.height))))
+    columns = min(range(1, many + 1), key=lambda n: _unlike(many, n, inner))
     rows = math.ceil(many / columns)
     wide, tall = inner.width / columns, inner.height / rows
     top = inner.bottom + inner.height
@@ -80,3 +75,10 @@ def _fields(many: int, paper: Paper) -> list[Box]:
         Box(inner.left + (k % columns) * wide, top - (k // columns + 1) * tall, wide, tall)
         for k in range(many)
     ]
+
+
+def _unlike(many: int, columns: int, inner: Box) -> float:
+    """How far so many columns are from fields as wide as high, with none of them blank."""
+    rows = math.ceil(many / columns)
+    aspect = inner.width / columns * rows / inner.height
+    return abs(math.log(aspect)) + (rows * columns - many) / many

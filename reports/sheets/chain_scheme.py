@@ -1,4 +1,4 @@
-"""A kinematic chain as books draw it: bars and plates on pins, blocks for sliders, a hatched ground."""
+"""A kinematic chain as books draw it: bars and plates, pins, sliders, a hatched ground."""
 
 from __future__ import annotations
 
@@ -38,7 +38,9 @@ def draw_chain(
         if joint in chain.sliders:
             _block(axes, at[joint], _along(chain, joint, at))
         else:
-            axes.add_patch(Circle(tuple(at[joint]), PIN_MM, fc="white", ec=INK, lw=0.7, zorder=FRONT))
+            axes.add_patch(
+                Circle(tuple(at[joint]), PIN_MM, fc="white", ec=INK, lw=0.7, zorder=FRONT)
+            )
 
 
 def _around(corners: Array) -> Array:
@@ -83,5 +85,3 @@ def _along(chain: Chain, joint: Joint, at: Mapping[Joint, Array]) -> Array:
     others = [one for one in chain.joints_of(link) if one != joint]
     way = np.asarray(at[others[0]] - at[joint])
     return np.asarray(way / np.hypot(*way))
-
-

@@ -21,7 +21,7 @@ LEAST_MM = (24.0, 24.0)
 """A field that can be read."""
 WORDS_MM, LINE_MM, PAD_MM = 8.5, 2.7, 3.5
 """Height of the words below a scheme, of a line of them, and what is left blank around it."""
-BAR_MM = 15.0
+BAR_MM = 22.0
 """The longest that a bar of common length is drawn."""
 NAME = 6.5
 ASPECT = 1.25
@@ -30,7 +30,7 @@ ASPECT = 1.25
 
 @dataclass(frozen=True)
 class DrawnChain:
-    """A chain to draw: its name, what is said of it in a second line, and its ground if it has one."""
+    """A chain to draw: its name, a second line of words, and its ground if it has one."""
 
     chain: Chain
     name: str
@@ -83,7 +83,9 @@ def draw_chains(chains: Sequence[DrawnChain], title: str, note: str, paper: Pape
     sizes = [np.ptp(np.array(list(at.values())), axis=0) for at in places]
     bar = min(BAR_MM, *(float(np.min(room / np.maximum(size, 0.3))) for size in sizes))
     for one, field, at in zip(chains, fields, places, strict=True):
-        middle = np.array([field.middle[0], field.bottom + WORDS_MM + (field.height - WORDS_MM) / 2])
+        middle = np.array(
+            [field.middle[0], field.bottom + WORDS_MM + (field.height - WORDS_MM) / 2]
+        )
         draw_chain(
             schemes, one.chain, {joint: middle + bar * way for joint, way in at.items()}, one.ground
         )

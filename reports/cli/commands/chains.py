@@ -94,7 +94,8 @@ def _show(console: Console, request: ChainsRequest, rows: list[DrawnChain]) -> N
     for row in rows:
         ground = [] if row.ground is None else [f"link {row.ground + 1}"]
         joints = " ".join(
-            f"{a + 1}-{b + 1}{'*' if (a, b) in row.chain.sliders else ''}" for a, b in row.chain.joints
+            f"{a + 1}-{b + 1}{'*' if (a, b) in row.chain.sliders else ''}"
+            for a, b in row.chain.joints
         )
         table.add_row(row.name, *ground, row.words, joints)
     console.print(table)

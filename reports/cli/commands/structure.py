@@ -1,4 +1,4 @@
-"""`crankcheck structure`: what a scene is made of, and all the ways in which it can be assembled."""
+"""`crankcheck structure`: what a scene is made of, and all its assemblies."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ def _show_assemblies(console: Console, every: list[Assembled], at: str) -> None:
     table = plain_table(gap=2)
     table.add_column("")
     table.add_column("branch", overflow="fold")
-    links = [name for name in every[0].placement.scene.links]
+    links = list(every[0].placement.scene.links)
     for name in links:
         table.add_column(f"{name} deg", justify="right")
     for one in every:
