@@ -11,7 +11,7 @@ from analytic.assur.assemblies import Assembly, assemblies
 from analytic.assur.mounting import Mounting
 from analytic.assur.platform import SolvedPlatform, solve_platform
 from analytic.assur.sampled_rows import SampledRow
-from analytic.assur.track import Track, start_node
+from analytic.assur.track import Track, pose_at
 from analytic.dyads.chunk import Chunk, Passage
 from analytic.dyads.driven import driver_scale, told
 from analytic.dyads.parts import Closure, OpenError
@@ -52,7 +52,7 @@ class AssurStep:
         theta = track.home(chunk.theta)
         solved = self._solved(chunk, *track.guess(theta))
         beyond = track.beyond(theta)
-        closes = solved.closed & track.on_side(solved.det) & (beyond <= 0.0)
+        closes = solved.closed & track.on_side(theta, solved.det) & (beyond <= 0.0)
         # The end is known to rounding; beside it an assembly may be told open, or closed.
         short = self.mounting.size_m * np.where(
             closes, np.minimum(beyond, -1e-15), np.maximum(beyond, 1e-15)
@@ -89,12 +89,15 @@ class AssurStep:
         start = float(scene.driver.law.at(np.zeros(1))[0][0]) / driver_scale(scene)
         chosen = self._chosen(start, passages)
 
-        def solve(theta: Array, half: Array, place: Vec, turn: Vec) -> SolvedPlatform:
-            return self._solved(self.before.chunk(theta, half, passages), place, turn)
+        def rows(theta: Array, half: Array) -> list[SampledRow]:
+            return self.mounting.rows(self.before.chunk(theta, half, passages))
 
-        node = start_node(
-            start, solve(np.array([start]), np.zeros(1), *_pose(chosen)), chosen.angle_rad
-        )
+        pose = pose_at(rows, start, *_pose(chosen), self.mounting.size_m)
+        if pose is None:
+            raise ReachError(
+                f"{scene.name}: at {scene.driver.joint} {told(scene, start)}, where it starts, the "
+                f"group about {self.key} is singular to within rounding; start elsewhere"
+            )
         slides = scene.driver.slider is not None
         periods = [math.tau]
         periods += [one.period for key, one in passages.items()]  # type: ignore[attr-defined]
@@ -104,7 +107,7 @@ class AssurStep:
             if isinstance(one, AssurStep)
         ]
         repeats = None if slides else max(periods)
-        return Track.of(solve, self.mounting.size_m, node, repeats, math.pi)
+        return Track(rows, pose, self.mounting.size_m, repeats)
 
     def rows_at(self, theta: float, passages: Mapping[str, Passage]) -> list[SampledRow]:
         """The rows at one driver angle."""

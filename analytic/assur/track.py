@@ -1,275 +1,342 @@
-"""One assembly of a group followed along the driver, by steps that can not jump to another one.
+"""One assembly of a triad followed along the driver, by cells in which there is no other nearby.
 
 ::
 
-      pose |        ____
-           |   __--+----+     Over a cell of the driver's angles the certificate of the middle, for
-           | _+--+ |____|     what the group hangs on being uncertain by as much as it moves in the
-           |_|   +-+          cell, holds one assembly and no other. The pose at one end of the cell
-           |                  is in there, and so the one that is found at its other end is the
-           +------------ psi  same assembly, led on.
+    phi |          __--+        Over a cell the assembly stays within a box that moves with its
+        |   +---+--   _|        middle's own rate, and no other comes into that box, wherever in the
+        |   | _-+---+- |        cell the driver is. At a border that is known to rounding, and lies
+        |   +-  |   |  |        in both boxes, one box hands over to the next: no step can jump.
+        +---+---+---+--+----- driver
 
-Source: R. E. Moore, R. B. Kearfott and M. J. Cloud, Introduction to Interval Analysis, chapter 8
-(a root in a box that is the only one there); the boxes are those of `analytic.assur.platform`.
+The proof is that of `analytic.assur.platform`, with what the rows open along the straight way of the
+box: half of their second rate, at most, times the square of the way. A track ends where no cell is
+narrow enough: there two assemblies meet. After a whole turn of the driver, or some, it may be back.
+
+Source: N. Rojas and F. Thomas on the position analysis of Assur groups; R. E. Moore et al.,
+Introduction to Interval Analysis, 2009, section 8.3 (Krawczyk's test).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Literal
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
-from analytic.assur.platform import SolvedPlatform
-from analytic.dyads.plane import Vec
+from analytic.assur.cells_along import CellsAlong, along
+from analytic.assur.platform import solve_platform
+from analytic.assur.sampled_rows import SampledRow
+from analytic.dyads.plane import EPS, BodyKinematics, Vec
 from models.array import Array, Mask
-from models.errors import CrankcheckError
 
-FIRST, WIDEST, NARROWEST = 0.02, 0.1, 1e-9
-"""Cells of the driver's angle [rad]: the first that is tried, the widest, and the narrowest, beside
-which the assembly ends."""
-MOST_TURNS = 24
-"""Of the driver, after which an assembly that has not come back is given up."""
-SAME = 1e-7
-"""Of the link's size and of an angle [rad]: two poses that are one."""
-BISECTIONS = 48
+BLOCK = 8
+"""Cells that are looked at together."""
+WIDEST = 0.1
+"""A cell [rad]."""
+NARROWEST = 1e-12
+"""A cell [rad] that no assembly is followed through."""
+MOST = 20_000
+"""Cells of a track."""
+SIDE = 1e-4
+"""How far beyond a crossing the other side is looked for [rad]."""
+TURNS = 6
+"""A triad has no more assemblies, and so is back after as many periods of what it hangs on."""
+EndKind = Literal["fold", "crossing", "lost"]
 
-EndKind = Literal["limit position", "change point"]
-Solve = Callable[[Array, Array, Vec, Vec], SolvedPlatform]
-"""The central link at driver angles that are uncertain by so much [rad], near a guess; the driver
-at unit speed."""
+
+class RowsAt(Protocol):
+    """The rows at driver angles [rad], (T,), each uncertain by ``half``; the driver at 1 rad/s."""
+
+    def __call__(self, theta: Array, half: Array) -> Sequence[SampledRow]: ...
 
 
 @dataclass(frozen=True)
 class End:
-    """Where the assembly meets another one, at a driver angle [rad]."""
+    """Where a track ends or crosses another one: driver angle [rad], and as what.
+
+    ``fold``: two assemblies meet and are no more beyond, a limit position. ``crossing``: two meet,
+    and both go on, a change point. ``lost``: neither could be told.
+    """
 
     theta: float
     kind: EndKind
 
 
 @dataclass(frozen=True)
-class Node:
-    """The pose at a driver angle, with its rates by that angle; the angle is continuous."""
+class Pose:
+    """The central link at a driver angle: place of its anchor [m], angle [rad], rates by it."""
 
     theta: float
-    x: float
-    y: float
-    phi: float
-    dx: float
-    dy: float
-    dphi: float
+    place: tuple[float, float]
+    angle: float
+    rate: tuple[float, float]
+    omega: float
+    second: tuple[float, float]
+    alpha: float
     det: float
 
-    def ahead(self, by: Array) -> tuple[Vec, Vec]:
-        """The pose that the rates lead to."""
-        phi = self.phi + self.dphi * by
-        place = Vec(self.x + self.dx * by, self.y + self.dy * by)
-        return place, Vec(np.cos(phi), np.sin(phi))
+
+@dataclass(frozen=True)
+class Piece:
+    """Part of a track, the poses at the borders and in the middle of its cells, in its own order of
+    driver angles; ``end`` where it ends, None where it was not asked for more."""
+
+    poses: list[Pose]
+    end: End | None
+    crossings: list[End]
 
 
-@dataclass
+def follow(rows: RowsAt, start: Pose, to: float, size_m: float) -> Piece:
+    """The assembly of ``start`` followed to the driver angle ``to`` [rad], as far as that goes."""
+    way = 1.0 if to >= start.theta else -1.0
+    poses, crossings, last, half = [start], [], start, 0.25 * WIDEST
+    while way * (to - last.theta) > 0.0 and len(poses) < MOST:
+        left = abs(to - last.theta)
+        count = max(1, min(BLOCK, math.ceil(left / (2.0 * half))))
+        half = min(half, 0.5 * left / count)
+        cells = along(rows, last, way * half, count, size_m)
+        found = _handed_over(cells, last)
+        if found:
+            poses += found
+            last = found[-1]
+            if abs(to - last.theta) <= 4 * EPS * abs(to):
+                break
+        if len(found) == 2 * count:
+            half = min(1.6 * half, 0.5 * WIDEST)
+        else:
+            half *= 0.5 if found else 0.25
+        if half < NARROWEST * max(1.0, abs(last.theta)):
+            end = _end(poses, way)
+            beyond = _beyond(rows, poses, end, way, size_m) if end.kind == "crossing" else None
+            if beyond is None or way * (to - beyond.theta) < 0.0:
+                return Piece(poses, end, crossings)
+            crossings.append(end)
+            poses.append(beyond)
+            last, half = beyond, 0.1 * SIDE
+    end_of_work = End(last.theta, "lost") if len(poses) >= MOST else None
+    return Piece(poses, end_of_work, crossings)
+
+
+def _handed_over(cells: CellsAlong, last: Pose) -> list[Pose]:
+    """The middles and the far borders of the cells up to the first that is not sure, the angles
+    counted on from that of the ``last`` pose."""
+    found: list[Pose] = []
+    angle = last.angle
+    for j in range(cells.good):
+        for body, det, theta, k in (
+            (cells.middle, cells.det_middle, cells.theta, j),
+            (cells.border, cells.det_border, cells.far, j),
+        ):
+            pose = _pose(body, det, float(theta[k]), k, angle)
+            found.append(pose)
+            angle = pose.angle
+    return found
+
+
+def pose_at(rows: RowsAt, theta: float, place: Vec, turn: Vec, size_m: float) -> Pose | None:
+    """The assembly nearest to a guess, one sample; None where there is none that is certain."""
+    at = np.array([theta])
+    own = rows(at, 8 * EPS * np.abs(at))
+    solved = solve_platform(own, place, turn, size_m, certified=True)
+    if not (solved.closed[0] and solved.sure[0]):
+        return None
+    return _pose(solved.body, solved.det, theta, 0, math.atan2(turn.y[0], turn.x[0]))
+
+
+def _pose(body: BodyKinematics, det: Array, theta: float, k: int, near: float) -> Pose:
+    """One sample as a pose, the angle that which is nearest to another."""
+
+    def one(value: object) -> float:
+        flat = np.ravel(np.asarray(value))
+        return float(flat[k if flat.size > 1 else 0])
+
+    turned = math.atan2(one(body.turn.y), one(body.turn.x))
+    angle = turned + math.tau * round((near - turned) / math.tau)
+    at = body.anchor
+    return Pose(
+        theta, (one(at.p.x), one(at.p.y)), angle, (one(at.v.x), one(at.v.y)), one(body.omega),
+        (one(at.a.x), one(at.a.y)), one(body.alpha), one(det),
+    )  # fmt: skip
+
+
+def _end(poses: list[Pose], way: float) -> End:
+    """Where the determinant goes to zero, and how: like the root of the way that is left, or like
+    the way itself."""
+    last = poses[-1]
+    theta = np.array([pose.theta for pose in poses[:-1]])
+    det = np.abs([pose.det for pose in poses[:-1]])
+    away = np.abs(theta - last.theta)
+    near = [int(np.argmin(np.abs(np.log(np.maximum(away, 1e-300) / d)))) for d in (1e-5, 1e-3)]
+    a, b = near
+    if a == b or not 0.0 < det[a] < det[b]:
+        return End(last.theta, "lost")
+    power = math.log(det[b] / det[a]) / math.log(away[b] / away[a])
+    if power < 0.2 or power > 1.4:
+        return End(last.theta, "lost")
+    kind: EndKind = "fold" if power < 0.75 else "crossing"
+    order = 2.0 if kind == "fold" else 1.0
+    # The power of the determinant that is linear in the way is 0 a little beyond the last pose.
+    ends = [det[a] ** order, abs(last.det) ** order]
+    slope = (ends[0] - ends[1]) / away[a]
+    return End(last.theta + way * (ends[1] / slope if slope > 0.0 else 0.0), kind)
+
+
+def _beyond(
+    rows: RowsAt, poses: list[Pose], end: End, way: float, size_m: float
+) -> Pose | None:
+    """The assembly on the other side of a crossing: straight on, its determinant of other sign."""
+    before = next((p for p in reversed(poses) if abs(p.theta - end.theta) > SIDE), poses[0])
+    theta = end.theta + way * SIDE
+    place, turn = ahead(before, np.array([theta]))
+    found = pose_at(rows, theta, place, turn, size_m)
+    if found is None or found.det * before.det >= 0.0:
+        return None
+    turns = round((before.angle - found.angle) / math.tau)
+    return Pose(**{**vars(found), "angle": found.angle + math.tau * turns})
+
+
+def ahead(pose: Pose, theta: Array) -> tuple[Vec, Vec]:
+    """Where a pose leads to at driver angles, to the second order."""
+    d = theta - pose.theta
+    half = 0.5 * d * d
+    place = Vec(
+        pose.place[0] + pose.rate[0] * d + pose.second[0] * half,
+        pose.place[1] + pose.rate[1] * d + pose.second[1] * half,
+    )
+    angle = pose.angle + pose.omega * d + pose.alpha * half
+    return place, Vec(np.cos(angle), np.sin(angle))
+
+
+@dataclass(frozen=True)
 class Track:
-    """The way of one assembly: nodes from the lowest driver angle to the highest.
+    """One assembly of a group along the driver, from the ``start`` on to both sides.
 
-    ``period`` is the driver angle after which it comes back [rad], None where it ends before:
-    ``low`` and ``high`` are the ends then, or None where it goes on as far as anybody looks.
+    ``period`` [rad] is that of what the group hangs on; None where the driver does not turn.
     """
 
-    solve: Solve
+    rows: RowsAt
+    start: Pose
     size_m: float
-    nodes: list[Node]
-    period: float | None = None
-    low: End | None = None
-    high: End | None = None
-    table: Array = field(default_factory=lambda: np.empty((0, 8)))
+    base_period: float | None
 
-    @staticmethod
-    def of(
-        solve: Solve, size_m: float, start: Node, repeats: float | None, farthest: float
-    ) -> Track:
-        """The track through a start.
+    @cached_property
+    def _up(self) -> tuple[Piece, float | None]:
+        """From the start on, until it is back or at an end; and after which driver angle it is."""
+        if self.base_period is None:
+            return follow(self.rows, self.start, math.pi, self.size_m), None
+        poses, crossings, last = [self.start], list[End](), self.start
+        for k in range(1, TURNS + 1):
+            to = self.start.theta + k * self.base_period
+            piece = follow(self.rows, last, to, self.size_m)
+            poses, crossings = poses + piece.poses[1:], crossings + piece.crossings
+            last = poses[-1]
+            if piece.end is not None:
+                return Piece(poses, piece.end, crossings), None
+            if self._is_start(last):
+                return Piece(poses, None, crossings), k * self.base_period
+        return Piece(poses, End(last.theta, "lost"), crossings), None
 
-        Parameters
-        ----------
-        repeats : float or None
-            The driver angle after which what the group hangs on is as before; None of a slider.
-        farthest : float
-            The driver angles to either side of 0 within which a slider is looked at.
-        """
-        track = Track(solve, size_m, [start])
-        track._go(+1.0, repeats, farthest)
-        if track.period is None:
-            track._go(-1.0, None if track.high is None else None, farthest, start)
-        rows = [[n.theta, n.x, n.y, n.phi, n.dx, n.dy, n.dphi, n.det] for n in track.nodes]
-        track.table = np.array(sorted(rows))
-        return track
+    def _is_start(self, pose: Pose) -> bool:
+        """Whether a pose is that of the start, but for whole turns: two that are not are as far
+        apart as the boxes of cells are wide, and rounding is much less."""
+        off = math.hypot(pose.place[0] - self.start.place[0], pose.place[1] - self.start.place[1])
+        turned = math.remainder(pose.angle - self.start.angle, math.tau)
+        slack = 1e-13 * (1.0 + abs(pose.theta)) / max(min(abs(self.start.det), 1.0), 1e-6)
+        scale = self.size_m + math.hypot(*self.start.place) + math.hypot(*self.start.rate)
+        return off <= slack * scale and abs(turned) <= slack * (1.0 + abs(self.start.omega)) * (
+            scale / self.size_m
+        )
+
+    @cached_property
+    def _down(self) -> Piece:
+        """From the start back, where it does not repeat."""
+        if self.period is not None:
+            return Piece([self.start], None, [])
+        lowest = -math.pi if self.base_period is None else self.start.theta - TURNS * self.base_period
+        return follow(self.rows, self.start, lowest, self.size_m)
 
     @property
-    def side(self) -> float:
-        """The sign of the determinant all along."""
-        return math.copysign(1.0, self.nodes[0].det)
+    def period(self) -> float | None:
+        """The driver angle after which the assembly is back [rad]; None where it never is."""
+        return self._up[1]
 
-    def _go(
-        self, way: float, repeats: float | None, farthest: float, start: Node | None = None
-    ) -> None:
-        """On from the start, to an end, until it repeats, or as far as is looked."""
-        node = first = self.nodes[0]
-        width, due = FIRST, repeats
-        limit = MOST_TURNS * math.tau if repeats is not None or start is None else farthest
-        while True:
-            stop = math.inf if due is None else abs(due)
-            gone = abs(node.theta - first.theta)
-            step = min(width, max(stop - gone, 0.0)) if stop > gone else width
-            found = self._cell(node, way * step)
-            if found is None:
-                width = 0.5 * step
-                if width < NARROWEST:
-                    self._end(node, way)
-                    return
-                continue
-            node, width = found, min(1.6 * max(step, width if step < width else step), WIDEST)
-            self.nodes.append(node)
-            gone = abs(node.theta - first.theta)
-            if due is not None and gone >= abs(due) * (1.0 - 1e-12):
-                if self._same(node, first):
-                    self.period = abs(due)
-                    return
-                assert repeats is not None
-                due = due + repeats
-            if repeats is None and abs(node.theta) >= farthest:
-                return
-            if gone > limit:
-                raise CrankcheckError("the assembly has not come back after many turns")
+    @property
+    def ends(self) -> tuple[End | None, End | None]:
+        """The lower and the upper end, None where there is none."""
+        return self._down.end, self._up[0].end
 
-    def _cell(self, node: Node, step: float) -> Node | None:
-        """The node at the other end of a cell; None where the cell is too wide."""
-        by = np.array([0.5 * step, step])
-        place, turn = node.ahead(by)
-        half = np.array([0.5 * abs(step) * (1.0 + 1e-9), 0.0])
-        solved = self.solve(node.theta + by, half, place, turn)
-        body = solved.body
-        if not (solved.closed.all() and solved.sure.all()):
-            return None
-        if np.any(np.sign(solved.det) != math.copysign(1.0, node.det)):
-            return None
-        assert body.error is not None
-        assert body.anchor.error is not None
-        e, t = float(body.anchor.error.position[0]), float(body.error.theta[0])
-        x, y = body.anchor.p.x, body.anchor.p.y
-        phi = np.arctan2(body.turn.y, body.turn.x)
-        ends = ((node.x, node.y, node.phi), (float(x[1]), float(y[1]), float(phi[1])))
-        for px, py, angle in ends:
-            off = abs(math.remainder(angle - float(phi[0]), math.tau))
-            if math.hypot(px - float(x[0]), py - float(y[0])) > e or off > t:
-                return None
-        nearest = node.phi + math.remainder(float(phi[1]) - node.phi, math.tau)
-        return _node(node.theta + step, solved, 1, nearest)
+    @property
+    def range(self) -> tuple[float, float]:
+        """The driver angles between the ends [rad]; of one that is back, a period."""
+        low, high = self.ends
+        return (
+            self._down.poses[-1].theta if low is None else low.theta,
+            self._up[0].poses[-1].theta if high is None else high.theta,
+        )
 
-    def _same(self, node: Node, first: Node) -> bool:
-        apart = math.hypot(node.x - first.x, node.y - first.y)
-        turned = abs(math.remainder(node.phi - first.phi, math.tau))
-        return apart <= SAME * self.size_m and turned <= SAME
+    @property
+    def crossings(self) -> list[End]:
+        """The change points within the range, in increasing order."""
+        return sorted(self._down.crossings + self._up[0].crossings, key=lambda end: end.theta)
 
-    def _end(self, last: Node, way: float) -> None:
-        """The end beside a node: where it no longer closes on its side, or where it can not be
-        told from another that it crosses."""
-        open_ = last.theta + way * 4.0 * self._room(last)
-        closes = last.theta
-        for _ in range(BISECTIONS):
-            middle = 0.5 * (closes + open_)
-            if self._closes(last, middle):
-                closes = middle
-            else:
-                open_ = middle
-        kind: EndKind = "change point" if self._crosses(last, closes, way) else "limit position"
-        end = End(closes, kind)
-        if way > 0.0:
-            self.high = end
-        else:
-            self.low = end
-
-    def _room(self, last: Node) -> float:
-        """About how far a limit position is: the determinant goes as the root of the distance."""
-        return max(abs(last.det) / max(abs(last.dphi), 1e-300), 16.0 * NARROWEST)
-
-    def _closes(self, last: Node, theta: float) -> bool:
-        place, turn = Vec(np.array([last.x]), np.array([last.y])), last.ahead(np.zeros(1))[1]
-        solved = self.solve(np.array([theta]), np.zeros(1), place, turn)
-        return bool(solved.closed[0]) and float(solved.det[0]) * self.side > 0.0
-
-    def _crosses(self, last: Node, end: float, way: float) -> bool:
-        """Whether the rates stay finite: at a limit position they grow as the determinant falls."""
-        before = next(
-            (n for n in reversed(self.nodes) if way * (last.theta - n.theta) > 0.0
-             and abs(n.det) >= 2.0 * abs(last.det)),
-            None,
-        )  # fmt: skip
-        if before is None:
-            return False
-        growth = _speed(last, self.size_m) / max(_speed(before, self.size_m), 1e-300)
-        return growth < 1.0 + 0.5 * (abs(before.det / last.det) - 1.0)
+    @cached_property
+    def _nodes(self) -> Array:
+        """Driver angle, place, angle and their rates at the poses, (7, n), and increasing."""
+        poses = self._down.poses[:0:-1] + self._up[0].poses
+        return np.array([(p.theta, *p.place, p.angle, *p.rate, p.omega) for p in poses]).T.copy()
 
     def home(self, theta: Array) -> Array:
-        """Driver angles, by whole periods (or turns) to where the track is."""
-        low, high = self.table[0, 0], self.table[-1, 0]
+        """Driver angles [rad], (T,), by whole periods, or turns, to where the track is."""
+        low, high = self.range
         if self.period is not None:
             return np.asarray(low + np.remainder(theta - low, self.period))
-        if self.low is None or self.high is None:
+        if self.base_period is None or high - low >= self.base_period:
             return theta
-        width = self.high.theta - self.low.theta
-        if width >= math.tau:
-            return theta
-        middle = 0.5 * (low + high)
-        return np.asarray(theta - math.tau * np.round((theta - middle) / math.tau))
+        turns = np.round((theta - 0.5 * (low + high)) / self.base_period)
+        return np.asarray(theta - turns * self.base_period)
 
     def beyond(self, theta: Array) -> Array:
         """How far driver angles, brought home, are beyond the ends [rad]; below 0 within."""
         if self.period is not None:
             return np.full(theta.shape, -math.pi)
-        low = -np.inf if self.low is None else self.low.theta
-        high = np.inf if self.high is None else self.high.theta
-        return np.clip(np.maximum(low - theta, theta - high), -math.pi, math.pi)
+        low, high = self.range
+        return np.asarray(np.clip(np.maximum(low - theta, theta - high), -math.pi, math.pi))
+
+    def on_side(self, theta: Array, det: Array) -> Mask:
+        """Whether an assembly at driver angles, brought home, with such determinants is this one,
+        and not the one that it meets at an end or in a crossing."""
+        start = self.start
+        sign = np.full(np.shape(theta), math.copysign(1.0, start.det))
+        for end in self.crossings:
+            passed = theta > end.theta if end.theta > start.theta else theta < end.theta
+            sign = np.where(passed, -sign, sign)
+        return np.asarray(det * sign > 0.0)
 
     def guess(self, theta: Array) -> tuple[Vec, Vec]:
-        """The pose at driver angles that were brought home: by cubics between the nodes."""
-        table = self.table
-        at = np.clip(theta, table[0, 0], table[-1, 0])
-        k = np.clip(np.searchsorted(table[:, 0], at, side="right") - 1, 0, max(len(table) - 2, 0))
-        left, right = table[k], table[np.minimum(k + 1, len(table) - 1)]
-        width = right[:, 0] - left[:, 0]
-        width = np.where(width > 0.0, width, 1.0)
-        s = (at - left[:, 0]) / width
-        h = ((1 + 2 * s) * (1 - s) ** 2, s * (1 - s) ** 2, s * s * (3 - 2 * s), s * s * (s - 1))
-        x, y, phi = (
-            h[0] * left[:, i] + h[1] * width * left[:, i + 3]
-            + h[2] * right[:, i] + h[3] * width * right[:, i + 3]
-            for i in (1, 2, 3)
-        )  # fmt: skip
-        return Vec(x, y), Vec(np.cos(phi), np.sin(phi))
-
-    def on_side(self, det: Array) -> Mask:
-        """Whether an assembly with such a determinant is this one, and not the one that it meets
-        at its end."""
-        return np.asarray(det * self.side > 0.0)
+        """Place of the anchor [m] and direction of the link near driver angles [rad], (T,), that were
+        brought home; beyond an end those at the end."""
+        nodes = self._nodes
+        at = nodes[0]
+        if at.size < 2:
+            place = Vec(np.full(theta.shape, nodes[1, 0]), np.full(theta.shape, nodes[2, 0]))
+            angle = np.full(theta.shape, nodes[3, 0])
+            return place, Vec(np.cos(angle), np.sin(angle))
+        k: NDArray[np.intp] = np.clip(np.searchsorted(at, theta) - 1, 0, at.size - 2)
+        width = at[k + 1] - at[k]
+        u = np.clip((theta - at[k]) / width, 0.0, 1.0)
+        x, y, angle = (
+            _hermite(u, width, nodes[row][k], nodes[row][k + 1], nodes[row + 3][k], nodes[row + 3][k + 1])
+            for row in (1, 2, 3)
+        )
+        return Vec(x, y), Vec(np.cos(angle), np.sin(angle))
 
 
-def _speed(node: Node, size_m: float) -> float:
-    return math.hypot(node.dx, node.dy, size_m * node.dphi)
-
-
-def _node(theta: float, solved: SolvedPlatform, index: int, phi: float) -> Node:
-    body = solved.body
-    at = body.anchor
-    each = (at.p.x, at.p.y, at.v.x, at.v.y, body.omega, solved.det)
-    x, y, dx, dy, dphi, det = (float(np.broadcast_to(v, solved.det.shape)[index]) for v in each)
-    return Node(theta, x, y, phi, dx, dy, dphi, det)
-
-
-def start_node(theta: float, solved: SolvedPlatform, phi: float) -> Node:
-    """The node of one solved sample, its angle the one that is nearest to ``phi`` [rad]."""
-    body = solved.body
-    found = float(np.arctan2(body.turn.y, body.turn.x)[0])
-    return _node(theta, solved, 0, phi + math.remainder(found - phi, math.tau))
+def _hermite(u: Array, width: Array, a: Array, b: Array, da: Array, db: Array) -> Array:
+    """The cubic between two values with their slopes."""
+    rise = b - a
+    p, q = width * da - rise, rise - width * db
+    return np.asarray(a + u * (rise + (1.0 - u) * (p * (1.0 - u) + q * u)))
