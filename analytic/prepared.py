@@ -19,7 +19,7 @@ from analytic.dyads.chunk import Chunk, Passage
 from analytic.dyads.driven import driver_scale, told
 from analytic.dyads.parts import OpenError
 from analytic.dyads.plane import AngleError, Real
-from analytic.dyads.steps import Step, prepare, stretched
+from analytic.dyads.steps import FollowedStep, Step, prepare, stretched
 from analytic.reach import describe_reach
 from analytic.result import MotionArrays, Selection
 from analytic.structure.mobility import analyse
@@ -72,7 +72,11 @@ class Prepared:
     @property
     def period(self) -> float:
         """The driver angle [rad] after which the positions repeat."""
-        return max((passage.period for passage in self.passages.values()), default=math.tau)
+        periods = [passage.period for passage in self.passages.values()]
+        for step in self.steps:
+            if isinstance(step, FollowedStep):
+                periods.append(step.period(self.passages) or math.tau)
+        return max(periods, default=math.tau)
 
     def stretched(self, theta: Array) -> Chunk:
         return stretched(self.scene, self.steps, theta, self.passages)
@@ -116,6 +120,13 @@ class Prepared:
     def _open(self, step: Step, theta: Array, short_m: Array) -> str:
         """Where the loop cannot close, by how much, and where it can."""
         scene, index = self.scene, int(np.argmax(short_m))
+        if isinstance(step, FollowedStep):
+            index = int(np.argmax(short_m > 0.0))  # the first, beside the end
+            ends = step.end_in_words(self.passages, float(theta[index]))
+            return (
+                f"{scene.name}: {scene.driver.joint} at {told(scene, theta[index])}: {ends}. "
+                f"{describe_reach(scene, self.stretched)}"
+            )
         return (
             f"{scene.name}: {scene.driver.joint} at {told(scene, theta[index])}: the loop "
             f"cannot close at {step.key}, it is open by {float(np.ravel(short_m)[index]):.3g} m. "

@@ -175,18 +175,19 @@ def _bounded(
     size = wrenches.size_m
     exact = replace(body, anchor=replace(body.anchor, error=EXACT_POINT), error=EXACT_ANGLE)
     shift, by = wrenches.bound(_loose(rows, 0, exact))
-    # Up to twice the first order, and so much that neither is 0.
-    e, t = 2.02 * shift + EPS * size, 2.02 * by + EPS
+    # A box of up to twice the first order, in the larger of both measures.
+    e = 2.02 * np.maximum(shift, size * by) + EPS * size
+    t = e / size
     near = _within(body, PointError(e, 0.0, 0.0), AngleError(t, 0.0, 0.0))
-    sway = [row.sway(near) for row in rows]
     change = tuple(
-        lean * e + (turning + 8 * EPS * size) * t + 8 * EPS * e for lean, turning in sway
+        lean * e + (turning + 8 * EPS * size) * t + 8 * EPS * e
+        for lean, turning in (row.sway(near) for row in rows)
     )
     grown, more = wrenches.bound((change[0], change[1], change[2]))
-    # The second order takes no more than the first, and a rate no more than half of itself.
-    share = np.maximum(grown / e, more / t)
-    sure = np.asarray((share <= 0.5) & np.isfinite(e) & (t < 1.0))
-    e, t = np.where(sure, e, np.inf), np.where(sure, t, math.pi)
+    # The second order takes no more than the first.
+    share = np.maximum(grown, size * more) / e
+    sure = np.asarray((share <= 0.49) & (t < 1.0))
+    e, t = np.where(sure, shift + grown, np.inf), np.where(sure, by + more, math.pi)
     lost = np.where(sure, 1.0 / (1.0 - share), np.inf)
     near = _within(body, PointError(e, 0.0, 0.0), AngleError(t, 0.0, 0.0))
     v, w = _weighed(wrenches.bound(_loose(rows, 1, near)), lost, size)

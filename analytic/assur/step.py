@@ -109,6 +109,21 @@ class AssurStep:
         repeats = None if slides else max(periods)
         return Track(rows, pose, self.mounting.size_m, repeats)
 
+    def period(self, passages: Mapping[str, Passage]) -> float | None:
+        """The driver angle after which the assembly comes back [rad]; None where it ends."""
+        return self.track(passages).period
+
+    def end_in_words(self, passages: Mapping[str, Passage], theta: float) -> str:
+        """What ends it beside a driver angle [rad]."""
+        track = self.track(passages)
+        at = float(track.home(np.array([theta]))[0])
+        ends = [end for end in (track.low, track.high) if end is not None]
+        end = min(ends, key=lambda one: abs(one.theta - at), default=None)
+        if end is None:
+            return f"the group about {self.key} cannot close"
+        place = told(self.scene, end.theta)
+        return f"the group about {self.key} ends in a {end.kind} at {place}"
+
     def rows_at(self, theta: float, passages: Mapping[str, Passage]) -> list[SampledRow]:
         """The rows at one driver angle."""
         return self.mounting.rows(self.before.chunk(np.array([theta]), 0.0, passages))

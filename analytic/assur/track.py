@@ -45,7 +45,7 @@ SIDE = 1e-4
 """How far beyond a crossing the other side is looked for [rad]."""
 TURNS = 6
 """A triad has no more assemblies, and so is back after as many periods of what it hangs on."""
-EndKind = Literal["fold", "crossing", "lost"]
+EndKind = Literal["limit position", "change point", "doubtful position"]
 
 
 class RowsAt(Protocol):
@@ -58,8 +58,8 @@ class RowsAt(Protocol):
 class End:
     """Where a track ends or crosses another one: driver angle [rad], and as what.
 
-    ``fold``: two assemblies meet and are no more beyond, a limit position. ``crossing``: two meet,
-    and both go on, a change point. ``lost``: neither could be told.
+    In a limit position two assemblies meet, and are no more beyond; in a change point two meet, and
+    both go on. A doubtful position is neither for sure: where what the group hangs on ends, say.
     """
 
     theta: float
@@ -111,13 +111,13 @@ def follow(rows: RowsAt, start: Pose, to: float, size_m: float) -> Piece:
             half *= 0.5 if found else 0.25
         if half < NARROWEST * max(1.0, abs(last.theta)):
             end = _end(poses, way)
-            beyond = _beyond(rows, poses, end, way, size_m) if end.kind == "crossing" else None
+            beyond = _beyond(rows, poses, end, way, size_m) if end.kind == "change point" else None
             if beyond is None or way * (to - beyond.theta) < 0.0:
                 return Piece(poses, end, crossings)
             crossings.append(end)
             poses.append(beyond)
             last, half = beyond, 0.1 * SIDE
-    end_of_work = End(last.theta, "lost") if len(poses) >= MOST else None
+    end_of_work = End(last.theta, "doubtful position") if len(poses) >= MOST else None
     return Piece(poses, end_of_work, crossings)
 
 
@@ -173,12 +173,12 @@ def _end(poses: list[Pose], way: float) -> End:
     near = [int(np.argmin(np.abs(np.log(np.maximum(away, 1e-300) / d)))) for d in (1e-5, 1e-3)]
     a, b = near
     if a == b or not 0.0 < det[a] < det[b]:
-        return End(last.theta, "lost")
+        return End(last.theta, "doubtful position")
     power = math.log(det[b] / det[a]) / math.log(away[b] / away[a])
     if power < 0.2 or power > 1.4:
-        return End(last.theta, "lost")
-    kind: EndKind = "fold" if power < 0.75 else "crossing"
-    order = 2.0 if kind == "fold" else 1.0
+        return End(last.theta, "doubtful position")
+    kind: EndKind = "limit position" if power < 0.75 else "change point"
+    order = 2.0 if kind == "limit position" else 1.0
     # The power of the determinant that is linear in the way is 0 a little beyond the last pose.
     ends = [det[a] ** order, abs(last.det) ** order]
     slope = (ends[0] - ends[1]) / away[a]
@@ -238,7 +238,7 @@ class Track:
                 return Piece(poses, piece.end, crossings), None
             if self._is_start(last):
                 return Piece(poses, None, crossings), k * self.base_period
-        return Piece(poses, End(last.theta, "lost"), crossings), None
+        return Piece(poses, End(last.theta, "doubtful position"), crossings), None
 
     def _is_start(self, pose: Pose) -> bool:
         """Whether a pose is that of the start, but for whole turns: two that are not are as far
@@ -268,6 +268,16 @@ class Track:
     def ends(self) -> tuple[End | None, End | None]:
         """The lower and the upper end, None where there is none."""
         return self._down.end, self._up[0].end
+
+    @property
+    def low(self) -> End | None:
+        """The end at the lowest driver angle."""
+        return self.ends[0]
+
+    @property
+    def high(self) -> End | None:
+        """The end at the highest driver angle."""
+        return self.ends[1]
 
     @property
     def range(self) -> tuple[float, float]:

@@ -29,7 +29,7 @@ from analytic.change_points.sign import AT_START, SIDE, ChangePoints, whole_turn
 from analytic.dyads.driven import driver_scale, told
 from analytic.dyads.parts import CLOSED
 from analytic.dyads.plane import Real
-from analytic.dyads.steps import Step, stretched
+from analytic.dyads.steps import FollowedStep, Step, stretched
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.motion import Crossing
@@ -64,6 +64,11 @@ def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, ChangePoints]:
     theta = _grid(start, period)
     chunk = stretched(scene, steps, theta)
     for k, step in enumerate(steps):
+        if isinstance(step, FollowedStep):
+            period = max(period, step.period(passing) or math.tau)
+            theta = _grid(start, period)
+            chunk = stretched(scene, steps, theta, passing)
+            continue
         closure = chunk.closures.get(step.key)
         if closure is None or closure.root is None or np.ndim(closure.root) == 0:
             continue  # the last: it hangs on what stands still, and so stands still itself

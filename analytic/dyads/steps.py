@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -39,6 +39,19 @@ class Step(Protocol):
 
     def advance(self, chunk: Chunk) -> None:
         """Add the group's bodies and sliders to the chunk. Raises OpenError."""
+        ...
+
+
+@runtime_checkable
+class FollowedStep(Step, Protocol):
+    """A step of a group that has no closed form: its assembly is followed along the driver."""
+
+    def period(self, passages: Mapping[str, Passage]) -> float | None:
+        """The driver angle after which the assembly comes back [rad]; None where it ends."""
+        ...
+
+    def end_in_words(self, passages: Mapping[str, Passage], theta: float) -> str:
+        """What ends it beside a driver angle [rad]."""
         ...
 
 

@@ -110,7 +110,7 @@ def analyse(scene: Scene) -> Structure:
     if left or structure.mobility != 1:
         raise StructureError(f"{scene.name}: {_fault(structure, left)}")
     _check_held(scene, structure.groups)
-    _check_branches(scene, structure.groups)
+    _check_branches(scene, structure)
     return structure
 
 
@@ -205,9 +205,10 @@ def _check_held(scene: Scene, groups: tuple[Group, ...]) -> None:
             )
 
 
-def _check_branches(scene: Scene, groups: tuple[Group, ...]) -> None:
+def _check_branches(scene: Scene, structure: Structure) -> None:
     """Refuse a branch that chooses nothing."""
-    choices = [group.branch_key for group in groups if group.assemblies == 2]
+    choices = [group.branch_key for group in structure.groups if group.assemblies == 2]
+    choices += [triad.branch_key for triad in structure.triads]
     for key in scene.branch:
         if key not in choices:
             have = f"it has {', '.join(choices)}" if choices else "this scene has none"
