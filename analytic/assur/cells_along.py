@@ -47,22 +47,26 @@ class CellsAlong:
 
 
 @np.errstate(all="ignore")
-def along(rows: RowsAt, last: Pose, half: float, count: int, size_m: float) -> CellsAlong:
-    """So many cells of half-width ``half`` [rad] (below 0: to lower angles) from a pose on."""
-    theta = last.theta + half * (2.0 * np.arange(count) + 1.0)
-    far = last.theta + half * (2.0 * np.arange(count) + 2.0)
+def along(
+    rows: RowsAt, last: Pose, halves: Array, to: float | None, size_m: float
+) -> CellsAlong:
+    """Cells of half-widths ``halves`` [rad] (below 0: to lower angles), one after the other from a
+    pose on, the last up to driver angle ``to`` where that is given."""
+    far = last.theta + 2.0 * np.cumsum(halves)
+    if to is not None:
+        far[-1] = to
+    theta = far - halves
     middle, own = _solved(rows, last, theta, size_m)
     border, _ = _solved(rows, last, far, size_m)
-    width = np.full(count, abs(half) * (1.0 + 1e-6)) + 8 * EPS * np.abs(far)
+    near = np.concatenate([[last.theta], far[:-1]])
+    width = np.maximum(np.abs(far - theta), np.abs(theta - near)) * (1.0 + 1e-6)
+    width += 8 * EPS * np.abs(far)
     e, t, sure = _boxes(own, rows(theta, width), middle.body, width, size_m)
     sure &= middle.closed & border.closed & border.sure
     sure &= _inside(middle.body, border.body, far - theta, e, t)
-    before = _shifted(last, border.body)
-    sure &= _inside(middle.body, before, -(far - theta), e, t)
-    good = count if sure.all() else int(np.argmin(sure))
-    return CellsAlong(
-        theta, far, middle.body, border.body, middle.det, border.det, good
-    )
+    sure &= _inside(middle.body, _shifted(last, border.body), near - theta, e, t)
+    good = int(sure.size if sure.all() else np.argmin(sure))
+    return CellsAlong(theta, far, middle.body, border.body, middle.det, border.det, good)
 
 
 def _solved(

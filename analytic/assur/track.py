@@ -33,11 +33,11 @@ from analytic.assur.sampled_rows import SampledRow
 from analytic.dyads.plane import EPS, BodyKinematics, Vec
 from models.array import Array, Mask
 
-BLOCK = 8
+BLOCK = 16
 """Cells that are looked at together."""
 WIDEST = 0.1
 """A cell [rad]."""
-NARROWEST = 1e-12
+NARROWEST = 1e-10
 """A cell [rad] that no assembly is followed through."""
 MOST = 20_000
 """Cells of a track."""
@@ -93,32 +93,66 @@ class Piece:
 def follow(rows: RowsAt, start: Pose, to: float, size_m: float) -> Piece:
     """The assembly of ``start`` followed to the driver angle ``to`` [rad], as far as that goes."""
     way = 1.0 if to >= start.theta else -1.0
-    poses, crossings, last, half = [start], [], start, 0.25 * WIDEST
-    while way * (to - last.theta) > 0.0 and len(poses) < MOST:
-        left = abs(to - last.theta)
-        count = max(1, min(BLOCK, math.ceil(left / (2.0 * half))))
-        half = min(half, 0.5 * left / count)
-        cells = along(rows, last, way * half, count, size_m)
+    poses, crossings, last = [start], list[End](), start
+    stride = Stride(0.25 * WIDEST, 0.04)
+    while last.theta != to and len(poses) < MOST:
+        halves = stride.halves(abs(to - last.theta), _room(poses))
+        cells = along(rows, last, way * halves, to if stride.arrives else None, size_m)
         found = _handed_over(cells, last)
         if found:
             poses += found
             last = found[-1]
-            if abs(to - last.theta) <= 4 * EPS * abs(to):
-                break
-        if len(found) == 2 * count:
-            half = min(1.6 * half, 0.5 * WIDEST)
-        else:
-            half *= 0.5 if found else 0.25
-        if half < NARROWEST * max(1.0, abs(last.theta)):
+        stride = stride.after(cells.good, halves)
+        if cells.good == 0 and halves[0] < NARROWEST * max(1.0, abs(last.theta)):
             end = _end(poses, way)
             beyond = _beyond(rows, poses, end, way, size_m) if end.kind == "change point" else None
-            if beyond is None or way * (to - beyond.theta) < 0.0:
+            if beyond is None or way * (to - beyond.theta) <= 0.0:
                 return Piece(poses, end, crossings)
             crossings.append(end)
             poses.append(beyond)
-            last, half = beyond, 0.1 * SIDE
-    end_of_work = End(last.theta, "doubtful position") if len(poses) >= MOST else None
-    return Piece(poses, end_of_work, crossings)
+            last, stride = beyond, Stride(0.1 * SIDE, 0.04)
+    doubt = End(last.theta, "doubtful position") if last.theta != to else None
+    return Piece(poses, doubt, crossings)
+
+
+@dataclass
+class Stride:
+    """How wide the next cells are made: half of them at most ``half`` [rad], and a ``share`` of the
+    room before an end."""
+
+    half: float
+    share: float
+    arrives: bool = False
+
+    def halves(self, left: float, room: float) -> Array:
+        """The half-widths [rad] of cells over what is ``left`` of the way, ``room`` to an end."""
+        found: list[float] = []
+        self.arrives = False
+        for _ in range(BLOCK):
+            half = min(self.half, self.share * room)
+            if 2.0 * half >= left:
+                found.append(0.5 * left)
+                self.arrives = True
+                break
+            found.append(half)
+            left, room = left - 2.0 * half, room - 2.0 * half
+        return np.array(found)
+
+    def after(self, good: int, halves: Array) -> Stride:
+        """The stride after so many cells were good."""
+        if good == len(halves):
+            return Stride(min(1.6 * self.half, 0.5 * WIDEST), min(1.3 * self.share, 0.2))
+        less = 0.75 if good else 0.5
+        return Stride(less * min(self.half, float(halves[good]) / 0.75), less * self.share)
+
+
+def _room(poses: list[Pose]) -> float:
+    """How far it is to where the square of the determinant, which goes down, would be 0 [rad]."""
+    if len(poses) < 3:
+        return math.inf
+    a, b = poses[-3], poses[-1]
+    fall = a.det**2 - b.det**2
+    return abs(b.theta - a.theta) * b.det**2 / fall if fall > 0.0 else math.inf
 
 
 def _handed_over(cells: CellsAlong, last: Pose) -> list[Pose]:
