@@ -13,13 +13,14 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
+from analytic.assur.group_steps import prepare
 from analytic.change_points.find import passages, passed
 from analytic.change_points.sign import ChangePoints
 from analytic.dyads.chunk import Chunk, Passage
 from analytic.dyads.driven import driver_scale, told
 from analytic.dyads.parts import OpenError
 from analytic.dyads.plane import AngleError, Real
-from analytic.dyads.steps import FollowedStep, Step, prepare, stretched
+from analytic.dyads.steps import FollowedStep, Step, stretched
 from analytic.reach import describe_reach
 from analytic.result import MotionArrays, Selection
 from analytic.structure.mobility import analyse
@@ -73,9 +74,11 @@ class Prepared:
     def period(self) -> float:
         """The driver angle [rad] after which the positions repeat."""
         periods = [passage.period for passage in self.passages.values()]
-        for step in self.steps:
-            if isinstance(step, FollowedStep):
-                periods.append(step.period(self.passages) or math.tau)
+        periods += [
+            step.period(self.passages) or math.tau
+            for step in self.steps
+            if isinstance(step, FollowedStep)
+        ]
         return max(periods, default=math.tau)
 
     def stretched(self, theta: Array) -> Chunk:

@@ -48,7 +48,7 @@ FLOORS: Mapping[str, str] = {
         nearness kinematics
         prepared
         change_points check reach result
-        turns
+        turns assur
         dyads
         structure multibody
     """,

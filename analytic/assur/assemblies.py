@@ -17,6 +17,7 @@ from analytic.assur.eliminant import (
     RowPolynomial,
     Turn,
     eliminant,
+    is_zero,
     rational,
     row_polynomial,
 )
@@ -26,6 +27,7 @@ from models.scene import Point
 
 BITS = 320
 """Of the balls: what is left of 53-bit numbers after products of ten of them."""
+LOOSE = "the central link can move while all that it hangs on stands still"
 TURNS: tuple[Turn, ...] = (
     (fmpq(1), fmpq(0)),
     (fmpq(3, 5), fmpq(4, 5)),
@@ -74,7 +76,7 @@ def _at_roots(rows: LegRows) -> list[Assembly]:
     """Those at the roots of the eliminant, in a frame in which none is at half a turn."""
     for turn in TURNS:
         own = eliminant(rows, turn)
-        if own.polynomial == 0 or own.parallel == 0:
+        if is_zero(own.polynomial) or is_zero(own.parallel):
             raise ContinuumError(
                 "the central link can move while all that it hangs on stands still"
             )
@@ -97,7 +99,9 @@ def _at_roots(rows: LegRows) -> list[Assembly]:
 
 def _real_roots(polynomial: fmpq_poly) -> Iterator[tuple[arb, int]]:
     """The real roots with their multiplicity."""
-    for root, count in polynomial.complex_roots() if polynomial.degree() > 0 else ():
+    # Of what its stubs say of roots, python-flint keeps nothing: they are pairs.
+    roots: list[tuple[acb, int]] = polynomial.complex_roots()  # type: ignore[assignment]
+    for root, count in roots if polynomial.degree() > 0 else ():
         if acb(root).imag == 0:
             yield acb(root).real, count
 
@@ -141,7 +145,7 @@ def _on_line(
     """The places on the line u.P + k = 0 that are in another row."""
     square = u[0] * u[0] + u[1] * u[1]
     if square.contains(0):
-        raise ContinuumError("the central link can move while all that it hangs on stands still")
+        raise ContinuumError(LOOSE)
     foot, along = (-u[0] * k / square, -u[1] * k / square), (-u[1], u[0])
     v, c = [_at(each, t) for each in last.u], _at(last.k, t)
     slope = v[0] * along[0] + v[1] * along[1]

@@ -66,18 +66,18 @@ def row_polynomial(row: LegRow, turn: Turn) -> RowPolynomial:
     if isinstance(row, CircleRow):
         reach, pin = _turning(row.a, turn), _pair(row.pin)
         square = sum((c * c for c in (*_pair(row.a), *pin)), fmpq(0)) - rational(row.length) ** 2
-        u = tuple(2 * (r - W * p) for r, p in zip(reach, pin, strict=True))
+        ux, uy = (2 * (r - W * p) for r, p in zip(reach, pin, strict=True))
         k = W * square - 2 * (reach[0] * pin[0] + reach[1] * pin[1])
-        return RowPolynomial(True, (u[0], u[1]), k)
+        return RowPolynomial(True, (ux, uy), k)
     if isinstance(row, LineRow):
         reach, n, p = _turning(row.a, turn), _pair(row.normal), _pair(row.through)
         k = reach[0] * n[0] + reach[1] * n[1] - W * (n[0] * p[0] + n[1] * p[1])
         return RowPolynomial(False, (W * n[0], W * n[1]), k)
     assert isinstance(row, ThroughRow)
-    n, pin = _turning(row.normal, turn), _pair(row.pin)
+    normal, pin = _turning(row.normal, turn), _pair(row.pin)
     m, b = _pair(row.normal), _pair(row.b)
-    k = n[0] * pin[0] + n[1] * pin[1] - W * (m[0] * b[0] + m[1] * b[1])
-    return RowPolynomial(False, (-n[0], -n[1]), k)
+    k = normal[0] * pin[0] + normal[1] * pin[1] - W * (m[0] * b[0] + m[1] * b[1])
+    return RowPolynomial(False, (-normal[0], -normal[1]), k)
 
 
 def eliminant(rows: tuple[LegRow, LegRow, LegRow], turn: Turn) -> Eliminant:
@@ -92,7 +92,7 @@ def eliminant(rows: tuple[LegRow, LegRow, LegRow], turn: Turn) -> Eliminant:
         one.k * other.u[0] - one.u[0] * other.k,
     )
     shared = _without_w(over.gcd(place[0]).gcd(place[1]))
-    if over != 0 or any(n != 0 for n in place):
+    if not all(map(is_zero, (over, *place))):
         over, place = over / shared, (place[0] / shared, place[1] / shared)
     polynomial = last.u[0] * place[0] + last.u[1] * place[1] + last.k * over
     if last.is_circle:
@@ -102,14 +102,19 @@ def eliminant(rows: tuple[LegRow, LegRow, LegRow], turn: Turn) -> Eliminant:
     return Eliminant(_without_w(polynomial), place, over, shared, (one, other, last))
 
 
+def is_zero(polynomial: fmpq_poly) -> bool:
+    """Whether all its coefficients are 0."""
+    return polynomial.degree() < 0
+
+
 def _without_w(polynomial: fmpq_poly) -> fmpq_poly:
     """A polynomial without its factors 1 + t^2."""
-    return polynomial if polynomial == 0 else _without(polynomial, W)
+    return polynomial if is_zero(polynomial) else _without(polynomial, W)
 
 
 def _without(polynomial: fmpq_poly, factor: fmpq_poly) -> fmpq_poly:
     """A polynomial without all that it has in common with another."""
-    while polynomial != 0 and (common := polynomial.gcd(factor)).degree() > 0:
+    while not is_zero(polynomial) and (common := polynomial.gcd(factor)).degree() > 0:
         polynomial = polynomial / common
     return polynomial
 

@@ -34,8 +34,8 @@ class Mounting:
         own = compound if compound is not None and compound.name in group.bodies else None
         if own is not None and isinstance(group, Triad) and group.central != own.name:
             raise StructureError(
-                f"{scene.name}: the driver is {scene.driver.joint}, in a leg of the class III group "
-                f"about {group.central}, which has no solution here; drive another joint"
+                f"{scene.name}: the driver is {scene.driver.joint}, in a leg of the class III "
+                f"group about {group.central}, which has no solution here; drive another joint"
             )
         if isinstance(group, Triad):
             central, held = group.central, list(group.legs)

@@ -17,6 +17,7 @@ from analytic.assur.leg_rows import AngleRow, CircleRow, LegRow, LineRow, Throug
 from analytic.dyads.parts import MovingLine
 from analytic.dyads.plane import (
     EPS,
+    EXACT_ANGLE,
     EXACT_POINT,
     ZERO,
     AngleError,
@@ -215,7 +216,7 @@ class Through:
     along: Vec
     pin: PointKinematics
     turning: tuple[Real, Real] = (0.0, 0.0)
-    leaning: AngleError = AngleError(0.0, 0.0, 0.0)
+    leaning: AngleError = EXACT_ANGLE
 
     def line(self, body: BodyKinematics) -> MovingLine:
         """The line in motion."""
@@ -284,10 +285,9 @@ def gap_of_line(order: Order, line: MovingLine, point: PointKinematics) -> Gap:
     """The distance of a point from a line along its normal, its rate or its second rate."""
     n, away = line.along.perp(), point.p - line.point.p
     s = line.along.dot(away)
-    certified = point.error is not None and line.error is not None
     if order == 0:
         value = n.dot(away)
-        if not certified:
+        if point.error is None or line.error is None:
             return value, 0.0
         place = line.errors(s, 0.0, 0.0, 0.0)[0]
         return value, place + point.error.position + 3 * EPS * (away.norm() + point.p.norm())
@@ -295,7 +295,7 @@ def gap_of_line(order: Order, line: MovingLine, point: PointKinematics) -> Gap:
     speed = line.along.dot(drift)
     if order == 1:
         value = n.dot(drift)
-        if not certified:
+        if point.error is None or line.error is None:
             return value, 0.0
         place, loose, _ = line.errors(s, speed, point.error.position, 0.0)
         across = (point.error.position + place) * np.abs(line.omega)
@@ -304,7 +304,7 @@ def gap_of_line(order: Order, line: MovingLine, point: PointKinematics) -> Gap:
         return value, loose + point.error.velocity + across + lean * drift.norm() + 4 * EPS * sizes
     pull = point.a - line.acceleration(s, speed)
     value = n.dot(pull)
-    if not certified:
+    if point.error is None or line.error is None:
         return value, 0.0
     es, ev = point.error.position, point.error.velocity
     place, loose, shove = line.errors(s, speed, es, ev)

@@ -1,13 +1,13 @@
-"""A triad, or a dyad in which the driver moves two bodies of one link, as a step of the solution."""
+"""A triad, or a dyad with a compound, as a step of the solution."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.assur.assemblies import Assembly, assemblies
 from analytic.assur.mounting import Mounting
 from analytic.assur.platform import SolvedPlatform, solve_platform
 from analytic.assur.sampled_rows import SampledRow
@@ -16,16 +16,24 @@ from analytic.dyads.chunk import Chunk, Passage
 from analytic.dyads.driven import driver_scale, told
 from analytic.dyads.parts import Closure, OpenError
 from analytic.dyads.plane import STEADY, AngleError, Vec
+from analytic.dyads.steps import Step
 from analytic.structure.groups import Group
 from models.array import Array
 from models.errors import ReachError, StructureError
 from models.scene import Scene
 
+TINY = 1e-15
+"""By which a driver angle beside an end is on one side of it [rad]."""
+
+
+if TYPE_CHECKING:
+    from analytic.assur.assemblies import Assembly
+
 
 class Before:
     """What a step hangs on: the steps before it."""
 
-    def __init__(self, scene: Scene, steps: Sequence[object]) -> None:
+    def __init__(self, scene: Scene, steps: Sequence[Step]) -> None:
         self.scene, self.steps = scene, tuple(steps)
 
     def chunk(self, theta: Array, half: Array | float, passages: Mapping[str, Passage]) -> Chunk:
@@ -33,14 +41,14 @@ class Before:
         error = AngleError(np.broadcast_to(half, theta.shape), 0.0, 0.0)
         chunk = Chunk.begin(self.scene, theta, 1.0, STEADY, error, stretch=True, passages=passages)
         for step in self.steps:
-            step.advance(chunk)  # type: ignore[attr-defined]  # steps, which import this one
+            step.advance(chunk)
         return chunk
 
 
 class AssurStep:
     """The central link of a group on its legs, followed from its assembly at time 0."""
 
-    def __init__(self, mounting: Mounting, before: Sequence[object]) -> None:
+    def __init__(self, mounting: Mounting, before: Sequence[Step]) -> None:
         self.mounting, self.key = mounting, mounting.group.branch_key
         self.scene = mounting.placed.scene
         self.before = Before(self.scene, before)
@@ -79,7 +87,7 @@ class AssurStep:
         ReachError
             It has none at the start, or none of that number.
         """
-        own = frozenset(passages) & {step.key for step in self.before.steps}  # type: ignore[attr-defined]
+        own = frozenset(passages) & {step.key for step in self.before.steps}
         if own not in self._tracks:
             self._tracks[own] = self._follow({key: passages[key] for key in own})
         return self._tracks[own]
@@ -130,6 +138,8 @@ class AssurStep:
 
     def assemblies(self, theta: float, passages: Mapping[str, Passage]) -> tuple[Assembly, ...]:
         """All at one driver angle, in the order of their numbers."""
+        from analytic.assur.assemblies import assemblies  # with python-flint, for these alone
+
         one, two, three = (row.at(0) for row in self.rows_at(theta, passages))
         return assemblies((one, two, three))
 
@@ -164,15 +174,16 @@ class AssurStep:
             chosen = ordered[-1 if number > 0 else 0]
         elif number > len(every):
             raise StructureError(
-                f"{scene.name}: branch.{self.key} is {number}, and {at}, where it starts, the group "
-                f"has {len(every)} assemblies; give a number from 1 to {len(every)}"
+                f"{scene.name}: branch.{self.key} is {number}, and {at}, where it starts, the "
+                f"group has {len(every)} assemblies; give a number from 1 to {len(every)}"
             )
         else:
             chosen = every[number - 1]
         if chosen.count > 1:
             raise ReachError(
-                f"{scene.name}: {at}, where it starts, two assemblies of the group about {self.key} "
-                "fall together: it is singular there, and goes on with either; start elsewhere"
+                f"{scene.name}: {at}, where it starts, two assemblies of the group about "
+                f"{self.key} fall together: it is singular there, and goes on with either; start "
+                "elsewhere"
             )
         return chosen
 

@@ -11,7 +11,6 @@ import numpy as np
 from analytic.dyads import prp, rpp, rpr, rrp, rrr
 from analytic.dyads.chunk import Chunk, Passage
 from analytic.dyads.plane import direction
-from analytic.dyads.redundant import BridgeStep
 from analytic.dyads.riding import (
     Bar,
     Placed,
@@ -24,11 +23,10 @@ from analytic.dyads.riding import (
     without_lead,
 )
 from analytic.dyads.rounding import rounding_of_angles
-from analytic.structure.groups import Bridge, Group, Triad
-from analytic.structure.mobility import Structure
+from analytic.structure.groups import Group
 from models.array import Array
 from models.joints import less, sliding_body, turned
-from models.scene import GROUND, Scene
+from models.scene import Scene
 
 
 class Step(Protocol):
@@ -53,33 +51,6 @@ class FollowedStep(Step, Protocol):
     def end_in_words(self, passages: Mapping[str, Passage], theta: float) -> str:
         """What ends it beside a driver angle [rad]."""
         ...
-
-
-def prepare(scene: Scene, structure: Structure) -> list[Step]:
-    """The steps of all groups, in solving order."""
-    driver, compound = scene.driver, structure.compound
-    known = {GROUND} if compound is not None else {GROUND, driver.link}
-    steps: list[Step] = []
-    for part in structure.order:
-        placed = Placed(scene, structure, frozenset(known))
-        if isinstance(part, Bridge):
-            steps.append(BridgeStep(placed, part))
-        elif isinstance(part, Triad) or (compound is not None and compound.name in part.bodies):
-            steps.append(_step_of_class_three(placed, part, steps))
-        else:
-            steps.append(_STEPS[part.kind](placed, part))
-        known.update(part.bodies)
-        if compound is not None and compound.name in part.bodies:
-            known.update((compound.base, compound.link))
-    return steps
-
-
-def _step_of_class_three(placed: Placed, part: Group | Triad, before: Sequence[Step]) -> Step:
-    """The step of a triad, or of a dyad with a compound: most scenes have none, nor load it."""
-    from analytic.assur.mounting import Mounting
-    from analytic.assur.step import AssurStep
-
-    return AssurStep(Mounting(placed, part), before)
 
 
 def stretched(
@@ -251,7 +222,7 @@ class RPPStep:
         chunk.keep(self.key, dyad)
 
 
-_STEPS: dict[str, Callable[[Placed, Group], Step]] = {
+DYAD_STEPS: dict[str, Callable[[Placed, Group], Step]] = {
     "RRR": RRRStep,
     "RRP": RRPStep,
     "RPR": RPRStep,

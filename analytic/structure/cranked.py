@@ -8,8 +8,8 @@ from models.scene import Scene
 
 
 def refuse_other_than_cranked(scene: Scene, what: str, structure: Structure | None = None) -> None:
-    """Raise CrankcheckError, for ``what`` is worked out of a crank at the ground and class II groups
-    alone, where the driver of a scene is another joint or, by its structure, it has a triad."""
+    """Raise CrankcheckError, for ``what`` is worked out of a crank at the ground and class II
+    groups alone, where the driver of a scene is another joint or its structure has a triad."""
     if not scene.driver.is_crank:
         raise CrankcheckError(
             f"{scene.name}: {what} takes a driver that is a link pinned to the ground, and this "
