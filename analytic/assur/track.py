@@ -43,9 +43,11 @@ MOST = 20_000
 """Cells of a track."""
 SIDE = 1e-4
 """How far beyond a crossing the other side is looked for [rad]."""
+FAR = 1e3
+"""Times the lengths at the start that a link is away when it runs to infinity."""
 TURNS = 6
 """A triad has no more assemblies, and so is back after as many periods of what it hangs on."""
-EndKind = Literal["limit position", "change point", "doubtful position"]
+EndKind = Literal["limit position", "change point", "run to infinity", "doubtful position"]
 
 
 class RowsAt(Protocol):
@@ -59,7 +61,8 @@ class End:
     """Where a track ends or crosses another one: driver angle [rad], and as what.
 
     In a limit position two assemblies meet, and are no more beyond; in a change point two meet, and
-    both go on. A doubtful position is neither for sure: where what the group hangs on ends, say.
+    both go on. A run to infinity has a link whose lines become parallel. A doubtful position is
+    none of these for sure: where what the group hangs on ends, say.
     """
 
     theta: float
@@ -104,7 +107,7 @@ def follow(rows: RowsAt, start: Pose, to: float, size_m: float) -> Piece:
             last = found[-1]
         stride = stride.after(cells.good, halves)
         if cells.good == 0 and halves[0] < NARROWEST * max(1.0, abs(last.theta)):
-            end = _end(poses, way)
+            end = _end(poses, way, size_m)
             beyond = _beyond(rows, poses, end, way, size_m) if end.kind == "change point" else None
             if beyond is None or way * (to - beyond.theta) <= 0.0:
                 return Piece(poses, end, crossings)
@@ -197,10 +200,16 @@ def _pose(body: BodyKinematics, det: Array, theta: float, k: int, near: float) -
     )  # fmt: skip
 
 
-def _end(poses: list[Pose], way: float) -> End:
+def _end(poses: list[Pose], way: float, size_m: float) -> End:
     """Where the determinant goes to zero, and how: like the root of the way that is left, or like
-    the way itself."""
+    the way itself; and whether the link is far away there."""
     last = poses[-1]
+    reach = np.array([math.hypot(*pose.place) for pose in poses])
+    if reach[-1] > FAR * (reach[0] + size_m):
+        # The inverse of the distance is linear in the way.
+        far = next(k for k in range(len(poses) - 1, -1, -1) if reach[k] < 0.5 * reach[-1])
+        left = abs(last.theta - poses[far].theta) / (reach[-1] / reach[far] - 1.0)
+        return End(last.theta + way * left, "run to infinity")
     theta = np.array([pose.theta for pose in poses[:-1]])
     det = np.abs([pose.det for pose in poses[:-1]])
     away = np.abs(theta - last.theta)
