@@ -47,8 +47,9 @@ FLOORS: Mapping[str, str] = {
         mechanism forces
         nearness kinematics
         prepared
+        assur
         change_points check reach result
-        turns assur
+        turns
         dyads
         structure multibody
     """,

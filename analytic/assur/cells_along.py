@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from analytic.assur.platform import SolvedPlatform, Wrenches, solve_platform
+from analytic.assur.pose import Pose, RowsAt, ahead
 from analytic.assur.sampled_rows import SampledRow
 from analytic.dyads.plane import (
     EPS,
@@ -24,9 +24,6 @@ from analytic.dyads.plane import (
     Vec,
 )
 from models.array import Array, Mask
-
-if TYPE_CHECKING:
-    from analytic.assur.track import Pose, RowsAt
 
 SHARE = 0.5
 """Of the box, what its own size may add to it: then nothing else is in it."""
@@ -47,9 +44,7 @@ class CellsAlong:
 
 
 @np.errstate(all="ignore")
-def along(
-    rows: RowsAt, last: Pose, halves: Array, to: float | None, size_m: float
-) -> CellsAlong:
+def along(rows: RowsAt, last: Pose, halves: Array, to: float | None, size_m: float) -> CellsAlong:
     """Cells of half-widths ``halves`` [rad] (below 0: to lower angles), one after the other from a
     pose on, the last up to driver angle ``to`` where that is given."""
     far = last.theta + 2.0 * np.cumsum(halves)
@@ -73,15 +68,8 @@ def _solved(
     rows: RowsAt, last: Pose, theta: Array, size_m: float
 ) -> tuple[SolvedPlatform, Sequence[SampledRow]]:
     """The assembly that a pose leads to, at driver angles known to rounding."""
-    d = theta - last.theta
-    square = 0.5 * d * d
-    place = Vec(
-        last.place[0] + last.rate[0] * d + last.second[0] * square,
-        last.place[1] + last.rate[1] * d + last.second[1] * square,
-    )
-    angle = last.angle + last.omega * d + last.alpha * square
+    place, turn = ahead(last, theta)
     own = rows(theta, 8 * EPS * np.abs(theta))
-    turn = Vec(np.cos(angle), np.sin(angle))
     return solve_platform(own, place, turn, size_m, certified=True), own
 
 
@@ -102,15 +90,11 @@ def _boxes(
     moved = _widened(straight, way, swing)
     for row, whole in zip(rows, over, strict=True):
         place, rate, second = row.gap(0, straight), row.gap(1, straight), whole.gap(2, moved)
-        open_.append(
-            _most(place) + half * _most(rate) + 0.5 * half * half * _most(second)
-        )
+        open_.append(_most(place) + half * _most(rate) + 0.5 * half * half * _most(second))
     shift, by = wrenches.bound((open_[0], open_[1], open_[2]))
     e, t = 2.02 * shift + 16 * EPS * size_m, 2.02 * by + 16 * EPS
     sway = [row.sway(_widened(straight, way + e, swing + t)) for row in over]
-    change = [
-        (lean + 8 * EPS) * e + (turning + 8 * EPS * size_m) * t for lean, turning in sway
-    ]
+    change = [(lean + 8 * EPS) * e + (turning + 8 * EPS * size_m) * t for lean, turning in sway]
     grown, more = wrenches.bound((change[0], change[1], change[2]))
     share = np.maximum(grown / e, more / t)
     sure = (share <= SHARE) & np.isfinite(e) & (t + swing < 1.0)
@@ -143,9 +127,7 @@ def _shifted(last: Pose, border: BodyKinematics) -> BodyKinematics:
     return BodyKinematics((0.0, 0.0), anchor, along_, 0.0, 0.0, angle)
 
 
-def _inside(
-    middle: BodyKinematics, border: BodyKinematics, by: Array, e: Array, t: Array
-) -> Mask:
+def _inside(middle: BodyKinematics, border: BodyKinematics, by: Array, e: Array, t: Array) -> Mask:
     """Whether the assembly at a border, with its doubt, is in the box of a cell."""
     assert border.error is not None
     assert border.anchor.error is not None

@@ -44,7 +44,11 @@ def test_what_is_followed_is_an_assembly_all_along_and_moves_at_its_rate(
         body = followed(step, theta)
         for k, at in enumerate(theta):
             apart = [
-                abs(math.remainder(one.angle_rad - math.atan2(body.turn.y[k], body.turn.x[k]), math.tau))
+                abs(
+                    math.remainder(
+                        one.angle_rad - math.atan2(body.turn.y[k], body.turn.x[k]), math.tau
+                    )
+                )
                 + math.hypot(one.place[0] - body.anchor.p.x[k], one.place[1] - body.anchor.p.y[k])
                 for one in step.assemblies(float(at), {})
             ]
@@ -74,7 +78,7 @@ def test_every_assembly_has_a_track_of_its_own() -> None:
             assert (np.abs(apart - math.tau * np.round(apart / math.tau)) > 1e-6).all()
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("seed", [0, 1])
 def test_two_assemblies_are_gone_beyond_a_limit_position(seed: int) -> None:
     step = step_of(triad(("RR", "RR", "RR"), seed, crank_m=0.6)[0])
     ends = [(step.track({}).low, -1.0), (step.track({}).high, 1.0)]

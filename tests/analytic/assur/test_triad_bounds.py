@@ -1,8 +1,9 @@
-"""Bounds of triads and of dyads that the driver bends, against the whole mechanism in fifty digits."""
+"""Bounds of triads against the whole mechanism in fifty digits."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from analytic.assur.step import AssurStep
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.errors import ReachError
+from models.laws import ConstantSpeed
 from models.scene import Scene
 from tests.analytic.assur.triad_scenes import KINDS, on_branch, triad
 from tests.analytic.test_bounds import shares
@@ -57,10 +59,6 @@ def test_bounds_are_infinite_beside_a_limit_position_and_never_nan() -> None:
     low = step_of(scene).track({}).low
     assert high is not None
     assert low is not None
-    from dataclasses import replace
-
-    from models.laws import ConstantSpeed
-
     law = ConstantSpeed(0.5 * (low.theta + high.theta), 1.0)
     start = replace(scene.driver, law=law)
     beside = high.theta - law.start_rad - np.array([1e-3, 1e-6, 1e-9, 1e-12])

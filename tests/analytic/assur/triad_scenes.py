@@ -75,7 +75,8 @@ class Drawn:
     def _rp(self, i: int) -> None:
         pin, at = self._pin(i)
         direction = self._direction()
-        self._slider(pin, "platform", self._on_platform(at) - 0.3 * np.exp(1j * direction), direction)
+        through = self._on_platform(at) - 0.3 * np.exp(1j * direction)
+        self._slider(pin, "platform", through, direction)
 
     def _pp(self, i: int) -> None:
         corner, (on, turn, origin) = self._corner(i), self._known(i)
@@ -83,8 +84,9 @@ class Drawn:
         leg, at = turn + out + lean, corner + self._point()
         through = (at - origin) / np.exp(1j * turn) - 0.2 * np.exp(1j * out)
         self._slider(f"S{i}", on, through, out, f"leg{i}", f"X{i}", lean)
+        kept = self.angle - leg - inner
         through = (corner - at) / np.exp(1j * leg) - 0.5 * np.exp(1j * inner)
-        self._slider(f"T{i}", f"leg{i}", through, inner, "platform", f"C{i}", self.angle - leg - inner)
+        self._slider(f"T{i}", f"leg{i}", through, inner, "platform", f"C{i}", kept)
         self._link(f"leg{i}", {f"X{i}": 0j, f"Y{i}": 0.4 + 0.1j})
 
     def _direction(self) -> float:
@@ -105,7 +107,9 @@ class Drawn:
 
     @property
     def text(self) -> str:
-        platform = self.platform if len(self.platform) > 1 else self.platform | {"U": 0j, "V": 1.1 + 0j}
+        platform, start = dict(self.platform), math.degrees(self.start)
+        if len(platform) < 2:
+            platform |= {"U": 0j, "V": 1.1 + 0j}
         return "\n".join(
             [
                 'name = "triad"\nsource = "test"',
@@ -114,7 +118,7 @@ class Drawn:
                 *(t for t in self.tables if t.startswith("[links")),
                 f"[links.platform]\npoints = {_points(platform)}",
                 *(t for t in self.tables if t.startswith("[sliders")),
-                f'[driver]\nlink = "crank"\nspeed_rad_s = 1.0\nstart_deg = {math.degrees(self.start)!r}',
+                f'[driver]\nlink = "crank"\nspeed_rad_s = 1.0\nstart_deg = {start!r}',
             ]
         )
 
