@@ -7,6 +7,7 @@ error, propagated from group to group (`analytic.dyads.closure`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
@@ -199,5 +200,5 @@ def _rounding_of(law: Law, t: Array, theta: Array) -> AngleError:
 
 def repeats_after(scene: Scene) -> float:
     """The driver angle [rad] after which the positions repeat: a turn, or more of them where the
-    mechanism goes through an odd number of change points in one."""
-    return prepared(scene).period
+    mechanism goes through an odd number of change points in one; infinite of a slider."""
+    return math.inf if scene.driver.slider is not None else prepared(scene).period

@@ -19,11 +19,13 @@ from __future__ import annotations
 from xml.sax.saxutils import quoteattr
 
 from models.controlled import Controlled
+from models.driven_freedom import driven_freedom
+from models.driver_course import driver_rates
 from models.errors import EngineError
 from models.joints import bodies, local_point
 from models.mjcf_friction import friction_of, planned
 from models.mjcf_loads import load_actuators, load_sites, load_sizes
-from models.mjcf_options import Attributes, Writing, armature, driver_joint, exact, has_control
+from models.mjcf_options import Attributes, Writing, armature, exact, has_control
 from models.mjcf_springs import spring_points, spring_tendons, tendon_lines
 from models.mjcf_text import AttributeRow, attributes, commentable
 from models.motion import State
@@ -64,7 +66,7 @@ def build(
         *_world(scene, tree, writing),
         *_equality(tree),
         *tendon_lines(scene, spring_tendons(scene, state, tree)),
-        *_actuator(scene, writing),
+        *_actuator(scene, tree, writing),
         *_keyframe(scene, state, tree, writing),
         "</mujoco>",
     ]
@@ -136,7 +138,7 @@ def _children(scene: Scene, tree: Tree, writing: Writing, parent: str, pad: str)
         if limb.angle_rad:
             place["euler"] = (0.0, 0.0, limb.angle_rad)
         lines.append(f"{pad}<body{attributes(place)}>")
-        lines += _freedoms(scene, limb, writing, pad + "  ")
+        lines += _freedoms(scene, tree, limb, writing, pad + "  ")
         lines += _matter(scene, limb.body, pad + "  ")
         lines += _sites(scene, tree, limb.body, pad + "  ")
         lines += _children(scene, tree, writing, limb.body, pad + "  ")
@@ -144,9 +146,9 @@ def _children(scene: Scene, tree: Tree, writing: Writing, parent: str, pad: str)
     return lines
 
 
-def _freedoms(scene: Scene, limb: Limb, writing: Writing, pad: str) -> list[str]:
-    """The joints of a body; the driver's hinge carries the flywheel."""
-    lines = []
+def _freedoms(scene: Scene, tree: Tree, limb: Limb, writing: Writing, pad: str) -> list[str]:
+    """The joints of a body; the driven one carries the flywheel."""
+    lines, (driven, _) = [], driven_freedom(scene, tree.limbs)
     for freedom in limb.freedoms:
         row: AttributeRow = {"name": freedom.name}
         if freedom.kind == "slide":
@@ -154,7 +156,7 @@ def _freedoms(scene: Scene, limb: Limb, writing: Writing, pad: str) -> list[str]
         else:
             row |= {"type": "hinge", "pos": (*freedom.anchor, 0.0)}
         row["ref"] = freedom.ref
-        if freedom.name == driver_joint(scene) and writing.flywheel:
+        if freedom.name == driven and writing.flywheel:
             row["armature"] = armature(scene, writing)
         row |= friction_of(scene, limb, freedom, writing)
         lines.append(f"{pad}<joint{attributes(row)}/>")
@@ -205,27 +207,34 @@ def _equality(tree: Tree) -> list[str]:
     return ["  <equality>", why, *lines, "  </equality>"] if lines else []
 
 
-def _actuator(scene: Scene, writing: Writing) -> list[str]:
+def _actuator(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
     """The servo, or the motor that follows a law other than constant speed; then the loads."""
-    lines = [*_drive(scene, writing), *load_actuators(scene)]
+    lines = [*_drive(scene, tree, writing), *load_actuators(scene)]
     return ["  <actuator>", *lines, "  </actuator>"] if lines else []
 
 
-def _drive(scene: Scene, writing: Writing) -> list[str]:
+def _drive(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
     """The actuator of the crank, where it has one."""
     if not has_control(scene, writing):
         return []
-    joint = {"name": "drive", "joint": driver_joint(scene)}
+    driven, sense = driven_freedom(scene, tree.limbs)
+    joint: AttributeRow = {"name": "drive", "joint": driven}
     if writing.servo_gain is not None:
+        row = joint | {"kv": writing.servo_gain / scene.driver_arm_m**2}
+        backwards: AttributeRow = {"gear": sense} if sense < 0.0 else {}
+        what = ("angular velocity of the crank", "rad/s")
+        what = what if scene.driver.slider is None else ("speed of the driven slider", "m/s")
         return [
-            "    <!-- control: angular velocity of the crank [rad/s] -->",
-            f"    <velocity{attributes(joint | {'kv': writing.servo_gain})}/>",
+            f"    <!-- control: {what[0]} [{what[1]}] -->",
+            f"    <velocity{attributes(row | backwards)}/>",
         ]
+    what = ("angular acceleration of the crank", "rad/s^2")
+    what = what if scene.driver.slider is None else ("acceleration of the slider", "m/s^2")
     return [
         "    <!-- The driver's law is not in this file: it comes as the control of each -->",
-        "    <!-- step, the angular acceleration of the crank [rad/s^2]. Without it the -->",
+        f"    <!-- step, the {what[0]} [{what[1]}]. Without it the -->",
         "    <!-- crank keeps the acceleration of the start and may leave its range. -->",
-        f"    <motor{attributes(joint | {'gear': armature(scene, writing)})}/>",
+        f"    <motor{attributes(joint | {'gear': sense * armature(scene, writing)})}/>",
     ]
 
 
@@ -239,9 +248,9 @@ def _keyframe(scene: Scene, state: State, tree: Tree, writing: Writing) -> list[
     }
     controls = load_sizes(scene, state)
     if has_control(scene, writing):
-        link = scene.driver.link
+        speed, acceleration = driver_rates(scene, state)
         servo = writing.servo_gain is not None
-        controls = (state.omega[link] if servo else state.alpha[link], *controls)
+        controls = (speed if servo else acceleration, *controls)
     if controls:
         row["ctrl"] = controls
     return ["  <keyframe>", f"    <key{attributes(row)}/>", "  </keyframe>"]

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from models.characteristics import Constant
+from models.driver_course import driver_place_in
 from models.errors import EngineError
 from models.joints import Slot, block_name, joints, local_point, riding_body, turned
 from models.loads import Load
@@ -126,7 +127,7 @@ def _not_in_the_file(load: Load) -> list[str]:
 
 def load_sizes(scene: Scene, state: State) -> tuple[float, ...]:
     """The sizes of the loads in a state [N or N m]."""
-    theta = state.theta[scene.driver.link]
+    theta = driver_place_in(scene, state)
     sliding = {name: (s, state.speed[name]) for name, s in state.displacement.items()}
     return tuple(
         load.size(state.time_s, theta, sliding, state.omega.get(load.body, 0.0))

@@ -10,7 +10,7 @@ from models.poses import inertia_scale
 from models.scene import Scene
 
 FLYWHEEL_RATIO = 1e12
-"""Armature of the driven hinge over the inertia scale of the scene."""
+"""Armature of the driven joint over the inertia scale of the scene."""
 AttributeValue = str | float | int | Sequence[float]
 Attributes = Mapping[str, AttributeValue]
 
@@ -74,11 +74,6 @@ def exact(scene: Scene, steps: float = STEPS_PER_PERIOD) -> Writing:
     )
 
 
-def driver_joint(scene: Scene) -> str:
-    """The name of the driven hinge."""
-    return f"{scene.driver.link}.{scene.driver_pivot}"
-
-
 def has_control(scene: Scene, writing: Writing) -> bool:
     """Whether the model has an actuator that wants a control at each step."""
     if not writing.flywheel:
@@ -87,5 +82,8 @@ def has_control(scene: Scene, writing: Writing) -> bool:
 
 
 def armature(scene: Scene, writing: Writing) -> float:
-    """Inertia of the flywheel on the crank [kg m^2]; 0 where there is none."""
-    return writing.flywheel_ratio * inertia_scale(scene) if writing.flywheel else 0.0
+    """Inertia of the flywheel on the crank [kg m^2], of a slider its mass [kg]; 0 where there is
+    none."""
+    if not writing.flywheel:
+        return 0.0
+    return writing.flywheel_ratio * inertia_scale(scene) / scene.driver_arm_m**2

@@ -110,6 +110,11 @@ class Driver:
         return self.link if self.pin is None else f"pin {self.pin} of {self.base} and {self.link}"
 
     @property
+    def name(self) -> str:
+        """What it is called in a table: the slider, or the link that turns."""
+        return self.slider or self.link
+
+    @property
     def unit(self) -> str:
         """Of its coordinate: rad or m."""
         return "rad" if self.slider is None else "m"
@@ -180,10 +185,21 @@ class Scene:
         return [n for n, one in self.friction.items() if isinstance(one, CoulombFriction)]
 
     @property
+    def driver_arm_m(self) -> float:
+        """What the driver's coordinate is over an angle: 1 of an angle; of the displacement of a
+        slider the longest length [m], so that its speed over it is a rate of turning."""
+        return 1.0 if self.driver.slider is None else self.longest_m
+
+    @property
+    def pace_rad_s(self) -> float:
+        """The driver's largest speed, of a slider over the longest length [rad/s]."""
+        return self.driver.law.peak_speed_rad_s / self.driver_arm_m
+
+    @property
     def driver_pivot(self) -> str:
-        """The pin that is driven: of a crank, that to the ground. There is none of a slider."""
-        if self.driver.pin is not None:
-            return self.driver.pin
+        """The pin that is driven, of a crank that to the ground; empty where a slider is."""
+        if self.driver.pin is not None or self.driver.slider is not None:
+            return self.driver.pin or ""
         return next(point for point in self.links[self.driver.link].points if point in self.ground)
 
 

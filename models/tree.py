@@ -149,10 +149,10 @@ def plan(
 
 def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:
     """The joints in order of priority; each entry lists equally good ways to hold one joint."""
-    pivot = scene.driver_pivot
-    yield [_Edge(GROUND, scene.driver.link, pivot)]
-    ties = joints(scene)
-    for slide in ties.slides:
+    driver, ties = scene.driver, joints(scene)
+    if driver.slider is None:
+        yield [_Edge(driver.base, driver.link, scene.driver_pivot)]
+    for slide in sorted(ties.slides, key=lambda slide: slide.slider.name != driver.slider):
         yield _slides(slide)
     pairs = [
         (pin.point, _Edge(a, b, pin.point))

@@ -71,7 +71,7 @@ def pace(scene: Scene, state: State, drive: Drive) -> float:
     the longest link; 0 only where nothing moves and nothing will.
     """
     if drive != "free":
-        return scene.driver.law.peak_speed_rad_s
+        return scene.pace_rad_s
     speeds = [abs(omega) for omega in state.omega.values()]
     gains = [abs(alpha) for alpha in state.alpha.values()]
     gains.append(math.hypot(*scene.gravity_m_s2) / scene.longest_m)

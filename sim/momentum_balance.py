@@ -96,7 +96,7 @@ def joint_pushes(
         if isinstance(slide, Prism):
             system.couple(slide.body, slide.slider.on)
     if driven:
-        system.couple(scene.driver.link, GROUND)
+        system.drive(scene)
     found = system.solution()
     ends = np.cumsum([2 * len(hinges), len(slides), len(prisms)])
     pairs, normals, moments, torque = np.split(found, ends, axis=1)
@@ -148,6 +148,21 @@ class _System:
         for name, sense in ((body, 1.0), (against, -1.0)):
             if name != GROUND:
                 column[:, self._row[name] + 2] += sense
+
+    def drive(self, scene: Scene) -> None:
+        """The driver: a torque between its bodies, or a force along its slider's line."""
+        driver = scene.driver
+        if driver.slider is None:
+            self.couple(driver.link, driver.base)
+            return
+        slider, own = scene.sliders[driver.slider], self._gains[driver.link]
+        arm = own.arm(local_point(scene, driver.link, slider.point))
+        guide = self._gains.get(slider.on)
+        angle = slider.direction_rad + (np.zeros(self._samples) if guide is None else guide.theta)
+        along, column = np.stack([np.cos(angle), np.sin(angle)], axis=1), self._column()
+        self._push(column, driver.link, arm, along)
+        if guide is not None:
+            self._push(column, slider.on, own.place + arm - guide.place, -along)
 
     def solution(self) -> Array:
         """The unknowns (T, unknowns): NaN where the joints are singular; those of least size where

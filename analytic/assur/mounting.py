@@ -19,6 +19,7 @@ from analytic.assur.sampled_rows import SampledRow
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import BodyKinematics
 from analytic.dyads.riding import Placed
+from analytic.structure.compound import as_triad
 from analytic.structure.groups import Group, JointKey, Triad
 from analytic.structure.groups import Leg as LegOfGroup
 from models.errors import StructureError
@@ -37,24 +38,20 @@ class Mounting:
                 f"{scene.name}: the driver is {scene.driver.joint}, in a leg of the class III "
                 f"group about {group.central}, which has no solution here; drive another joint"
             )
-        if isinstance(group, Triad):
-            central, held = group.central, list(group.legs)
-        else:
-            assert own is not None
-            central, held = own.name, [_leg_of_dyad(group, own.name)]
+        central, held, joint = as_triad(group, own)
         body = central if own is None else own.base
         frame = CentralFrame(scene, body, (0.0, 0.0), own)
         self.size_m = _size(scene, frame)
         self.frame = frame
         legs = [self._leg(one) for one in held]
-        if isinstance(group, Group):
-            legs.append(self._joint(_joint_of_dyad(group, central)))
+        if joint is not None:
+            legs.append(self._joint(joint))
         points = [place for leg in legs for part, place in leg.locals() if part == body]
         middle = _middle(points) if points else next(iter(scene.links[body].points.values()))
         self.frame = replace(frame, origin=middle)
         self.legs: list[Leg] = [self._leg(one) for one in held]
-        if isinstance(group, Group):
-            self.legs.append(self._joint(_joint_of_dyad(group, central)))
+        if joint is not None:
+            self.legs.append(self._joint(joint))
 
     def rows(self, chunk: Chunk) -> list[SampledRow]:
         """The three rows of the central link."""
@@ -96,21 +93,6 @@ class Mounting:
         if joint[0] == "R":
             return PinnedThere(self.frame, self.placed, part, joint[1])
         return SlidingThere(self.frame, self.placed, part, joint[1], self.size_m)
-
-
-def _leg_of_dyad(group: Group, central: str) -> LegOfGroup:
-    """The other link of a dyad, as a leg of its central one."""
-    inner = (group.kind[1], group.inner)
-    if group.first == central:
-        return LegOfGroup(group.second, (group.kind[2], group.outer2), inner)
-    return LegOfGroup(group.first, (group.kind[0], group.outer1), inner)
-
-
-def _joint_of_dyad(group: Group, central: str) -> JointKey:
-    """The joint by which the central link itself hangs on a known body."""
-    if group.first == central:
-        return group.kind[0], group.outer1
-    return group.kind[2], group.outer2
 
 
 def _middle(points: list[Point]) -> Point:

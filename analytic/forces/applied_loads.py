@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
+from analytic.dyads.driven import driver_scale
 from analytic.dyads.rounding import rounding_of_angles
 from analytic.forces.bounded import Bounded
 from analytic.forces.free_body import FreeBody
@@ -61,7 +62,8 @@ def _magnitude(load: Load, chunk: Chunk, time_s: Array) -> Bounded:
     sliding = None if load.slider is None else chunk.sliders[load.slider]
     error = chunk.driver.error
     if load.over == "angle":
-        x, by = chunk.theta, 0.0 if error is None else error.theta
+        scale = driver_scale(chunk.scene)
+        x, by = chunk.theta * scale, 0.0 if error is None else error.theta * scale
     if load.over == "omega":
         body = chunk.bodies[load.body]
         x, by = _as_samples(body.omega, time_s), 0.0 if body.error is None else body.error.omega

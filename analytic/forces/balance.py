@@ -16,8 +16,9 @@ from collections.abc import Callable, Mapping
 
 from analytic.dyads.rounding import rounding_of_angles
 from analytic.forces.bounded import NOWHERE, Bounded, BoundedVec
+from analytic.forces.central_balance import balance_central
 from analytic.forces.free_body import FreeBody
-from analytic.structure.groups import Group
+from analytic.structure.groups import Bridge, Group, Triad
 from analytic.structure.mobility import Structure
 from models.joints import local_point, sliding_body
 from models.scene import GROUND, Scene, Slider
@@ -64,15 +65,37 @@ class Balance:
         self.sliders: dict[str, tuple[Bounded, Bounded]] = {}
 
     def torque(self) -> Bounded:
-        """Solve all groups, the last one first; the torque on the driver that is left over."""
-        for group in reversed(self.structure.groups):
-            self.standing -= {group.first, group.second}
-            _BALANCES[group.kind](self, group)
-        driver, pivot = self.scene.driver.link, self.scene.driver_pivot
-        body = self.free[driver]
-        self._on_pin(pivot, driver, -body.force)
-        self._on_pin(pivot, GROUND, body.force)
-        return -body.moment_about(self.arm(driver, pivot))
+        """Solve all groups, the last one first; the torque on the driver that is left over, or the
+        force along its line."""
+        compound = self.structure.compound
+        inner = set() if compound is None else {compound.name}
+        for part in reversed(self.structure.order):
+            if isinstance(part, Bridge):
+                continue
+            central = inner.intersection(part.bodies)
+            self.standing.difference_update(part.bodies)
+            if central and compound is not None:
+                self.standing -= {compound.base, compound.link}
+            if isinstance(part, Triad) or central:
+                balance_central(self, part)
+            else:
+                _BALANCES[part.kind](self, part)
+        return self._drive()
+
+    def _drive(self) -> Bounded:
+        """The driven joint bears what is left on its link; the torque, or the force along a line,
+        that this takes."""
+        driver = self.scene.driver
+        if driver.slider is not None:
+            line = self.pair(driver.slider)
+            force = -line.along.dot(self.free[driver.link].force)
+            self.rest(driver.slider, driver.link)
+            return force
+        link, pivot = driver.link, self.scene.driver_pivot
+        body = self.free[link]
+        self.on_pin(pivot, link, -body.force)
+        self.on_pin(pivot, driver.base, body.force)
+        return -body.moment_about(self.arm(link, pivot))
 
     def arm(self, body: str, point: str) -> BoundedVec:
         """From the centre of a body to one of its points."""
@@ -98,19 +121,20 @@ class Balance:
         """A force of an inner pin on a body that needs it for its other pair."""
         self.free[body].push(self.arm(body, point), force)
 
-    def _on_pin(self, point: str, body: str, force: BoundedVec) -> None:
+    def on_pin(self, point: str, body: str, force: BoundedVec) -> None:
+        """A pin exerts a force on a body."""
         self.pins[point][body] = self.pins[point][body] + force
 
     def inner(self, group: Group, force: BoundedVec) -> None:
         """The inner pin of a group exerts the force on its first body."""
-        self._on_pin(group.inner, group.first, force)
-        self._on_pin(group.inner, group.second, -force)
+        self.on_pin(group.inner, group.first, force)
+        self.on_pin(group.inner, group.second, -force)
 
     def hold(self, point: str, body: str, force: BoundedVec) -> None:
         """An outer pin exerts the force on a body of a group, and the opposite on what holds it."""
         holder = next(name for name in self.structure.pins[point] if name in self.standing)
-        self._on_pin(point, body, force)
-        self._on_pin(point, holder, -force)
+        self.on_pin(point, body, force)
+        self.on_pin(point, holder, -force)
         if holder != GROUND:
             self.push(holder, point, -force)
 

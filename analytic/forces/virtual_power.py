@@ -15,6 +15,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
+from analytic.dyads.driven import driver_scale
 from analytic.dyads.plane import EPS, BodyKinematics, PointKinematics, Real
 from analytic.forces.bounded import NOUGHT, Bounded, BoundedVec
 from analytic.forces.free_body import FreeBody
@@ -22,7 +23,8 @@ from models.scene import GROUND
 
 
 def torque_by_power(free: Mapping[str, FreeBody], unit: Chunk, chunk: Chunk) -> Bounded:
-    """The torque on the driver [N m] of a chunk whose bodies are loaded.
+    """The torque on the driver [N m], or the force along its line [N], of a chunk whose bodies are
+    loaded.
 
     ``unit`` is the same positions with the driver at 1 rad/s, steady. Its angle is taken as exact:
     that of ``chunk`` may be wrong by its own bound, which moves every rate by its derivative.
@@ -36,7 +38,8 @@ def torque_by_power(free: Mapping[str, FreeBody], unit: Chunk, chunk: Chunk) -> 
         rate = _rate(moving, off)
         velocity = _velocity(moving.point(body.centre), off)
         total = total + body.force.dot(velocity) + body.moment * rate
-    return -total
+    scale = driver_scale(chunk.scene)
+    return -total if scale == 1.0 else -total * Bounded(1.0 / scale)
 
 
 def _rate(body: BodyKinematics, off: Real) -> Bounded:

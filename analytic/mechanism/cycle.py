@@ -63,6 +63,11 @@ class Cycle:
         law = scene.driver.law
         if isinstance(law, Oscillating):
             return Cycle(scene, math.tau, Oscillating(law.centre_rad, abs(law.amplitude_rad), 1.0))
+        if scene.driver.slider is not None:
+            raise CrankcheckError(
+                f"{scene.name}: {scene.driver.joint} comes back by no law but an oscillating one, "
+                "and goes through no cycle"
+            )
         return Cycle(scene, repeats_after(scene), None)
 
     @property
@@ -72,7 +77,7 @@ class Cycle:
         return (np.arange(count, dtype=np.float64) + 0.5) * (math.tau / SCAN)
 
     def driver(self, phase: Array) -> Array:
-        """The driver's angles [rad]."""
+        """The driver's angles [rad], or displacements [m]."""
         return phase if self.swing is None else self.swing.at(phase)[0]
 
     def at(self, outputs: Sequence[Output], phase: Array, *, bound: bool = False) -> Motion:
@@ -104,10 +109,12 @@ class Cycle:
                 continue
             worst = int(np.argmin(sine))
             if sine[worst] < math.tau / SCAN:
-                angle = math.degrees(self.driver(phase)[worst])
+                place = float(self.driver(phase)[worst])
+                slides = self.scene.driver.slider is not None
+                where = f"{place:.4g} m" if slides else f"{math.degrees(place):.4g} deg"
                 raise CrankcheckError(
                     f"{self.scene.name}: the dyad of {key} passes a singular position near "
-                    f"{angle:.4g} deg, where its travel has no limits"
+                    f"{where}, where its travel has no limits"
                 )
 
 

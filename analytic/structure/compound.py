@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from analytic.structure.groups import Pairs
+from analytic.structure.groups import Group, JointKey, Leg, Pairs, Triad
 from models.scene import Scene
 
 
@@ -51,3 +51,18 @@ def compound_of(scene: Scene) -> Compound | None:
         return None
     name = f"{driver.base} + {driver.link}"  # no body has such a name
     return Compound(name, driver.base, driver.link, driver.pin, driver.slider)
+
+
+def as_triad(
+    group: Triad | Group, compound: Compound | None
+) -> tuple[str, tuple[Leg, ...], JointKey | None]:
+    """The central link of a group, its legs, and the joint by which it hangs on a known body
+    itself: of a triad none, of a dyad with a compound one, and one leg."""
+    if isinstance(group, Triad):
+        return group.central, group.legs, None
+    assert compound is not None
+    inner = (group.kind[1], group.inner)
+    outer1, outer2 = (group.kind[0], group.outer1), (group.kind[2], group.outer2)
+    if group.first == compound.name:
+        return compound.name, (Leg(group.second, outer2, inner),), outer1
+    return compound.name, (Leg(group.first, outer1, inner),), outer2

@@ -11,6 +11,7 @@ import numpy as np
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve, solve_driven
 from models.array import Array
+from models.driver_course import driver_place
 from models.motion import Motion, State
 from models.scene import Same, Scene
 from reports.compare.completeness import incomplete
@@ -138,13 +139,16 @@ class Beside:
 
     @cached_property
     def crank(self) -> Array:
-        """The logged angle of the driver [rad], (T,); NaN where there is none."""
-        link = self.motion.links.get(self.scene.driver.link)
-        return fitting(None if link is None else link.theta, self.motion.time_s)
+        """The logged coordinate of the driver [rad, or m of a slider], (T,); NaN where there is
+        none."""
+        return fitting(driver_place(self.scene, self.motion), self.motion.time_s)
 
     @cached_property
     def drive(self) -> Array:
-        """How far the driver is from where it was told to be [rad], (T,)."""
+        """How far the driver is from where it was told to be [rad], (T,); of a slider over the
+        longest length."""
+        if self.scene.driver.slider is not None:
+            return np.asarray((self.crank - self.driver_rad) / self.scene.driver_arm_m)
         return angle_error(self.crank, self.driver_rad)
 
     def driver_at(self, time_s: Array, reference: Motion) -> Array:

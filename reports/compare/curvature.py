@@ -13,7 +13,7 @@ from reports.compare.series import length
 
 def curvature(scene: Scene, reference: Motion) -> float:
     """The largest pure acceleration of the reference, at least 1, where it is a number."""
-    square = scene.driver.law.peak_speed_rad_s**2
+    square = scene.pace_rad_s**2
     turning = (link.alpha / square for link in reference.links.values())
     moving = (
         point.acceleration / (scene.longest_m * square) for point in reference.points.values()

@@ -96,6 +96,7 @@ class Errors:
     (`reports.compare.drive_rounding`). ``jolt`` is how much an engine may make up for at its start,
     over a step, as a pure number (`analytic.forces.jolts`), ``worst_jolt`` the most of it over the
     run, and ``mass_ratio`` the mass of the heaviest body over that of the lightest.
+    ``drives_within`` says that the driver moves two moving bodies against each other, and
     ``starts_in_passage`` says that one of the first samples is near a change point. ``uneven`` is
     how far bodies depart from moving evenly with the driver, ``uneven_rates`` those of them whose
     rates do too (`reports.compare.uneven`). ``contradictions`` is what the engine's own numbers say
@@ -126,6 +127,7 @@ class Errors:
     jolt: float = 0.0
     worst_jolt: float = 0.0
     mass_ratio: float = 1.0
+    drives_within: bool = False
     starts_in_passage: bool = False
     uneven: Mapping[tuple[BodyKind, str], float] = field(default_factory=dict)
     uneven_rates: Set[tuple[BodyKind, str]] = frozenset()

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.array import Array
+from models.driver_course import driver_course
 from models.errors import CrankcheckError
 from models.joints import block_name, blocks, local_point
 from models.loads import Load
@@ -26,7 +27,7 @@ def loading(scene: Scene, motion: Motion) -> float:
     A body on a guide is not turned. 0 without loads, or where a table of one ends before the
     motion, which then has no forces either.
     """
-    square, largest = scene.driver.law.peak_speed_rad_s**2, 0.0
+    square, largest = scene.pace_rad_s**2, 0.0
     guided = {slider.link for slider in scene.sliders.values()}
     try:
         for name in dict.fromkeys(load.body for load in scene.loads.values()):
@@ -46,7 +47,7 @@ def inertia_share(scene: Scene, force_n: float) -> float:
     most."""
     masses = [link.mass_kg for link in scene.links.values()]
     masses += [slider.mass_kg for slider in scene.sliders.values()]
-    push = sum(masses) * scene.longest_m * scene.driver.law.peak_speed_rad_s**2
+    push = sum(masses) * scene.longest_m * scene.pace_rad_s**2
     return min(push / force_n, 1.0)
 
 
@@ -87,7 +88,7 @@ def _magnitude(scene: Scene, load: Load, motion: Motion) -> Array:
     slid = None if load.slider is None else motion.sliders[load.slider]
     x = motion.time_s
     if load.over == "angle":
-        x = motion.links[scene.driver.link].theta
+        x = driver_course(scene, motion)[0]
     elif load.over == "displacement" and slid is not None:
         x = slid.displacement
     return load.magnitude(x, None if slid is None else slid.speed)
@@ -120,7 +121,7 @@ def load_slopes(
         slope = _slope(load, motion)
         at_point = load.point is not None
         bears += slope * (scene.longest_m if at_point else 1.0) / force_n
-        moved = scene.longest_m / scene.driver.law.peak_speed_rad_s / torque_n_m
+        moved = scene.longest_m / scene.pace_rad_s / torque_n_m
         turns += slope * _speed(scene, load, motion) * moved
     return {"reaction": _largest(bears), "torque": _largest(turns)}
 

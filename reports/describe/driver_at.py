@@ -40,6 +40,11 @@ def driver_at(
     """Angle [rad], angular velocity [rad/s] and acceleration [rad/s^2] as the driver's law moves it
     through an angle [deg]. Raises CrankcheckError for an angle that it never has."""
     theta = angle_at(at_deg)
+    if scene.driver.slider is not None:
+        raise CrankcheckError(
+            f"--at-deg {at_deg:g}: the driver of {scene.name} is {scene.driver.joint}, which has a "
+            "place and no angle; ask for its motion"
+        )
     try:
         omega, alpha = passing(scene.driver.law, theta, clockwise=clockwise)
     except ValueError as error:

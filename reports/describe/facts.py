@@ -25,13 +25,17 @@ def facts(scene: Scene, structure: Structure, along: Sequence[Along] = ()) -> li
     fully; swing or stroke and time ratio of every link and slider, and of points along directions,
     between their limit positions."""
     lines = []
-    if [group.kind for group in structure.groups] == ["RRR"]:
+    kinds = [group.kind for group in structure.groups]
+    if scene.driver.is_crank and kinds == ["RRR"] and not structure.triads:
         with contextlib.suppress(StructureError):  # two links that stand still, or turn as one
             lines.append(_grashof(FourBar.of(scene)))
     spans = reach(scene)
-    if sum(end - start for start, end in spans) < FULL_TURN:
+    if scene.driver.slider is not None:
+        words = " and ".join(f"{a:.6g} to {b:.6g} m" for a, b in spans)
+        lines.append(f"{scene.driver.joint} can stand at {words}")
+    elif sum(end - start for start, end in spans) < FULL_TURN:
         words = " and ".join(f"{_deg(a)} to {_deg(b)} deg" for a, b in spans)
-        lines.append(f"{scene.driver.link} can stand at {words}")
+        lines.append(f"{scene.driver.joint} can stand at {words}")
     return lines + list(_travels(scene, along))
 
 
@@ -54,10 +58,13 @@ def speed_facts(
     except CrankcheckError:
         return None  # it does not turn fully, or passes a singular position
     pace = _pace(scene.driver.law, clockwise=clockwise)
+    slides = scene.driver.slider is not None
     rows = {
-        _called(output): ", ".join(_speed(one, pace, _turns(scene, output)) for one in found)
+        _called(output): ", ".join(
+            _speed(one, pace, _turns(scene, output), slides) for one in found
+        )
         for output, found in every.items()
-        if found and output != scene.driver.link
+        if found and not _is_driver(scene, output)
     }
     return SpeedFacts(f"extreme speeds{pace.words}, where the acceleration is 0", rows)
 
@@ -80,9 +87,10 @@ def _pace(law: Law, *, clockwise: bool) -> _Pace:
     return _Pace(1.0, " over that of a driver of constant speed", ("", " m"))
 
 
-def _speed(one: ExtremeSpeed, pace: _Pace, turns: bool) -> str:
+def _speed(one: ExtremeSpeed, pace: _Pace, turns: bool, slides: bool) -> str:
     unit = pace.units[0 if turns else 1]
-    return f"{one.rate * pace.factor:.6g}{unit} at {_deg(one.driver_rad)} deg"
+    where = f"{one.driver_rad:.6g} m" if slides else f"{_deg(one.driver_rad)} deg"
+    return f"{one.rate * pace.factor:.6g}{unit} at {where}"
 
 
 def _grashof(bar: FourBar) -> str:
@@ -106,13 +114,19 @@ def _travels(scene: Scene, along: Sequence[Along]) -> Iterator[str]:
     for output, travel in every.items():
         if isinstance(output, Along) and not isinstance(travel, Travel):
             yield f"{_called(output)}: does not move"  # what moves along a line turns back on it
-        if not isinstance(travel, Travel) or output == scene.driver.link:
+        if not isinstance(travel, Travel) or _is_driver(scene, output):
             continue  # it turns fully, stands still, or is told of as the driver
         turns = _turns(scene, output)
         size = f"{_deg(travel.stroke)} deg" if turns else f"{travel.stroke:.6g} m"
         line = f"{_called(output)}: {'swing' if turns else 'stroke'} {size}"
         line += f", time ratio {travel.time_ratio:.6g}"
         yield line + (f", turns back {travel.limits} times" if travel.limits > 2 else "")
+
+
+def _is_driver(scene: Scene, output: Output) -> bool:
+    """Whether it is told of as the driver."""
+    driver = scene.driver
+    return output == (driver.link if driver.is_crank else driver.slider)
 
 
 def _outputs(scene: Scene, along: Sequence[Along]) -> list[Output]:

@@ -10,6 +10,7 @@ from rich.table import Table
 
 from analytic.mechanism.coriolis import coriolis
 from models.array import Array
+from models.driver_course import driver_place
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.facts import SpeedFacts
@@ -82,7 +83,7 @@ def motion_tables(scene: Scene, motion: Motion, width: int) -> list[Table]:
     bodies: list[tuple[str, Columns]] = [
         (name, [("theta\nrad", m.theta), ("omega\nrad/s", m.omega), ("alpha\nrad/s^2", m.alpha)])
         for name, m in motion.links.items()
-        if name != scene.driver.link
+        if name != scene.driver.link or not scene.driver.is_crank
     ]
     for name, s in motion.sliders.items():
         rates = [("speed\nm/s", s.speed), ("accel.\nm/s^2", s.acceleration)]
@@ -95,10 +96,12 @@ def tables_over_time(
 ) -> list[Table]:
     """Series by owner beside the time and the driver's angle; ``width`` is the terminal's."""
     together = 2 if width >= WIDE else 1
-    driver = motion.links.get(scene.driver.link)
+    place, driver = driver_place(scene, motion), scene.driver
     instants: Columns = [("\ntime\ns", motion.time_s)]
-    if driver is not None:
-        instants.append((f"{scene.driver.link}\ntheta\ndeg", np.degrees(driver.theta)))
+    if place is not None and driver.is_crank:
+        instants.append((f"{driver.link}\ntheta\ndeg", np.degrees(place)))
+    elif place is not None and driver.slider is None:
+        instants.append((f"pin {driver.pin}\nangle\ndeg", np.degrees(place)))
     tables = []
     for first in range(0, len(bodies), together):
         table = plain_table(gap=2)

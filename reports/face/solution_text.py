@@ -7,7 +7,9 @@ from collections.abc import Sequence
 from rich.console import Console
 
 from analytic.mechanism.cycle import Along
+from analytic.structure.groups import Bridge
 from analytic.structure.mobility import Structure
+from models.driver_course import driver_place
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
@@ -46,10 +48,14 @@ def show_heading(
 
 def heading(scene: Scene, structure: Structure, along: Sequence[Along] = ()) -> str:
     """What the mechanism is, and what the theory says of it as a whole."""
-    groups = ", ".join(f"{g.kind} ({g.first}, {g.second})" for g in structure.groups)
+    groups = ", ".join(
+        f"{part.kind} ({', '.join(part.bodies)})"
+        for part in structure.order
+        if not isinstance(part, Bridge)
+    )
     lines = [
         f"{scene.name}: {scene.source}",
-        f"{structure.words}; driver {scene.driver.link}, {describe_law(scene)}; "
+        f"{structure.words}; driver {scene.driver.joint}, {describe_law(scene)}; "
         f"groups in solving order: {groups}",
         *facts(scene, structure, along),
     ]
@@ -100,7 +106,8 @@ def show_friction(console: Console, scene: Scene) -> None:
 def show_notes(console: Console, scene: Scene, motion: Motion) -> None:
     """Print what change points and singular positions are on the way, if any, and what of forces
     is not determined."""
-    singular = singular_note(scene, motion) if scene.driver.link in motion.links else ""
+    told = driver_place(scene, motion) is not None
+    singular = singular_note(scene, motion) if told else ""
     notes = (continued_note(motion), singular, *force_notes(scene, motion))
     for note in filter(None, notes):
         console.print(note, style="yellow", highlight=False, markup=False)

@@ -54,6 +54,9 @@ time constant, some steps; where that bends, by ``loading`` from step to step, a
 off. And a load that rises over a displacement by ``slope`` is another where its slider is off by
 ``place``: by what it was seen to be, and by no more than its limit.
 
+A motor between two moving bodies is closed by a step as their pins are: its drive has a tenth of
+the budget of places, and not that of rounding alone.
+
 ``cap`` is what anyone would call wrong, whatever the theory grants: near a singular position the
 budget grows without end, and an engine on the other branch must not pass.
 
@@ -105,6 +108,8 @@ FREE_ELASTIC = FREE | BENDING
 EVERY = tuple(dict.fromkeys((*DEFAULTS, *FREE, *ELASTIC)))
 """All that there may be a limit of."""
 
+CLOSED_BY_A_MOTOR = 0.1
+"""Of the budget of places: what a motor between two moving bodies may leave open."""
 FORCES = frozenset(named("force"))
 
 
@@ -209,9 +214,10 @@ def limits(
         elif name in scene.tolerance:
             chosen[name] = Limit(scene.tolerance[name], "scene")
         else:
-            chosen[name] = Limit(
-                default(tolerance, errors) + beyond_engine(name, errors), "default"
-            )
+            own = default(tolerance, errors) + beyond_engine(name, errors)
+            if name == "drive" and errors.drives_within:
+                own += CLOSED_BY_A_MOTOR * default(WITHIN_A_STEP, errors)
+            chosen[name] = Limit(own, "default")
     return chosen
 
 

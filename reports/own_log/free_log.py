@@ -119,7 +119,7 @@ def _off_at_start(reading: Reading, truth: FreeTruth) -> tuple[float, str, float
         return 0.0, "", 0.0
     unit = ("rad" if kind.turns else "m") + ("", "/s")[kind.order]
     scale = 1.0 if kind.turns else scene.longest_m
-    scale *= scene.driver.law.peak_speed_rad_s**kind.order
+    scale *= scene.pace_rad_s**kind.order
     size = abs(float(reading.first(1).error(truth)[0]))
     return size, unit, size / scale
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from analytic.kinematics import repeats_after, solve, solve_driven
 from models.array import Array, Mask
+from models.driver_course import driver_course
 from models.errors import CrankcheckError, few
 from models.motion import Crossing, Motion
 from models.scene import Scene
@@ -82,7 +83,7 @@ def continued_note(motion: Motion) -> str:
 
 def singular_note(scene: Scene, motion: Motion) -> str:
     """Which samples of a reference are singular, for the reader of a table; "" where none is."""
-    theta = motion.links[scene.driver.link].theta
+    theta = driver_course(scene, motion)[0]
     places = [
         f"{angle:.6g} deg ({key})"
         for key, sine in motion.conditioning.items()

@@ -110,7 +110,7 @@ def _inertia(scene: Scene) -> float:
     redundant links no reaction is known."""
     masses = [link.mass_kg for link in scene.links.values()]
     masses += [slider.mass_kg for slider in scene.sliders.values()]
-    push = scene.longest_m * scene.driver.law.peak_speed_rad_s**2 + math.hypot(*scene.gravity_m_s2)
+    push = scene.longest_m * scene.pace_rad_s**2 + math.hypot(*scene.gravity_m_s2)
     return sum(masses) * push or 1.0
 
 
@@ -146,7 +146,7 @@ def _moment(_: Scene, forces: Forces | ForceBound) -> Series:
 
 
 def _torque(scene: Scene, forces: Forces | ForceBound) -> Series:
-    return {scene.driver.link: forces.torque}
+    return {scene.driver.name: forces.torque}
 
 
 def _bound(scene: Scene, reference: Motion, read: Read) -> Series:

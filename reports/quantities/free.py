@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from models.driver_course import driver_place
 from models.motion import Motion
-from models.scene import Scene
+from models.scene import GROUND, Scene
 from reports.quantities.moving import every_place
 from reports.quantities.quantity import Criterion, Measure, Quantity, Series, Tolerance
 from sim.engine import Run
 
 
 def _driver(motion: Motion | None, scene: Scene) -> Series:
-    link = motion and motion.links.get(scene.driver.link)
-    return {scene.driver.link: link.theta} if link else {}
+    place = driver_place(scene, motion) if motion else None
+    return {} if place is None else {scene.driver.name: place / scene.driver_arm_m}
 
 
 def _driver_bound(scene: Scene, reference: Motion) -> Series:
-    bound = reference.bound and reference.bound.links.get(scene.driver.link)
-    return {scene.driver.link: bound.theta} if bound else {}
+    bound, driver = reference.bound, scene.driver
+    if bound is None:
+        return {}
+    if driver.slider is not None:
+        slider = bound.sliders.get(driver.slider)
+        return {driver.name: slider.displacement / scene.driver_arm_m} if slider else {}
+    links = [bound.links.get(name) for name in (driver.link, driver.base) if name != GROUND]
+    if None in links:
+        return {}
+    return {driver.name: np.sum([link.theta for link in links if link], axis=0)}
 
 
 PHASE = Quantity(

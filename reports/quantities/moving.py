@@ -18,13 +18,19 @@ def moving(kind: MovingKind, order: Order, column: str) -> Measure:
     turns = kind == "link"
 
     def scale(scene: Scene, _: Motion) -> float:
-        speed = scene.driver.law.peak_speed_rad_s**order
+        speed = scene.pace_rad_s**order
         return speed if turns else scene.longest_m * speed
 
     def truth(scene: Scene, reference: Motion) -> Series:
-        """Without points of the ground, and without the driver's angle, which is the drive."""
-        driver = (scene.driver.link,) if order == 0 else ()
-        still: Mapping[MovingKind, Collection[str]] = {"link": driver, "point": scene.ground}
+        """Without points of the ground, and without the driver's coordinate, which is the drive."""
+        own = scene.driver
+        crank = (own.link,) if order == 0 and own.is_crank else ()
+        slider = (own.slider,) if order == 0 and own.slider is not None else ()
+        still: Mapping[MovingKind, Collection[str]] = {
+            "link": crank,
+            "slider": slider,
+            "point": scene.ground,
+        }
         bodies = _read(reference, kind, order).items()
         return {name: series for name, series in bodies if name not in still.get(kind, ())}
 

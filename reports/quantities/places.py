@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from models.driver_course import driver_place
 from models.joints import joints
 from models.motion import Motion
 from models.scene import Scene
@@ -39,7 +40,9 @@ FREE_PLACE = Tolerance(
 
 
 def _commanded(scene: Scene, reference: Motion) -> Series:
-    return {scene.driver.link: scene.driver.law.at(reference.time_s)[0]}
+    """Its angle; of a slider its displacement over the longest length."""
+    commanded = scene.driver.law.at(reference.time_s)[0]
+    return {scene.driver.name: commanded / scene.driver_arm_m}
 
 
 def _rounded(scene: Scene, reference: Motion) -> Series:
@@ -47,8 +50,8 @@ def _rounded(scene: Scene, reference: Motion) -> Series:
 
 
 def _crank(scene: Scene, run: Run) -> Series:
-    crank = run.motion and run.motion.links.get(scene.driver.link)
-    return {scene.driver.link: crank.theta} if crank else {}
+    course = driver_place(scene, run.motion) if run.motion else None
+    return {} if course is None else {scene.driver.name: course / scene.driver_arm_m}
 
 
 DRIVE = Quantity(

@@ -49,7 +49,7 @@ def _omega(change: Distortion) -> Plant:
     """A change of the last link's angular velocity, by a multiple of the driver's speed."""
 
     def changed(scene: Scene, done: Run, size: float) -> Run:
-        by_rad_s = size * scene.driver.law.peak_speed_rad_s
+        by_rad_s = size * scene.pace_rad_s
         return with_link(done, last(scene), omega=change(output(scene, done).omega, by_rad_s))
 
     return in_log(changed)

@@ -82,5 +82,5 @@ class SheetLog:
         """What a reading is off by in the first row, as a pure number."""
         kind, scene = begin.channel.kind, self.truth.scene
         scale = 1.0 if kind.body_kind == "link" else scene.longest_m
-        scale *= scene.driver.law.peak_speed_rad_s**kind.order
+        scale *= scene.pace_rad_s**kind.order
         return abs(float(begin.error(self.truth)[0])) / scale

@@ -21,7 +21,7 @@ def beside_values(scene: Scene, time_s: Array, columns: Sequence[str]) -> Callab
     count = time_s.size
     table = None
     if 1 < count <= MOST_LIVE:
-        step = math.degrees(float(time_s[1]) * scene.driver.law.peak_speed_rad_s)
+        step = math.degrees(float(time_s[1]) * scene.pace_rad_s)
         table = formulas_of(scene, count, step)
 
     def put(book: Any) -> None:

@@ -80,7 +80,7 @@ def _rub_line(
 
 def still_rad_s(scene: Scene) -> float:
     """What turns no faster does not rub, as its direction is rounding [rad/s]."""
-    return STILL * scene.driver.law.peak_speed_rad_s
+    return STILL * scene.pace_rad_s
 
 
 def against(size: float, speed: Array | float, still: float) -> Array:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from models.characteristics import Constant
+from models.driven_freedom import driven_freedom
 from models.errors import EngineError
 from models.joints import joined_at
 from models.laws import ConstantSpeed
 from models.mjcf import build
 from models.mjcf_friction import planned
-from models.mjcf_options import driver_joint
 from models.motion import State
 from models.scene import Scene
 from models.tree import Tree
@@ -88,7 +88,7 @@ def write_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) ->
         model=build(scene, state, chosen, tree).replace("\\", "\\\\").replace('"""', '\\"""'),
         loops=_listed(loops),
         hinges=_listed({} if scene.loads or scene.springs else _hinges(scene, tree)),
-        joint=driver_joint(scene),
+        joint=driven_freedom(scene, tree.limbs)[0],
         steps=round(scene.driver.law.period_s / dt_s) + 1,
         start=state.time_s,
     )
@@ -100,6 +100,11 @@ def _check_held(scene: Scene) -> None:
         raise EngineError(
             f"{scene.name}: nothing drives it, and the recipe reads the torque of a drive; take a "
             "scene of constant speed"
+        )
+    if not scene.driver.is_crank:
+        raise EngineError(
+            f"{scene.name}: its driver is {scene.driver.joint}, and the recipe reads the torque of "
+            "a crank; take a scene whose driver is a link at the ground"
         )
     varying = [
         f"loads.{load.name}"

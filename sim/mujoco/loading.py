@@ -12,8 +12,8 @@ import numpy as np
 
 from models.array import Array
 from models.characteristics import Constant
+from models.driven_freedom import driven_freedom
 from models.loads import Load
-from models.mjcf_options import driver_joint
 from models.scene import Scene
 from models.tree import Limb
 from sim.engine import Drive
@@ -54,7 +54,8 @@ class Loading:
         ]
         self._stages: LoadStages | None = None
         self._shares: StrokeShares | None = None
-        self._crank = int(model.joint(driver_joint(scene)).qposadr[0])
+        driven, self._sense = driven_freedom(scene, limbs)
+        self._crank = int(model.joint(driven).qposadr[0])
         self._turning = {
             load.body: int(model.body(load.body).id) for load in self.loads if load.over == "omega"
         }
@@ -138,5 +139,5 @@ class Loading:
             name: (float(data.qpos[k]), float(data.qvel[k])) for name, k in self._slides.items()
         }
         omega = float(data.cvel[self._turning[load.body], 2]) if load.over == "omega" else 0.0
-        theta = float(data.qpos[self._crank])
+        theta = self._sense * float(data.qpos[self._crank])
         return load.size(self._start_s + float(data.time), theta, sliding, omega)

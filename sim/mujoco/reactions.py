@@ -89,8 +89,16 @@ class _Reactions:
     def _hinge(self, limb: Limb) -> None:
         given = self._from_parent(limb)
         self._pin(limb.point, limb.parent, limb.body, given.force)
-        if limb.body == self._scene.driver.link:
-            self._torque = given.moment_about(self._point(limb.body, limb.point))
+        if self._is_driven(limb):
+            torque = given.moment_about(self._point(limb.body, limb.point))
+            self._torque = torque if limb.body == self._scene.driver.link else -torque
+
+    def _is_driven(self, limb: Limb) -> bool:
+        """Whether the pin between a limb and its parent is the driven one."""
+        driver = self._scene.driver
+        if driver.is_crank:
+            return limb.body == driver.link
+        return limb.point == driver.pin and {limb.body, limb.parent} == {driver.base, driver.link}
 
     def _slide(self, limb: Limb, slider: Slider) -> None:
         """The guide is the parent of what slides on it, or else its child."""
@@ -103,6 +111,9 @@ class _Reactions:
         across = self._theta(slider.on) + slider.direction_rad + 0.5 * np.pi
         normal = given.force[:, 0] * np.cos(across) + given.force[:, 1] * np.sin(across)
         self._sliders[slider.name] = SliderForces(normal, moment)
+        if slider.name == self._scene.driver.slider:
+            along = self._theta(slider.on) + slider.direction_rad
+            self._torque = given.force[:, 0] * np.cos(along) + given.force[:, 1] * np.sin(along)
 
     def _block(self, slider: Slider, rider: str, force: Array) -> Array:
         """Hand on what acts on a block without mass, in which nothing is left: what its guide, the

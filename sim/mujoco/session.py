@@ -9,10 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from models.array import Array
+from models.driven_freedom import driven_freedom
 from models.errors import EngineError
 from models.mjcf import build
 from models.mjcf_friction import planned
-from models.mjcf_options import Writing, driver_joint, has_control
+from models.mjcf_options import Writing, has_control
 from models.mjcf_springs import SpringTendon, spring_tendons
 from models.motion import State
 from models.scene import Point, Scene
@@ -64,10 +65,11 @@ class MujocoSession(SteppedModel):
             scene, self._model, self._limbs, drive, state.time_s, dt_s if staged else None
         )
         self._tendons = spring_tendons(scene, state, tree)
-        self._crank = int(self._model.joint(driver_joint(scene)).dofadr[0])
+        driven, sense = driven_freedom(scene, tree.limbs)
+        self._crank = int(self._model.joint(driven).dofadr[0])
         if not self._free:
             start = drives.start_speed(scene.driver.law, state.time_s, dt_s, self._shift)
-            self._data.qvel[self._crank] = start
+            self._data.qvel[self._crank] = sense * start
         self._pushes = np.empty(0)
         self._forward()
 

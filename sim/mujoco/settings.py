@@ -139,7 +139,7 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf
     held = holds(settings, dt_s, drive)
     servo = None
     if drive == "servo":
-        scale = inertia_scale(scene) * scene.driver.law.peak_speed_rad_s
+        scale = inertia_scale(scene) * scene.pace_rad_s
         servo = float(settings["servo_gain"]) * scale
     dmin, dmax = float(settings["solimp_dmin"]), float(settings["solimp_dmax"])
     solimp = (dmin, dmax, float(settings["solimp_width"]), 0.5, 2.0)

@@ -18,6 +18,7 @@ from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
 from sim.pymunk.acting import Acting
 from sim.pymunk.body_rows import FIELDS, WIDTH, finite, pose, rows_of
 from sim.pymunk.convergence import iterations
+from sim.pymunk.driven_joint import DrivenJoint, driven_joint
 from sim.pymunk.reactions import BEFORE, Reactions
 from sim.pymunk.settings import (
     AS_SHIPPED,
@@ -62,10 +63,11 @@ class PymunkSession:
         for constraint in self._space.constraints:
             constraint.error_bias = float(settings["error_bias"])
         law = scene.driver.law
-        self._coasts = drive == "free" or isinstance(law, ConstantSpeed)
+        inner = scene.driver.is_inner and drive == "prescribed"
+        self._coasts = drive == "free" or (isinstance(law, ConstantSpeed) and not inner)
+        self._driven: DrivenJoint = driven_joint(scene, self._model, state.time_s, dt_s, drive)
         if drive != "free":
-            first = drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT)
-            self._model.crank.angular_velocity = first
+            self._driven.start(drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT))
         self._buffer = pymunk.batch.Buffer()
         self._memory = np.empty(0)
         self._rows = rows_of(self._model)
@@ -187,14 +189,9 @@ class PymunkSession:
         the crank is set back by the next step's turn and ends at the law's angle, with the speed
         of the step to come.
         """
-        step, dt = self._space.step, self._dt
-        crank, motor = self._model.crank, self._model.motor
+        step, dt, turn = self._space.step, self._dt, self._driven.turn
         for k, (angle, speed) in enumerate(self._turns(steps), 1):
-            if motor is not None:
-                motor.rate = speed
-            else:
-                crank.angle = angle
-                crank.angular_velocity = speed
+            turn(angle, speed)
             step(dt)
             if every and k % every == 0:
                 self._log()
@@ -209,7 +206,7 @@ class PymunkSession:
     def _each(self, steps: int, every: int, reactions: Reactions | None = None) -> None:
         """Step with all that acts, and log every ``every``-th step: with ``reactions`` before it
         too, and what its joints bore."""
-        space, dt, crank, motor = self._space, self._dt, self._model.crank, self._model.motor
+        space, dt, turn = self._space, self._dt, self._driven.turn
         turns = None if self._coasts else self._turns(steps)
         acting = self._acting if self._acting else None
         if acting is not None:
@@ -217,11 +214,7 @@ class PymunkSession:
             acting.look_ahead(self._start_s + dt * ends)
         for k in range(steps):
             if turns is not None:
-                angle, speed = turns[k]
-                if motor is not None:
-                    motor.rate = speed
-                else:
-                    crank.angle, crank.angular_velocity = angle, speed
+                turn(*turns[k])
             if acting is not None:
                 acting.apply(k)
             logged = every > 0 and (k + 1) % every == 0

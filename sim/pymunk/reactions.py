@@ -23,6 +23,7 @@ import pymunk.batch
 
 from models.array import Array
 from models.forces import Forces
+from models.joints import turned
 from models.poses import centre_of, mass_of
 from models.scene import Scene
 from sim.forces_by_body import forces_by_body
@@ -141,12 +142,16 @@ class Reactions:
         return np.asarray(gain * np.array([body.mass, body.mass, inertia]))
 
     def _told(self, name: str, theta: Array, time_s: Array) -> Array:
-        """The same of the kinematic crank, which has no mass in pymunk: that of the scene, about
-        its pivot, as its law has it move."""
+        """The same of the kinematic crank, or slider, which has no mass in pymunk: that of the
+        scene, about its pivot or its centre of mass, as its law has it move."""
         mass, inertia = mass_of(self._scene, name)
         (x, y), pivot = centre_of(self._scene, name), self._model.centre[name]
         arm = MomentumGain(pivot, np.empty(0), theta, np.empty(0), np.empty(0)).arm((x, y))
         _, omega, alpha = (each[:, None] for each in self._scene.driver.law.at(time_s))
+        if self._scene.driver.slider is not None:
+            u = turned((1.0, 0.0), self._scene.sliders[self._scene.driver.slider].direction_rad)
+            pull = mass * (alpha * np.array(u) - np.array(self._scene.gravity_m_s2))
+            return np.column_stack([pull, np.zeros(len(time_s))])
         across = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
         force = mass * (alpha * across - omega**2 * arm - np.array(self._scene.gravity_m_s2))
         moment = inertia * alpha[:, 0] + np.sum(across * force, axis=1)

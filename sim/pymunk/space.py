@@ -47,9 +47,10 @@ class SpaceModel:
     """A space, its moving bodies by name in the order they were added, and the crank.
 
     ``centre`` is where the origin of each pymunk body lies in the frame of the link [m].
-    ``motor`` is the servo, where there is one. Of the constraints, ``hinges`` are what the pins are
-    made of (None is what holds a kinematic crank), and by slider ``lines`` hold a point on its
-    line, ``gears`` an angle. ``rubs`` is what rubs in pins; ``springs`` are the space's own.
+    ``motor`` is the servo, or what drives an inner pin, where there is one. Of the constraints,
+    ``hinges`` are what the pins are made of (None is what holds a kinematic crank), and by slider
+    ``lines`` hold a point on its line, ``gears`` an angle. ``rubs`` is what rubs in pins;
+    ``springs`` are the space's own.
     """
 
     space: pymunk.Space
@@ -86,6 +87,8 @@ def build(
     EngineError
         A link without mass that has to move freely, or a massless block that no body carries.
     """
+    driver = scene.driver
+    _check_drive(scene, servo=servo, free=free)
     space = pymunk.Space()
     space.gravity = scene.gravity_m_s2
     ties = joints(scene)
@@ -94,22 +97,24 @@ def build(
     made: dict[str, pymunk.Body] = {GROUND: space.static_body}
     centre: dict[str, Point] = {GROUND: (0.0, 0.0)}
     for name in bodies(scene):
-        kinematic = name == scene.driver.link and not (servo or free)
+        kinematic = name == driver.link and not (servo or free or driver.is_inner)
+        turns = kinematic and driver.slider is None
         pivot = scene.driver_pivot
-        centre[name] = local_point(scene, name, pivot) if kinematic else centre_of(scene, name)
+        centre[name] = local_point(scene, name, pivot) if turns else centre_of(scene, name)
         body = _body(scene, name, kinematic, name in fixed_angle)
         body.position = where[name].at(centre[name])
         body.angle = where[name].theta
-        body.velocity = where[name].velocity_at(body.position) if not kinematic else (0.0, 0.0)
+        body.velocity = where[name].velocity_at(body.position) if not turns else (0.0, 0.0)
         body.angular_velocity = where[name].omega
         made[name] = body
         space.add(body)
     motor = None
-    crank = made[scene.driver.link]
-    if servo:
-        motor = pymunk.SimpleMotor(crank, space.static_body, where[scene.driver.link].omega)
+    crank = made[driver.link]
+    if servo or (driver.is_inner and not free):
+        rate = where[driver.link].omega - where[driver.base].omega
+        motor = pymunk.SimpleMotor(crank, made[driver.base], rate)
         space.add(_plain(motor))
-    hinges = _pins(scene, ties, made, centre, pinned=servo or free)
+    hinges = _pins(scene, ties, made, centre, pinned=servo or free or driver.is_inner)
     for constraint in hinges.values():
         if constraint is not None:
             space.add(_plain(constraint))
@@ -117,6 +122,8 @@ def build(
     gears: dict[str, pymunk.Constraint] = {}
     for slide in ties.slides:
         name = slide.slider.name
+        if name == driver.slider and not free:
+            continue  # a kinematic body, which is told where it is
         lines[name] = _line(scene, state, slide, made, centre, exact_lines)
         space.add(_plain(lines[name]))
         if isinstance(slide, Prism) and slide.slider.on != GROUND:
@@ -131,6 +138,30 @@ def build(
         space.add(_plain(spring.constraint))
     del made[GROUND]
     return SpaceModel(space, made, centre, crank, motor, hinges, lines, gears, rubs, springs)
+
+
+def _check_drive(scene: Scene, *, servo: bool, free: bool) -> None:
+    """Raise EngineError for a joint that pymunk has nothing to drive with."""
+    driver = scene.driver
+    if not driver.is_crank and any(load.over == "angle" for load in scene.loads.values()):
+        raise EngineError(
+            f"{scene.name}: a load goes with the driver's angle, and pymunk is given that of a "
+            f"crank alone; this driver is {driver.joint}"
+        )
+    if driver.slider is None or free:
+        return
+    if driver.is_inner or servo:
+        what = "between two moving bodies" if driver.is_inner else "by a servo"
+        raise EngineError(
+            f"{scene.name}: pymunk has no motor along a line, and drives no slider {what}; drive "
+            "a slider on the ground, prescribed, or take another engine"
+        )
+    slider = scene.sliders[driver.slider]
+    if slider.link is None and slider.mass_kg == 0.0:
+        raise EngineError(
+            f"{scene.name}: the driven block {driver.slider} has no mass, so it is no body of "
+            f"pymunk's; give sliders.{driver.slider} a mass_kg above 0"
+        )
 
 
 def _body(scene: Scene, name: str, kinematic: bool, fixed_angle: bool) -> pymunk.Body:
@@ -220,7 +251,7 @@ def _anchor(scene: Scene, centre: Mapping[str, Point], body: str, point: str) ->
 
 def _pinned_bodies(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
     """The bodies of a pin, immovable ones first, so that all others hang on the firmest."""
-    firm = {GROUND: 0, scene.driver.link: 1}
+    firm = {GROUND: 0} if scene.driver.is_inner else {GROUND: 0, scene.driver.link: 1}
     return tuple(sorted(names, key=lambda name: firm.get(name, 2)))
 
 

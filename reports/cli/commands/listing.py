@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from analytic.kinematics import solve
+from analytic.structure.groups import Bridge
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, StructureError, harmless
 from models.files import KINEMATICS, find_scene, kinds, load_scene, shipped
@@ -44,7 +45,8 @@ def scenes(console: Console) -> None:
 def _groups(scene: Scene) -> str:
     """The Assur groups of a scene in solving order, a dash for one that is none of dyads."""
     try:
-        return " + ".join(group.kind for group in analyse(scene).groups)
+        parts = analyse(scene).order
+        return " + ".join(part.kind for part in parts if not isinstance(part, Bridge))
     except StructureError:
         return "-"
 

@@ -47,7 +47,7 @@ def run_family(scene: Scene, request: SolveRequest, console: Console) -> None:
         )
     origin = {"scene": scene.name, "source": scene.source, "family": request.family}
     is_workbook = request.output.suffix.lower() == WORKBOOK
-    step_deg = math.degrees(float(time_s[1]) * scene.driver.law.peak_speed_rad_s)
+    step_deg = math.degrees(float(time_s[1]) * scene.pace_rad_s)
     table = formulas_of(scene, time_s.size, step_deg)
     if table is not None and is_workbook:
         content: bytes | str = live_workbook(family(table, name, values), origin)

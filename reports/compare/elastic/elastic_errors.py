@@ -56,7 +56,7 @@ def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
     return ElasticFacts(
         segments=truth.cut.count,
         springs=truth.springs,
-        ratio=theory.lowest_rad_s / beside.scene.driver.law.peak_speed_rad_s,
+        ratio=theory.lowest_rad_s / beside.scene.pace_rad_s,
         cycles=theory.cycles_per_s * float(time_s[-1] - time_s[0]),
         slender=beside.scene.longest_m / theory.largest_m,
         doubt=truth.doubt,

@@ -129,7 +129,7 @@ class ElasticTruth(Truth):
         most = max(
             one.pushed(abs(float(start[name].middle[0]))) for name, one in self.given.beams.items()
         )
-        return most / self.scene.driver.law.peak_speed_rad_s**2
+        return most / self.scene.pace_rad_s**2
 
     @cached_property
     def start(self) -> State:

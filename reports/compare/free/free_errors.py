@@ -71,7 +71,7 @@ def free_errors(beside: FreeBeside) -> Errors:
         conditioning=max(
             conditioning(reference, at.driver_rad), LEAST_SINE if facts.passages else 0.0
         ),
-        step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
+        step_rad=scene.pace_rad_s * run.dt_s,
         missing=beside.missing,
         incomplete=beside.incomplete or borne.incomplete,
         uncertain={key: bound / facts.sensitivity for key, bound in uncertain(beside).items()},
@@ -131,7 +131,7 @@ def _geometry(beside: FreeBeside, at: Instants) -> tuple[list[Error], tuple[str,
 def _travel(beside: FreeBeside) -> float:
     """The angle that the driver turns through, weighed as `Errors.travel_rad` says."""
     speed = np.abs(beside.driver_speed)
-    peak = beside.scene.driver.law.peak_speed_rad_s
+    peak = beside.scene.pace_rad_s
     return float(np.trapezoid(peak * (speed / peak) ** 3, beside.motion.time_s))
 
 
@@ -184,7 +184,7 @@ def _held(beside: FreeBeside) -> Iterable[str]:
     """A note of where loads that act on one stroke alone hold the truth at rest, as friction does:
     an engine goes to and fro there, and creeps by what it steps over."""
     of_strokes = [load.name for load in beside.scene.loads.values() if load.stroke != "both"]
-    still = np.abs(beside.driver_speed) <= STILL * beside.scene.driver.law.peak_speed_rad_s
+    still = np.abs(beside.driver_speed) <= STILL * beside.scene.pace_rad_s
     held = np.flatnonzero(still[1:] & still[:-1])
     if of_strokes and held.size:
         yield (

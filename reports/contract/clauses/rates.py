@@ -85,7 +85,7 @@ def _of_log(subject: Subject, session: Session, order: int) -> list[_Rate]:
     held = motion(subject.scene, session.record(STEPS, 1).poses)
     truth = solve(subject.scene, held.time_s, bound=False)
     dt_s, rates = subject.dt_s(STEPS), []
-    turning = subject.scene.driver.law.peak_speed_rad_s**order
+    turning = subject.scene.pace_rad_s**order
     for name, link in held.links.items():
         true = truth.links[name].alpha
         reported = link.omega if order == 1 else link.alpha

@@ -116,7 +116,7 @@ def _equilibrium(subject: Subject) -> Iterator[str]:
 
 def pulled(scene: Scene) -> Scene:
     """The scene in a gravity that shows beside its inertia forces."""
-    pull = PULL * scene.longest_m * scene.driver.law.peak_speed_rad_s**2
+    pull = PULL * scene.longest_m * scene.pace_rad_s**2
     return replace(scene, gravity_m_s2=(0.6 * pull, -0.8 * pull))
 
 

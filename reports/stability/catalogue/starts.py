@@ -40,7 +40,7 @@ def _other_velocity(share: float) -> Trial:
     """The rocker turns faster, or slower, than fits by a share of the crank's speed."""
     scene = load_scene(SOURCE)
     state = _assembled(scene)
-    more = share * scene.driver.law.peak_speed_rad_s
+    more = share * scene.pace_rad_s
     omega = {**state.omega, "rocker": state.omega["rocker"] + more}
     return _started(scene, replace(state, omega=omega))
 

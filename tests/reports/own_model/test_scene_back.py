@@ -19,7 +19,6 @@ from models.errors import EngineError
 from models.files import load_scene, shipped
 from models.laws import ConstantSpeed
 from models.mjcf import build
-from models.mjcf_options import driver_joint
 from models.motion import State
 from models.scene import Driver, Scene
 from reports.judge.cell import Cell, check
@@ -58,7 +57,9 @@ def start_of(scene: Scene) -> State:
 
 
 def request(path: Path, scene: Scene, **more: object) -> ModelRequest:
-    return ModelRequest(path, driver_joint(scene), **{"speed_rad_s": 10.0, **more})  # type: ignore[arg-type]
+    return ModelRequest(
+        path, f"{scene.driver.link}.{scene.driver_pivot}", **{"speed_rad_s": 10.0, **more}
+    )  # type: ignore[arg-type]
 
 
 def read_back(path: Path, scene: Scene) -> Scene:

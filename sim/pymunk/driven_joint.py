@@ -1,0 +1,118 @@
+"""What drives a space: a crank or a slider that is told where it is, or a motor in a pin."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import pymunk
+
+from models.joints import turned
+from models.scene import Point, Scene
+from sim.engine import Drive
+from sim.pymunk.space import SpaceModel
+
+
+class DrivenJoint(Protocol):
+    """The driver of a space."""
+
+    def start(self, speed: float) -> None:
+        """Take the speed of the first step."""
+        ...
+
+    def turn(self, place: float, speed: float) -> None:
+        """Before a step: be at a place from which it is moved on at the speed, that of the step
+        after it, to where the law has it at its end."""
+        ...
+
+
+@dataclass(frozen=True)
+class KinematicCrank:
+    """A body that turns about its origin."""
+
+    body: pymunk.Body
+
+    def start(self, speed: float) -> None:
+        self.body.angular_velocity = speed
+
+    def turn(self, place: float, speed: float) -> None:
+        self.body.angle = place
+        self.body.angular_velocity = speed
+
+
+@dataclass(frozen=True)
+class KinematicSlider:
+    """A body that moves along a line of the ground, from ``base`` [m]."""
+
+    body: pymunk.Body
+    base: Point
+    along: Point
+
+    def start(self, speed: float) -> None:
+        self.body.velocity = speed * self.along[0], speed * self.along[1]
+
+    def turn(self, place: float, speed: float) -> None:
+        (x, y), (u, v) = self.base, self.along
+        self.body.position = x + place * u, y + place * v
+        self.body.velocity = speed * u, speed * v
+
+
+@dataclass(frozen=True)
+class ServoMotor:
+    """A motor that is told the speed alone."""
+
+    motor: pymunk.SimpleMotor
+
+    def start(self, speed: float) -> None:
+        self.motor.rate = speed
+
+    def turn(self, place: float, speed: float) -> None:
+        self.motor.rate = speed
+
+
+@dataclass(frozen=True)
+class PinMotor:
+    """A motor between two bodies, which takes back in each step what it is off by."""
+
+    motor: pymunk.SimpleMotor
+    link: pymunk.Body
+    base: pymunk.Body
+    whole_turns_rad: float
+    dt_s: float
+
+    def start(self, speed: float) -> None:
+        self.motor.rate = speed
+
+    def turn(self, place: float, speed: float) -> None:
+        moves = self.link.angular_velocity - self.base.angular_velocity
+        comes_to = self.link.angle - self.base.angle - self.whole_turns_rad + moves * self.dt_s
+        due = place + speed * self.dt_s
+        self.motor.rate = speed + (due - comes_to) / self.dt_s
+
+
+def driven_joint(
+    scene: Scene, model: SpaceModel, start_s: float, dt_s: float, drive: Drive
+) -> DrivenJoint:
+    """The driver of a space at its start."""
+    driver = scene.driver
+    if drive == "servo" and model.motor is not None:
+        return ServoMotor(model.motor)
+    if driver.slider is not None:
+        slider = scene.sliders[driver.slider]
+        along = turned((1.0, 0.0), slider.direction_rad)
+        # The origin of the body is its centre of mass, which keeps its way to the slider's point.
+        tip = scene.links[driver.link].points[slider.point] if slider.link else (0.0, 0.0)
+        centre = model.centre[driver.link]
+        angle = model.crank.angle
+        x, y = turned((centre[0] - tip[0], centre[1] - tip[1]), angle)
+        base = slider.through_m[0] + x, slider.through_m[1] + y
+        return KinematicSlider(model.crank, base, along)
+    if driver.is_inner and model.motor is not None:
+        base_body = model.bodies[driver.base]
+        apart = model.crank.angle - base_body.angle
+        at_start = float(driver.law.at(np.array([start_s]))[0][0])
+        whole = math.tau * round((apart - at_start) / math.tau)
+        return PinMotor(model.motor, model.crank, base_body, whole, dt_s)
+    return KinematicCrank(model.crank)
