@@ -1,4 +1,4 @@
-"""The driver's own equation: the coordinate of the joint that is driven, over those of the bodies."""
+"""The equation of the driver: the coordinate of the joint that is driven, over the bodies' own."""
 
 from __future__ import annotations
 
