@@ -10,8 +10,8 @@ import numpy as np
 
 from analytic.assur.pose import Pose
 
-FAR = 1e3
-"""Times the lengths at the start that a link is away when it runs to infinity."""
+FAR, SOON = 100.0, 5e-3
+"""Times its size that a link is away when it runs to infinity, and a driver angle [rad]."""
 EndKind = Literal["limit position", "change point", "run to infinity", "doubtful position"]
 
 
@@ -28,16 +28,10 @@ class End:
     kind: EndKind
 
 
-def end_beside(poses: list[Pose], way: float, size_m: float) -> End:
+def end_beside(poses: list[Pose], way: float) -> End:
     """Where the determinant goes to zero, and how: like the root of the way that is left, or like
-    the way itself; and whether the link is far away there."""
+    the way itself."""
     last = poses[-1]
-    reach = np.array([math.hypot(*pose.place) for pose in poses])
-    if reach[-1] > FAR * (reach[0] + size_m):
-        # The inverse of the distance is linear in the way.
-        far = next(k for k in range(len(poses) - 1, -1, -1) if reach[k] < 0.5 * reach[-1])
-        left = abs(last.theta - poses[far].theta) / (reach[-1] / reach[far] - 1.0)
-        return End(last.theta + way * left, "run to infinity")
     theta = np.array([pose.theta for pose in poses[:-1]])
     det = np.abs([pose.det for pose in poses[:-1]])
     away = np.abs(theta - last.theta)
@@ -45,6 +39,9 @@ def end_beside(poses: list[Pose], way: float, size_m: float) -> End:
     a, b = near
     if a == b or not 0.0 < det[a] < det[b]:
         return End(last.theta, "doubtful position")
+    rates = [math.hypot(*poses[k].rate) for k in near]
+    if rates[0] > 0.01 * (away[b] / away[a]) ** 2 * rates[1] > 0.0:
+        return End(last.theta, "run to infinity")  # its speed goes as the inverse square of the way
     power = math.log(det[b] / det[a]) / math.log(away[b] / away[a])
     if power < 0.2 or power > 1.4:
         return End(last.theta, "doubtful position")
@@ -53,4 +50,31 @@ def end_beside(poses: list[Pose], way: float, size_m: float) -> End:
     # The power of the determinant that is linear in the way is 0 a little beyond the last pose.
     ends = [det[a] ** order, abs(last.det) ** order]
     slope = (ends[0] - ends[1]) / away[a]
-    return End(last.theta + way * (ends[1] / slope if slope > 0.0 else 0.0), kind)
+    left = ends[1] / slope if slope > 0.0 else 0.0
+    return End(float(last.theta + way * left), kind)
+
+
+def runs_away(start: Pose, last: Pose, size_m: float) -> bool:
+    """Whether a link is far away, and grows twice as far before the driver has moved on by
+    `SOON`: it runs to infinity."""
+    away, rate = _away(start, last), math.hypot(*last.rate)
+    return away > FAR * (size_m + math.hypot(*start.rate)) and away < SOON * rate
+
+
+def end_at_infinity(poses: list[Pose]) -> End:
+    """Where a link that runs away will be at infinity: the driver angle is a smooth function of
+    the inverse of its distance, here a polynomial through five of its poses."""
+    start, last = poses[0], poses[-1]
+    inverse, theta = [1.0 / _away(start, last)], [last.theta]
+    for pose in reversed(poses[1:]):
+        if 2.0 * inverse[-1] * _away(start, pose) < 1.0 and len(theta) < 5:
+            inverse.append(1.0 / _away(start, pose))
+            theta.append(pose.theta)
+    powers = np.arange(len(theta))
+    scaled = np.array(inverse)[:, None] / inverse[-1]
+    return End(float(np.linalg.solve(scaled**powers, np.array(theta))[0]), "run to infinity")
+
+
+def _away(start: Pose, pose: Pose) -> float:
+    """How far a pose is from that at the start [m]."""
+    return math.hypot(pose.place[0] - start.place[0], pose.place[1] - start.place[1])

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.assur.cells_along import CellsAlong, along
-from analytic.assur.ends import End, end_beside
+from analytic.assur.ends import End, end_at_infinity, end_beside, runs_away
 from analytic.assur.pose import Pose, RowsAt, ahead, pose_at, pose_of
 from models.array import Array
 
@@ -46,9 +46,11 @@ def follow(rows: RowsAt, start: Pose, to: float, size_m: float) -> Piece:
         if found:
             poses += found
             last = found[-1]
+            if runs_away(start, last, size_m):
+                return Piece(poses, end_at_infinity(poses), crossings)
         stride = stride.after(cells.good, halves)
         if cells.good == 0 and halves[0] < NARROWEST * max(1.0, abs(last.theta)):
-            end = end_beside(poses, way, size_m)
+            end = end_beside(poses, way)
             beyond = _beyond(rows, poses, end, way, size_m) if end.kind == "change point" else None
             if beyond is None or way * (to - beyond.theta) <= 0.0:
                 return Piece(poses, end, crossings)
