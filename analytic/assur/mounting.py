@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 from analytic.assur.central_frame import CentralFrame
@@ -40,18 +41,18 @@ class Mounting:
             )
         central, held, joint = as_triad(group, own)
         body = central if own is None else own.base
-        frame = CentralFrame(scene, body, (0.0, 0.0), own)
-        self.size_m = _size(scene, frame)
-        self.frame = frame
-        legs = [self._leg(one) for one in held]
-        if joint is not None:
-            legs.append(self._joint(joint))
-        points = [place for leg in legs for part, place in leg.locals() if part == body]
+        self.frame, self.size_m = CentralFrame(scene, body, (0.0, 0.0), own), scene.longest_m
+        points = [
+            place for leg in self._made(held, joint) for at, place in leg.locals() if at == body
+        ]
         middle = _middle(points) if points else next(iter(scene.links[body].points.values()))
-        self.frame = replace(frame, origin=middle)
-        self.legs: list[Leg] = [self._leg(one) for one in held]
-        if joint is not None:
-            self.legs.append(self._joint(joint))
+        self.frame = replace(self.frame, origin=middle)
+        self.size_m = _size(scene, self.frame, points)
+        self.legs = self._made(held, joint)
+
+    def _made(self, held: Sequence[LegOfGroup], joint: JointKey | None) -> list[Leg]:
+        legs = [self._leg(one) for one in held]
+        return legs if joint is None else [*legs, self._joint(joint)]
 
     def rows(self, chunk: Chunk) -> list[SampledRow]:
         """The three rows of the central link."""
@@ -102,9 +103,8 @@ def _middle(points: list[Point]) -> Point:
     )
 
 
-def _size(scene: Scene, frame: CentralFrame) -> float:
+def _size(scene: Scene, frame: CentralFrame, points: Sequence[Point]) -> float:
     """A length of the central link, or of the longest where it has none [m]."""
-    longest = max(
-        (span(scene.links[b].points) for b in frame.bodies if b in scene.links), default=0.0
-    )
-    return longest or scene.longest_m
+    spans = [span(scene.links[body].points) for body in frame.bodies if body in scene.links]
+    spans += [2.0 * math.dist(frame.origin, point) for point in points]
+    return max(spans, default=0.0) or scene.longest_m

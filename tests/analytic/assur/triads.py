@@ -46,7 +46,9 @@ def triad_scene(kinds: Sequence[str], seed: int, crank_m: float = 0.04) -> Scene
             plate[q] = _pair(local)
             along = draw.uniform(-3.0, 3.0)
             through = at - 0.3 * turned(np.array([1.0, 0.0]), along)
-            sliders[f"S{i}"] = Slider(f"S{i}", q, "ground", _pair(through), along, mass_kg=0.3, inertia_kg_m2=0.001)
+            sliders[f"S{i}"] = Slider(
+                f"S{i}", q, "ground", _pair(through), along, mass_kg=0.3, inertia_kg_m2=0.001
+            )
         elif kind == "RP":
             way = turned(far - place, -phi)
             along = math.atan2(way[1] - local[1], way[0] - local[0])
@@ -54,12 +56,30 @@ def triad_scene(kinds: Sequence[str], seed: int, crank_m: float = 0.04) -> Scene
                 f"S{i}", outer, "plate", _pair(local), along, mass_kg=0.3, inertia_kg_m2=0.001
             )
         else:
-            links[f"leg{i}"] = Link(f"leg{i}", {f"P{i}": (0.0, 0.0), f"R{i}": (0.2, 0.1)}, 0.3, (0.1, 0.0), 0.01)
+            links[f"leg{i}"] = Link(
+                f"leg{i}", {f"P{i}": (0.0, 0.0), f"R{i}": (0.2, 0.1)}, 0.3, (0.1, 0.0), 0.01
+            )
             plate[f"T{i}"] = _pair(local)
             leg_angle, slope = draw.uniform(-3.0, 3.0), draw.uniform(-3.0, 3.0)
-            sliders[f"O{i}"] = Slider(f"O{i}", f"P{i}", "ground", _pair(at + 0.1), slope, link=f"leg{i}", angle_rad=leg_angle - slope)
+            sliders[f"O{i}"] = Slider(
+                f"O{i}",
+                f"P{i}",
+                "ground",
+                _pair(at + 0.1),
+                slope,
+                link=f"leg{i}",
+                angle_rad=leg_angle - slope,
+            )
             inner = slope + 1.2 - leg_angle
-            sliders[f"I{i}"] = Slider(f"I{i}", f"T{i}", f"leg{i}", (0.05, 0.02), inner, link="plate", angle_rad=phi - leg_angle - inner)
+            sliders[f"I{i}"] = Slider(
+                f"I{i}",
+                f"T{i}",
+                f"leg{i}",
+                (0.05, 0.02),
+                inner,
+                link="plate",
+                angle_rad=phi - leg_angle - inner,
+            )
     if len(plate) < 2:
         plate["E"] = (0.3, 0.1)
     links["plate"] = Link("plate", plate, 0.8, (0.05, 0.02), 0.02)
