@@ -186,7 +186,21 @@ class Track:
             )
             for row in (1, 2, 3)
         )
+        for end in self.ends:
+            if end is not None and end.kind == "run to infinity":
+                x, y = self._far(end, theta, x, y)
         return Vec(x, y), Vec(np.cos(angle), np.sin(angle))
+
+    def _far(self, end: End, theta: Array, x: Array, y: Array) -> tuple[Array, Array]:
+        """The place between the last pose and infinity: its distance as the inverse of the way."""
+        nodes = self._nodes
+        k = 0 if end is self.low else -1
+        left, way = end.theta - theta, end.theta - nodes[0, k]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            growth = np.where((left / way > 0.0) & (left / way < 1.0), way / left, 1.0)
+        return np.asarray(x + (growth - 1.0) * (nodes[1, k] - self.start.place[0])), np.asarray(
+            y + (growth - 1.0) * (nodes[2, k] - self.start.place[1])
+        )
 
 
 def _hermite(u: Array, width: Array, a: Array, b: Array, da: Array, db: Array) -> Array:
