@@ -153,7 +153,7 @@ def arcs(signed: SignedScene) -> list[Arc]:
 
 
 def _closing(signed: SignedScene, arc: Arc) -> Iterator[Arc]:
-    """The parts of an arc over which the next dyad closes: its shortage knows no sign of its own."""
+    """The parts of an arc over which the next dyad closes: whatever its own sign."""
     signs = (*arc.signs, 1)
     key = signed.dyads[len(arc.signs)]
     theta = _with_valleys(signed, signs, arc.angles(LOOKS + 1))

@@ -14,6 +14,7 @@ linkages, Journal of Mechanical Design 115 (1993), pages 223 to 230, whose words
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -89,8 +90,8 @@ def _in_order(arc: Arc, positions: Sequence[Position]) -> bool:
     low = arc.range_rad[0]
     angles = [(position.driver_rad - low + SAME) % math.tau for position in positions]
     if arc.low is None:
-        ahead = [(b - a) % math.tau for a, b in zip(angles, angles[1:], strict=False)]
-        behind = [(a - b) % math.tau for a, b in zip(angles, angles[1:], strict=False)]
+        ahead = [(b - a) % math.tau for a, b in itertools.pairwise(angles)]
+        behind = [(a - b) % math.tau for a, b in itertools.pairwise(angles)]
         return min(sum(ahead), sum(behind)) < math.tau
     return angles in (sorted(angles), sorted(angles, reverse=True))
 
@@ -145,11 +146,7 @@ def _join_change_points(signed: SignedScene, every: list[Arc], joined: list[int]
             flipped = _flipped(signed, arc.signs, key)
             for angle in passage.angles.tolist():
                 for other, candidate in enumerate(every):
-                    if (
-                        candidate.signs == flipped
-                        and candidate.holds(angle)
-                        and arc.holds(angle)
-                    ):
+                    if candidate.signs == flipped and candidate.holds(angle) and arc.holds(angle):
                         _join(joined, index, other)
                         meets = True
     return meets

@@ -9,6 +9,7 @@ Source: R. L. Norton, Design of Machinery, section 4.10 (limit positions, toggle
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -49,9 +50,11 @@ def dead_points(circuits: Circuits, rotations: Sequence[Rotation]) -> list[DeadP
         if one.against != GROUND or one.word != "swings" or one.link == scene.driver.link:
             continue
         if grounded:
-            for at in (one.low_at_rad, one.high_at_rad):
-                if all(abs(at - limit) > IN_LINE for limit in limits):
-                    found.append(DeadPoint(one.link, at, _in_line(circuits, at)))
+            found += [
+                DeadPoint(one.link, at, _in_line(circuits, at))
+                for at in (one.low_at_rad, one.high_at_rad)
+                if all(abs(math.remainder(at - limit, math.tau)) > IN_LINE for limit in limits)
+            ]
     return found
 
 

@@ -135,7 +135,7 @@ class _Follower:
         gains = prepared(self.circuits.signed.scene).turns.gains
         cycle = self.period / math.tau
         driver = self.circuits.signed.scene.driver.link
-        own = {**{GROUND: 0.0, driver: cycle}, **gains}
+        own = {GROUND: 0.0, driver: cycle, **gains}
         if link not in own or against not in own:
             return seen
         return round(own[link] - own[against])

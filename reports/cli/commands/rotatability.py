@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from rich.console import Console
 
@@ -131,20 +132,55 @@ def _extreme(name: str, extreme: Extreme | None) -> Row:
     return {name: math.degrees(extreme.value), name.replace("_deg", "_at_deg"): at}
 
 
-def _show(console: Console, document: Mapping[str, object]) -> None:
+TABLES = {
+    "rotations": "link against does turns from_deg to_deg swing_deg",
+    "branches": "circuit signs driver_from_deg driver_to_deg limits scene",
+    "dead_points": "input driver_deg where",
+    "transmission": "dyad kind smallest_deg smallest_at_deg largest_deg largest_at_deg "
+    "pressure_deg least_sine least_sine_at_deg",
+}
+"""The tables in their order, and their columns."""
+
+
+def _show(console: Console, document: Mapping[str, Any]) -> None:
     """The same in words and tables."""
 
     def say(text: str) -> None:
         console.print(text, highlight=False, markup=False)
 
+    kind = "no four-bar or slider-crank driven at its crank, so of no Grashof type"
     if document["type"] is not None:
-        say(f"{document['scene']}: {document['type']}, margin {document['margin_m']:.6g} m")
-    else:
-        say(f"{document['scene']}: no four-bar or slider-crank, so of no Grashof type")
-    _table(console, document["rotations"], "link against does turns from_deg to_deg swing_deg")
-    dyads = document["dyads"]
-    assert isinstance(dyads, list)
-    meet = "; circuits that meet in change points count as one" if document["change_points"] else ""
-    say(f"\nsigns of {', '.join(dyads) or 'no dyad'}; the scene is on circuit ", )
-    _table(console, document["branches"], "circuit signs driver_from_deg driver_to_deg limits scene")
-    say(meet) if meet else None
+        kind = f"{document['type']}, margin {document['margin_m']:.6g} m"
+    say(f"{document['scene']}: {kind}")
+    for name, columns in TABLES.items():
+        if name == "branches":
+            meet = ", those that meet in change points as one" if document["change_points"] else ""
+            say(f"\ncircuits{meet}; signs of {', '.join(document['dyads']) or 'no dyad'}")
+        elif name != "rotations":
+            say(f"\n{name.replace('_', ' ')}" + ("" if document[name] else ": none"))
+        if document[name]:
+            _table(console, document[name], columns.split())
+    say(f"\nindex of merit {document['merit']:.6g} at {document['merit_at_deg']:.6g} deg")
+    if "defect" in document:
+        found = document["defect"]
+        told = "led through by the driver" if found == "none" else f"a {found} defect"
+        say(f"positions: {told}")
+
+
+def _table(console: Console, rows: Sequence[Row], columns: Sequence[str]) -> None:
+    table = plain_table(gap=2)
+    for column in columns:
+        table.add_column(column.replace("_", " "), overflow="fold")
+    for row in rows:
+        table.add_row(*(_cell(row.get(column)) for column in columns))
+    console.print(table, highlight=False)
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else ""
+    if isinstance(value, list):
+        return ", ".join(dict.fromkeys(value))
+    if isinstance(value, float):
+        return f"{0.0 if abs(value) < 1e-6 else value:.6g}"
+    return "" if value is None else str(value)

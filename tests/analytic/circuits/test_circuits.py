@@ -1,0 +1,105 @@
+"""Circuits and branches: four-bars by Grashof, six-bars by a count on a grid of configurations."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.circuits.circuits import Position, circuits_of
+from analytic.kinematics import reach
+from analytic.mechanism.fourbar import FourBar
+from models.errors import CrankcheckError
+from models.files import load_scene
+from models.scene import Scene
+from tests.analytic.test_reach import fourbar
+
+
+def test_a_four_bar_has_two_circuits_if_it_is_grashof_and_else_one() -> None:
+    rng, seen = np.random.default_rng(3), [0, 0]
+    for _ in range(150):
+        lengths = [float(x) for x in rng.uniform(0.2, 1.0, 4)]
+        if 2.0 * max(lengths) > sum(lengths):
+            continue
+        bar = FourBar(*lengths)
+        if abs(bar.excess_m) < 1e-3:
+            continue
+        found = circuits_of(fourbar(*lengths)).circuits
+        grashof = bar.excess_m < 0.0
+        assert len(found) == (2 if grashof else 1), lengths
+        assert all((arc.low is None) == bar.driver_turns_fully for c in found for arc in c)
+        seen[grashof] += 1
+    assert min(seen) > 20
+
+
+def component_count(scene: Scene, dyads: tuple[str, ...], looks: int) -> int:
+    """Circuits by another way: all configurations at ``looks`` angles, each joined to those at the
+    next angle that are near, and where two end, to each other."""
+    ends: list[list[tuple[int, ...]]] = []
+    signs = list(itertools.product((1, -1), repeat=len(dyads)))
+    spans = {s: reach(replace(scene, branch=dict(zip(dyads, s, strict=True)))) for s in signs}
+    theta = np.linspace(-math.pi, math.pi, looks, endpoint=False) + 1e-3
+    for at in theta:
+        ends.append(
+            [
+                s
+                for s in signs
+                if any(
+                    low <= at + k * math.tau <= high for low, high in spans[s] for k in (-1, 0, 1)
+                )
+            ]
+        )
+    joined: dict[tuple[int, tuple[int, ...]], tuple[int, tuple[int, ...]]] = {}
+
+    def root(node: tuple[int, tuple[int, ...]]) -> tuple[int, tuple[int, ...]]:
+        while joined.setdefault(node, node) != node:
+            node = joined[node]
+        return node
+
+    for k in range(looks):
+        for there, side in ((ends[(k + 1) % looks], 1), (ends[k - 1], -1)):
+            lost = [s for s in ends[k] if s not in there]
+            for s in ends[k]:
+                if s in there:
+                    joined[root((k, s))] = root(((k + side) % looks, s))
+            for one, other in itertools.combinations(lost, 2):
+                if sum(a != b for a, b in zip(one, other, strict=True)) == 1:
+                    joined[root((k, one))] = root((k, other))
+    return len({root((k, s)) for k in range(looks) for s in ends[k]})
+
+
+@pytest.mark.parametrize("rod", [0.3, 0.14, 0.12, 0.45, 0.5])
+def test_circuits_of_a_stephenson_six_bar_are_those_counted_on_a_grid(rod: float) -> None:
+    scene = load_scene("sixbar-stephenson")
+    points = {"E": (0.0, 0.0), "F": (rod, 0.0)}
+    links = {**scene.links, "rod": replace(scene.links["rod"], points=points)}
+    changed = replace(scene, links=links)
+    found = circuits_of(changed)
+    assert len(found.circuits) == component_count(changed, found.signed.dyads, 720)
+
+
+def test_defects_are_told_apart() -> None:
+    circuits = circuits_of(load_scene("fourbar-double-rocker"))
+    number, own = circuits.own
+    low, high = own.range_rad
+    first, last = Position(low + 0.1, own.signs), Position(high - 0.1, own.signs)
+    middle = Position(0.5 * (low + high), own.signs)
+    assert circuits.defect([first, middle, last]) == "none"
+    assert circuits.defect([last, middle, first]) == "none"
+    assert circuits.defect([first, last, middle]) == "order"
+    back = next(arc for arc in circuits.circuits[number] if arc is not own)
+    assert circuits.defect([first, Position(middle.driver_rad, back.signs)]) == "branch"
+    other = circuits.circuits[1 - number][0]
+    there = Position(sum(other.range_rad) / 2, other.signs)
+    assert circuits.defect([first, there]) == "circuit"
+    with pytest.raises(CrankcheckError, match="can not be assembled; with these signs it can at"):
+        circuits.place(Position(math.pi, own.signs))
+
+
+def test_circuits_that_meet_in_change_points_are_one() -> None:
+    found = circuits_of(fourbar(0.1, 0.3, 0.1, 0.3))
+    assert found.change_points
+    assert len(found.circuits) == 1
