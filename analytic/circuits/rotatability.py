@@ -1,4 +1,4 @@
-"""Which links turn fully, against the ground and against their neighbours, and how far others swing.
+"""Which links turn fully against the ground and their neighbours, and how far others swing.
 
 Over the branch that the mechanism is on. Where the driver turns fully whole turns are those counted
 with certainty (`analytic.turns.count`); else a link goes to and fro with the driver, between its

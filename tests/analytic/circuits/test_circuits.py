@@ -35,23 +35,19 @@ def test_a_four_bar_has_two_circuits_if_it_is_grashof_and_else_one() -> None:
     assert min(seen) > 20
 
 
+def closes(spans: list[tuple[float, float]], theta: float) -> bool:
+    """Whether a driver angle is in one of the ranges, whole turns apart."""
+    turns = (theta - math.tau, theta, theta + math.tau)
+    return any(low <= at <= high for low, high in spans for at in turns)
+
+
 def component_count(scene: Scene, dyads: tuple[str, ...], looks: int) -> int:
     """Circuits by another way: all configurations at ``looks`` angles, each joined to those at the
     next angle that are near, and where two end, to each other."""
-    ends: list[list[tuple[int, ...]]] = []
     signs = list(itertools.product((1, -1), repeat=len(dyads)))
     spans = {s: reach(replace(scene, branch=dict(zip(dyads, s, strict=True)))) for s in signs}
     theta = np.linspace(-math.pi, math.pi, looks, endpoint=False) + 1e-3
-    for at in theta:
-        ends.append(
-            [
-                s
-                for s in signs
-                if any(
-                    low <= at + k * math.tau <= high for low, high in spans[s] for k in (-1, 0, 1)
-                )
-            ]
-        )
+    ends = [[s for s in signs if closes(spans[s], float(at))] for at in theta]
     joined: dict[tuple[int, tuple[int, ...]], tuple[int, tuple[int, ...]]] = {}
 
     def root(node: tuple[int, tuple[int, ...]]) -> tuple[int, tuple[int, ...]]:
