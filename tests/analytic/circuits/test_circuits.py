@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from analytic.circuits.circuits import Position, circuits_of
-from analytic.kinematics import reach
+from analytic.kinematics import reach, solve_driven
 from analytic.mechanism.fourbar import FourBar
+from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.scene import Scene
@@ -41,6 +42,14 @@ def closes(spans: list[tuple[float, float]], theta: float) -> bool:
     return any(low <= at <= high for low, high in spans for at in turns)
 
 
+def pose(scene: Scene, dyads: tuple[str, ...], signs: tuple[int, ...], theta: float) -> Array:
+    """Where the inner pins of the dyads are."""
+    one = np.array([theta])
+    branch = dict(zip(dyads, signs, strict=True))
+    motion = solve_driven(replace(scene, branch=branch), one, one, one, bound=False)
+    return np.concatenate([motion.points[key].position[0] for key in dyads])
+
+
 def component_count(scene: Scene, dyads: tuple[str, ...], looks: int) -> int:
     """Circuits by another way: all configurations at ``looks`` angles, each joined to those at the
     next angle that are near, and where two end, to each other."""
@@ -61,9 +70,11 @@ def component_count(scene: Scene, dyads: tuple[str, ...], looks: int) -> int:
             for s in ends[k]:
                 if s in there:
                     joined[root((k, s))] = root(((k + side) % looks, s))
-            for one, other in itertools.combinations(lost, 2):
-                if sum(a != b for a, b in zip(one, other, strict=True)) == 1:
-                    joined[root((k, one))] = root((k, other))
+            for one in lost if len(lost) > 1 else ():
+                place = pose(scene, dyads, one, float(theta[k]))
+                rest = [s for s in lost if s != one]
+                apart = [np.abs(place - pose(scene, dyads, s, float(theta[k]))).max() for s in rest]
+                joined[root((k, one))] = root((k, rest[int(np.argmin(apart))]))
     return len({root((k, s)) for k in range(looks) for s in ends[k]})
 
 
