@@ -44,7 +44,7 @@ FLOORS: Mapping[str, str] = {
     "analytic": """
         elastic drawings
         free regulation
-        mechanism forces
+        circuits mechanism forces
         nearness kinematics
         prepared
         assur
