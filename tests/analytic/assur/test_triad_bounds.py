@@ -10,6 +10,7 @@ import pytest
 
 from analytic.assur.group_steps import prepare
 from analytic.assur.step import AssurStep
+from analytic.check.moved_scene import moved
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.errors import ReachError
@@ -72,3 +73,9 @@ def test_bounds_are_infinite_beside_a_limit_position_and_never_nan() -> None:
     platform = bound.links["platform"]
     assert np.isfinite(platform.alpha[:2]).all()
     assert platform.omega[2] > 1e3 * platform.omega[1] > 1e3 * platform.omega[0]
+
+
+@pytest.mark.parametrize("kinds", [("RR", "RR", "RR"), ("PR", "RP", "PP")], ids="-".join)
+def test_error_stays_below_the_bound_a_million_lengths_away(kinds: tuple[str, str, str]) -> None:
+    scene = moved(as_drawn(kinds, 1), (1e6, -7e5))
+    assert shares(scene, np.array([0.0, 3e-3])).max() <= 1.0
