@@ -19,7 +19,7 @@ from reports.cli import (
 )
 
 # isort: split
-from reports.cli import recipes
+from reports.cli import recipes, structure_theory
 from reports.cli.application import app, guarded, main
 
 __all__ = [
@@ -36,6 +36,7 @@ __all__ = [
     "recipes",
     "regulating",
     "showing",
+    "structure_theory",
     "structures",
     "vibrating",
 ]
