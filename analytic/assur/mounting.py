@@ -96,8 +96,8 @@ class Mounting:
         if leg.kind != "RR":
             raise StructureError(
                 f"{scene.name}: the driver is {scene.driver.joint}, in a leg of the class III "
-                f"group about {self.frame.body} that slides ({leg.kind}), which has no solution here; "
-                "drive another joint, or a leg with pins at both ends"
+                f"group about {self.frame.body} that slides ({leg.kind}), which has no solution "
+                "here; drive another joint, or a leg with pins at both ends"
             )
         own = CentralFrame(scene, compound.base, (0.0, 0.0), compound)
         outer, inner = leg.outer[1], leg.inner[1]
