@@ -9,10 +9,17 @@ from reports.cli import changes, measuring
 from reports.cli import judging, showing  # --help lists commands in the order of these lines
 
 # isort: split
-from reports.cli import drawing_polygons, drawing_sheets, graph_sheets, regulating, vibrating
+from reports.cli import (
+    drawing_polygons,
+    drawing_sheets,
+    graph_sheets,
+    regulating,
+    structures,
+    vibrating,
+)
 
 # isort: split
-from reports.cli import recipes
+from reports.cli import recipes, structure_theory
 from reports.cli.application import app, guarded, main
 
 __all__ = [
@@ -29,5 +36,7 @@ __all__ = [
     "recipes",
     "regulating",
     "showing",
+    "structure_theory",
+    "structures",
     "vibrating",
 ]

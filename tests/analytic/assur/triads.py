@@ -1,4 +1,4 @@
-"""Scenes with a triad: a crank, a plate on three legs of given kinds, in a pose that it can have."""
+"""Scenes with a triad: a crank, and a plate on three legs of given kinds."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from models.array import Array
-from models.scene import Driver, Link, Point, Scene, Slider
 from models.laws import ConstantSpeed
+from models.scene import Driver, Link, Point, Scene, Slider
 
 KINDS = ("RR", "PR", "RP", "PP")
 
@@ -20,9 +20,10 @@ def turned(vector: Array, angle: float) -> Array:
 
 
 def triad_scene(kinds: Sequence[str], seed: int, crank_m: float = 0.04) -> Scene:
-    """The crank carries the outer pin of the first leg that has one, or else of a rod to ..."""
+    """A scene that is assembled at its start: the crank carries the outer pin of the first leg that
+    has one."""
     draw = np.random.default_rng(seed)
-    place, phi = draw.uniform(-0.3, 0.3, 2) + (1.0, 0.5), draw.uniform(-3.0, 3.0)
+    place, phi = draw.uniform(-0.3, 0.3, 2) + np.array([1.0, 0.5]), draw.uniform(-3.0, 3.0)
     start = draw.uniform(-3.0, 3.0)
     ground: dict[str, Point] = {"A": (0.0, 0.0)}
     links: dict[str, Link] = {}
@@ -34,7 +35,7 @@ def triad_scene(kinds: Sequence[str], seed: int, crank_m: float = 0.04) -> Scene
         angle = math.tau * i / 3.0 + draw.uniform(-0.5, 0.5)
         local = turned(np.array([draw.uniform(0.2, 0.4), 0.0]), angle)
         at = place + turned(local, phi)
-        q, outer = f"Q{i}", (f"B" if i == driven else f"G{i}")
+        q, outer = f"Q{i}", ("B" if i == driven else f"G{i}")
         far = crank_end if i == driven else at + draw.uniform(0.5, 0.9) * _unit(draw)
         if kind[0] == "R" and i != driven:
             ground[outer] = _pair(far)
