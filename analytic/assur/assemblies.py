@@ -64,8 +64,10 @@ class _Solution:
         return all(one.overlaps(two) for one, two in pairs)
 
     def is_sharp(self, size: float) -> bool:
-        """Whether it is known to a small part of the lengths of the rows."""
-        return all(one.is_finite() and float(one.rad()) <= SHARP * size for one in self.place)
+        """Whether the place is known to a small part of itself, or is 0 beside a length."""
+        wide = max(float(one.rad()) for one in self.place)
+        far = max(abs(float(one.mid())) for one in self.place)
+        return wide <= max(SHARP * far, SHARP**3 * size)
 
 
 class _BluntError(ArithmeticError):
@@ -184,5 +186,5 @@ def _assembly(one: _Solution, turn: Turn, size: float) -> Assembly:
 
 
 def _size(rows: LegRows) -> float:
-    """The largest length in the rows [m]."""
-    return max(abs(length) for row in rows for length in row.lengths)
+    """The smallest length in the rows but 0 [m]."""
+    return min((abs(length) for row in rows for length in row.lengths if length), default=1.0)

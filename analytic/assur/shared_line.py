@@ -25,7 +25,9 @@ class ContinuumError(CrankcheckError):
     """The rows leave the link a motion of its own: it has assemblies without end."""
 
     def __init__(self) -> None:
-        super().__init__("the central link can move while all that it hangs on stands still")
+        super().__init__(
+            "the central link can move while all that it hangs on stands still; change a length"
+        )
 
 
 @dataclass(frozen=True)

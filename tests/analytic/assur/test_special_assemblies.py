@@ -93,6 +93,29 @@ def test_parallel_guides_hold_the_angle(order: tuple[int, int, int]) -> None:
         assert counted(*rows) == expected
 
 
+def test_a_limit_between_parallel_guides_counts_twice_at_each_place() -> None:
+    """The guides are as far apart as the two pins: the link stands across."""
+    lines = LineRow((0, 0), UP, (0, 0)), LineRow((1, 0), UP, (0, 1))
+    half = math.pi / 2
+    assert counted(*lines, LineRow((0, 0), ALONG, (2, 0))) == [(half, 2.0, 0.0, 2)]
+    assert counted(*lines, CircleRow((0, 0), (0, 3), 5)) == [
+        *((half, -4.0, 0.0, 2), (half, 4.0, 0.0, 2)),
+    ]
+    assert counted(*lines, CircleRow((0, 0), (0, 5), 5)) == [(half, 0.0, 0.0, 4)]
+
+
+def test_an_angle_at_which_all_lines_are_parallel_and_apart_is_none() -> None:
+    rows = (
+        LineRow((0, 0), UP, (0, 0)),
+        ThroughRow(UP, (0, 0), (2, 1)),
+        ThroughRow(UP, (0, 1), (5, 3)),
+    )
+    # 2 cos phi - 3 sin phi = 1, by the difference of the last two
+    middle, off = math.atan2(-3, 2), math.acos(1 / math.sqrt(13))
+    angles = [one.angle_rad for one in assemblies(rows)]
+    assert angles == pytest.approx([middle - off, middle + off], rel=1e-15)
+
+
 def test_three_parallel_guides_leave_the_link_loose_or_hold_it_nowhere() -> None:
     guides = LineRow((0, 0), UP, (0, 0)), LineRow((1, 0), UP, (0, 0))
     assert counted(*guides, LineRow((0, 1), UP, (0, 5))) == []
@@ -184,12 +207,12 @@ def moved(rows: LegRows, size: float, by: float) -> LegRows:
     return first, second, third
 
 
-def test_numbers_of_very_different_sizes_take_wider_balls_and_no_less_digits() -> None:
-    rows = circles(
-        [(1e-150, 0), (0, 1e150), (1e-9, 1e9)], [(3, 4), (1e150, 1), (1e9, 7)], [5, 1e150, 1e9]
-    )
-    for one in assemblies(rows):
-        assert all(map(math.isfinite, one.place))
+def test_numbers_of_very_different_sizes_take_wider_balls_and_lose_no_digits() -> None:
+    a = [(1e-150, 0.0), (0.0, 1e150), (1e-9, 1e9)]
+    every = assemblies(circles(a, [(3, 4), (1e150, 1), (1e9, 7)], [5, 1e150, 1e9]))
+    assert len(every) == 4
+    for one in every:
+        assert math.dist(one.place, (3, 4)) == pytest.approx(5.0, rel=1e-15)
 
 
 def test_two_legs_of_an_angle_are_refused() -> None:
