@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from analytic.assur.central_frame import CentralFrame
+from analytic.assur.driven_leg import DrivenBarLeg
 from analytic.assur.legs import (
     BarLeg,
     DoublySlidingLeg,
@@ -20,7 +21,7 @@ from analytic.assur.sampled_rows import SampledRow
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import BodyKinematics
 from analytic.dyads.riding import Placed
-from analytic.structure.compound import as_triad
+from analytic.structure.compound import Compound, as_triad
 from analytic.structure.groups import Group, JointKey, Triad
 from analytic.structure.groups import Leg as LegOfGroup
 from models.errors import StructureError
@@ -35,10 +36,7 @@ class Mounting:
         scene, compound = placed.scene, placed.structure.compound
         own = compound if compound is not None and compound.name in group.bodies else None
         if own is not None and isinstance(group, Triad) and group.central != own.name:
-            raise StructureError(
-                f"{scene.name}: the driver is {scene.driver.joint}, in a leg of the class III "
-                f"group about {group.central}, which has no solution here; drive another joint"
-            )
+            own = None  # a leg of it is driven
         central, held, joint = as_triad(group, own)
         body = central if own is None else own.base
         self.frame, self.size_m = CentralFrame(scene, body, (0.0, 0.0), own), scene.longest_m
@@ -80,6 +78,9 @@ class Mounting:
 
     def _leg(self, leg: LegOfGroup) -> Leg:
         part, outer, inner = self._part(leg.inner), leg.outer[1], leg.inner[1]
+        compound = self.placed.structure.compound
+        if compound is not None and leg.body == compound.name:
+            return self._driven(leg, part, compound)
         given = (self.frame, self.placed, part, leg.body, outer, inner)
         if leg.kind == "RR":
             return BarLeg(*given)
@@ -88,6 +89,19 @@ class Mounting:
         if leg.kind == "RP":
             return GuidedLeg(*given)
         return DoublySlidingLeg(*given, self.size_m)
+
+    def _driven(self, leg: LegOfGroup, part: str, compound: Compound) -> Leg:
+        """A leg that the driver moves. Raises StructureError where it slides."""
+        scene = self.placed.scene
+        if leg.kind != "RR":
+            raise StructureError(
+                f"{scene.name}: the driver is {scene.driver.joint}, in a leg of the class III "
+                f"group about {self.frame.body} that slides ({leg.kind}), which has no solution here; "
+                "drive another joint, or a leg with pins at both ends"
+            )
+        own = CentralFrame(scene, compound.base, (0.0, 0.0), compound)
+        outer, inner = leg.outer[1], leg.inner[1]
+        return DrivenBarLeg(self.frame, self.placed, part, own, outer, inner)
 
     def _joint(self, joint: JointKey) -> Leg:
         part = self._part(joint)
