@@ -166,6 +166,8 @@ def test_points_that_coincide_or_lie_on_a_line_are_no_special_case(shared: str) 
         own, other = assemblies(drawn_so), real(solutions(drawn_so, 6))
         assert len(own) == len(other) > 0
         assert [one.angle_rad for one in own] == pytest.approx(list(other[:, 0]), abs=1e-7)
+        if "both" in shared:  # Gosselin and Merlet, 1993
+            assert len(own) <= 4
 
 
 @pytest.mark.parametrize("kinds", MOST, ids="-".join)
