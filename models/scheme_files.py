@@ -23,6 +23,11 @@ def shipped_schemes() -> list[str]:
     return list(shipped_in(SCHEMES))
 
 
+def find_scheme(name_or_path: str) -> Path:
+    """The file of a scheme. Raises CrankcheckError where there is none."""
+    return find_table(name_or_path, SCHEMES, "scheme", "crankcheck mobility")
+
+
 def load_scheme(name_or_path: str) -> Scheme:
     """A shipped scheme by name, or one of a file.
 
@@ -33,7 +38,7 @@ def load_scheme(name_or_path: str) -> Scheme:
     SceneError
         A file with faults, all that were found in one message.
     """
-    path = find_table(name_or_path, SCHEMES, "scheme", "crankcheck mobility")
+    path = find_scheme(name_or_path)
     table = read_table(path, SchemeTable)
     faults: list[str] = []
     for name, joint in table.joints.items():

@@ -62,6 +62,8 @@ class JointTable(Table):
             raise ValueError(
                 f"{strange[0]}: not of a {self.kind} joint, which is given by {', '.join(needs)}"
             )
+        if self.pressure_deg is not None and not 5.0 <= self.pressure_deg <= 45.0:
+            raise ValueError(f"pressure_deg: found {self.pressure_deg:g}; use 5 to 45 (mostly 20)")
         self._directions_have_lengths()
         self._is_a_higher_pair()
         return self

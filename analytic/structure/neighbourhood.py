@@ -43,6 +43,8 @@ class Neighbourhood:
     finite: int
     others: tuple[int, ...]
     """The mobility on other branches that begin at the drawn position."""
+    margin: float
+    """The least of what holds there, as a share of the most (`Loops.margin`)."""
 
     @property
     def is_singular(self) -> bool:
@@ -63,7 +65,7 @@ def neighbourhood(loops: Loops) -> Neighbourhood:
             break  # without loops all positions are alike
     finite, at, moves = max(found, key=lambda each: each[0])
     others = tuple(sorted({each[0] for each in found} - {finite}))
-    return Neighbourhood(here.shape[1], at, moves, finite, others)
+    return Neighbourhood(here.shape[1], at, moves, finite, others, loops.margin(at))
 
 
 def settled(loops: Loops, q: Array) -> Array | None:

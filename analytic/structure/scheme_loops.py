@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from analytic.structure.joint_chains import Element, chain_of
-from analytic.structure.screws import carried, displaced, gap, kernel
+from analytic.structure.screws import DEPENDENT, carried, displaced, gap, kernel
 from models.array import Array
 from models.errors import StructureError
 from models.scene import GROUND
@@ -80,6 +80,13 @@ class Loops:
     def moves(self, q: Array) -> Array:
         """The motions of the joints' freedoms that keep all loops closed at ``q``: (f, d)."""
         return kernel(self.closure(q)[1])
+
+    def margin(self, q: Array) -> float:
+        """The least of what holds: the smallest singular value of the closure that is not 0, over
+        the largest."""
+        values = np.linalg.svd(self.closure(q)[1])[1] if self.closing else np.ones(1)
+        kept = values[values > DEPENDENT * values[0]]
+        return float(kept[-1] / kept[0]) if len(kept) else 1.0
 
     def joint_twists(self, q: Array) -> dict[str, Array]:
         """What each joint leaves at ``q``, as twists (6, f of the joint)."""

@@ -17,6 +17,9 @@ from analytic.structure.passive import Passive, passive_constraints
 from analytic.structure.scheme_loops import Loops
 from models.scheme import Scheme
 
+NEARLY = 1e-3
+"""Of what holds most: a file's numbers are often given to three or four digits."""
+
 
 @dataclass(frozen=True)
 class SchemeMobility:
@@ -46,6 +49,11 @@ class SchemeMobility:
     def yielding(self) -> int:
         """Motions of first order that give back at once: the scheme shakes, and does not move."""
         return int(self.near.moves.shape[1]) - self.near.finite
+
+    @property
+    def margin_is_small(self) -> bool:
+        """Whether a motion is held by so little that rounded numbers of a file may be the cause."""
+        return self.near.margin < NEARLY
 
     @property
     def idle_count(self) -> int:

@@ -12,7 +12,7 @@ from reports.cli import judging, showing  # --help lists commands in the order o
 from reports.cli import drawing_polygons, drawing_sheets, graph_sheets, regulating, vibrating
 
 # isort: split
-from reports.cli import recipes
+from reports.cli import recipes, schemes
 from reports.cli.application import app, guarded, main
 
 __all__ = [
@@ -28,6 +28,7 @@ __all__ = [
     "measuring",
     "recipes",
     "regulating",
+    "schemes",
     "showing",
     "vibrating",
 ]
