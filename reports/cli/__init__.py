@@ -19,7 +19,7 @@ from reports.cli import (
 )
 
 # isort: split
-from reports.cli import recipes, structure_theory
+from reports.cli import recipes, schemes
 from reports.cli.application import app, guarded, main
 
 __all__ = [
@@ -35,8 +35,8 @@ __all__ = [
     "measuring",
     "recipes",
     "regulating",
+    "schemes",
     "showing",
-    "structure_theory",
     "structures",
     "vibrating",
 ]

@@ -1,0 +1,109 @@
+"""Screws: the motions that a joint leaves, the loads that a contact takes, and finite motions.
+
+A twist is (omega, v): angular velocity, and velocity of the point of the body that is at the
+origin. A wrench is (m, f): moment about the origin, and force; so that the plain product of the two
+is the power. Both are of shape (6,), in the frame of the ground. Source: J. M. McCarthy and
+G. S. Soh, Geometric Design of Linkages, chapter on spatial kinematics; K. H. Hunt, Kinematic
+Geometry of Mechanisms, chapter 3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from models.array import Array
+
+Vector = Sequence[float] | Array
+DEPENDENT = 1e-8
+"""A singular value smaller than this share of the largest is 0: lengths are of the size of 1."""
+
+
+def rotation(at: Vector, axis: Vector, pitch: float = 0.0) -> Array:
+    """The twist of a turn about an axis, with ``pitch`` displacement for each radian."""
+    direction = np.asarray(axis, dtype=float)
+    return np.concatenate([direction, np.cross(at, direction) + pitch * direction])
+
+
+def translation(axis: Vector) -> Array:
+    """The twist of a displacement along a direction."""
+    return np.concatenate([np.zeros(3), np.asarray(axis, dtype=float)])
+
+
+def force(at: Vector, along: Vector) -> Array:
+    """The wrench of a force on a line."""
+    direction = np.asarray(along, dtype=float)
+    return np.concatenate([np.cross(at, direction), direction])
+
+
+def couple(about: Vector) -> Array:
+    """The wrench of a moment alone."""
+    return np.concatenate([np.asarray(about, dtype=float), np.zeros(3)])
+
+
+def across(axis: Vector) -> tuple[Array, Array]:
+    """Two directions at right angles to one and to each other, along the frame's where they can."""
+    direction = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
+    rest = np.eye(3)[np.argsort(np.abs(direction), kind="stable")[0]]
+    first = rest - (rest @ direction) * direction
+    first /= np.linalg.norm(first)
+    return first, np.cross(direction, first)
+
+
+def cross_matrix(a: Array) -> Array:
+    """The matrix that takes b to a x b."""
+    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+
+
+def displaced(twist: Array, by: float) -> Array:
+    """The finite motion of a twist as a matrix (4, 4): exp of the twist times ``by``."""
+    omega, v = twist[:3] * by, twist[3:] * by
+    angle = float(np.linalg.norm(omega))
+    move = np.eye(4)
+    if angle < 1e-12:
+        move[:3, :3] += cross_matrix(omega)
+        move[:3, 3] = v
+        return move
+    w = cross_matrix(omega)
+    a, b = np.sin(angle) / angle, 2.0 * (np.sin(angle / 2.0) / angle) ** 2
+    move[:3, :3] += a * w + b * w @ w
+    # The integral of the rotation over the way, Rodrigues' series summed.
+    move[:3, 3] = v + b * (w @ v) + (1.0 - a) / angle**2 * (w @ w @ v)
+    return move
+
+
+def carried(move: Array, twist: Array) -> Array:
+    """A twist whose axis is moved along with a body."""
+    turn, place = move[:3, :3], move[:3, 3]
+    omega = turn @ twist[:3]
+    return np.concatenate([omega, turn @ twist[3:] + np.cross(place, omega)])
+
+
+def gap(move: Array) -> Array:
+    """How far a motion is from none, as a twist; its derivative there is that of the motion."""
+    turn = move[:3, :3]
+    skew = (turn - turn.T) / 2.0
+    return np.array([skew[2, 1], skew[0, 2], skew[1, 0], *move[:3, 3]])
+
+
+def rank(rows: Array) -> int:
+    """The number of rows (k, m) that no others give."""
+    return 0 if rows.size == 0 else _rank(np.linalg.svd(rows)[1])
+
+
+def kernel(rows: Array) -> Array:
+    """An orthonormal basis (m, d) of what the rows (k, m) take to 0."""
+    if rows.shape[0] == 0 or rows.size == 0:
+        return np.eye(rows.shape[1])
+    _, values, basis = np.linalg.svd(rows)
+    return np.asarray(basis[_rank(values) :].T)
+
+
+def _rank(values: Array) -> int:
+    return int(np.count_nonzero(values > DEPENDENT * max(1.0, float(values[0]))))
+
+
+def reciprocal(twists: Array) -> Array:
+    """The wrenches (k, 6) that do no work on any of the twists (6, d)."""
+    return kernel(twists.T).T
