@@ -17,7 +17,7 @@ from analytic.mechanism.grashof_of_scene import grashof_of
 from models.errors import CrankcheckError, shown
 from models.files import load_scene
 from models.scene import Scene
-from reports.cli.structure_theory import RotatabilityRequest
+from reports.cli.structures import RotatabilityRequest
 from reports.output.columns import plain_table
 
 Row = Mapping[str, object]
