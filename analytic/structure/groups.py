@@ -197,8 +197,8 @@ def _triads(outer: Mapping[str, list[JointKey]], known: set[str], pairs: Pairs) 
             continue
         legs = []
         beside = pairs.partners(central, known)
-        for body in sorted(beside & outer.keys()) if len(beside) == 3 else ():
-            if len(outer[body]) == 1:
+        for body in outer if len(beside) == 3 else ():
+            if body in beside and len(outer[body]) == 1:
                 inner = pairs.inner(central, body, known)
                 if len(inner) == 1:
                     legs.append(Leg(body, outer[body][0], inner[0]))
