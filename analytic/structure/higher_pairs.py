@@ -2,8 +2,8 @@
 
 Two profiles that touch move against each other, to the second order, as if a link joined their
 centres of curvature; a straight profile has its centre infinitely far, and a block that slides
-along it in its place. Teeth of involutes have their centres where the line of action touches the base
-circles. A link and two joints of class 5 for one of class 4 leave the count as it is:
+along it in its place. Teeth of involutes have their centres where the line of action touches the
+base circles. A link and two joints of class 5 for one of class 4 leave the count as it is:
 3 - 2*2 = -1. Source: I. I. Artobolevskii, Theory of Mechanisms, chapter on structure; problem book
 "Bai tap co hoc may", chapter on schemes.
 """

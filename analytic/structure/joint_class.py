@@ -3,8 +3,8 @@
 A frictionless contact takes forces along its normals: a point one line of force, a straight line
 two of them, a surface as many as its normals span. The class is the number of independent ones, 1
 to 5; what does no work against any of them are the freedoms. Contact over surfaces makes a lower
-pair, along lines or in points a higher one. Source: problem book "Bai tap co hoc may", chapter on joint
-classes; K. H. Hunt, Kinematic Geometry of Mechanisms, chapter 1.
+pair, along lines or in points a higher one. Source: problem book "Bai tap co hoc may", chapter on
+joint classes; K. H. Hunt, Kinematic Geometry of Mechanisms, chapter 1.
 """
 
 from __future__ import annotations

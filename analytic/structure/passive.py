@@ -47,6 +47,10 @@ class Passive:
         parts += [
             f"joint {name} may leave {', '.join(each)} too" for name, each in by_joint.items()
         ]
+        if by_joint:
+            parts[-1] += (
+                " (Q turn, T displacement along an axis of the drawing; one choice of several)"
+            )
         return "; ".join(parts)
 
 

@@ -77,9 +77,11 @@ class Loops:
             slopes.append((there.twists - links[second].twists)[rows])
         return np.concatenate(open_by), np.concatenate(slopes)
 
-    def moves(self, q: Array) -> Array:
-        """The motions of the joints' freedoms that keep all loops closed at ``q``: (f, d)."""
-        return kernel(self.closure(q)[1])
+    def moves(self, q: Array, share: float = DEPENDENT) -> Array:
+        """The motions of the joints' freedoms that keep all loops closed at ``q``: (f, d).
+
+        What opens the loops by less than a ``share`` of what does most is one of them."""
+        return kernel(self.closure(q)[1], share)
 
     def margin(self, q: Array) -> float:
         """The least of what holds: the smallest singular value of the closure that is not 0, over
