@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analytic.structure.drawing_frame import DrawingFrame
 from analytic.structure.higher_pairs import replaced, teeth_centres
 from analytic.structure.neighbourhood import settled
 from analytic.structure.scheme_loops import Loops
@@ -23,11 +24,12 @@ WITH_HIGHER = [
     for name in shipped_schemes()
     if load_scheme(name).space == "planar" and HIGHER & {j.kind for j in load_scheme(name).joints}
 ]
+FRAME = DrawingFrame((0.0, 0.0, 0.0), 0.2)
 
 
 def motions(scheme: Scheme, links: tuple[str, ...]) -> np.ndarray:
     """The motions (d, 3 n) that some links have in the drawn position."""
-    loops = Loops.of(scheme, 0.2)
+    loops = Loops.of(scheme, FRAME)
     q = np.zeros(loops.freedoms)
     placed = loops.placed(q)
     return np.vstack([placed[link].twists[2:5] for link in links] @ loops.moves(q)).T
@@ -50,7 +52,7 @@ def test_a_cam_of_circles_moves_its_follower_as_its_links_do(name: str) -> None:
     scheme = load_scheme(name)
     poses = []
     for each in (scheme, replaced(scheme)):
-        loops = Loops.of(each, 0.2)
+        loops = Loops.of(each, FRAME)
         move = loops.moves(np.zeros(loops.freedoms))[:, 0]
         crank = loops.columns["A"].start
         move *= 0.3 / move[crank]
