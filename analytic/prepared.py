@@ -28,7 +28,7 @@ from analytic.turns.cells import CellSolver
 from analytic.turns.count import Counter, Turns
 from models.array import Array
 from models.errors import ReachError
-from models.motion import Motion
+from models.motion import Crossing, Motion
 from models.scene import KEPT, Same, Scene
 
 CHUNK = 12288
@@ -97,7 +97,15 @@ class Prepared:
             counted = wanted.links and low < high  # at the start itself there is nothing to count
             counter = Counter(self.turns, driven[0]) if counted else None
             result.write(span, self.chunk(*driven), counter)
-        return replace(result.motion(), crossings=passed(self.passages, low, high))
+        return replace(result.motion(), crossings=self._passed(low, high))
+
+    def _passed(self, low: float, high: float) -> tuple[Crossing, ...]:
+        """The change points that a driver passes between two angles [rad]."""
+        crossings = passed(self.passages, low, high)
+        for step in self.steps:
+            if isinstance(step, FollowedStep):
+                crossings += step.passed(self.passages, low, high)
+        return crossings
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
     def chunk(

@@ -14,7 +14,6 @@ from models.driver_tables import (
     ControlledDriver,
     DriverTable,
     FreeDriver,
-    FreeSlide,
     FromRestDriver,
     FromRestSlide,
     OscillatingDriver,
@@ -80,8 +79,6 @@ def _sliding(table: DriverTable) -> Law:
     if isinstance(table, OscillatingSlide):
         phase = within_a_turn(table.phase_deg)
         return Oscillating(table.centre_m, table.amplitude_m, table.frequency_rad_s, phase)
-    if isinstance(table, FreeSlide):
-        return Released(table.start_m, table.speed_m_s, table.duration_s)
     assert isinstance(table, ConstantSlide | FromRestSlide | AcceleratingSlide)
     start, speed, travel = table.start_m, table.speed_m_s, table.travel_m
     if isinstance(table, FromRestSlide):
@@ -138,7 +135,7 @@ def _slide_table(law: Law) -> Mapping[str, object]:
     law = _written(law)
     start = {"start_m": law.start_rad, "speed_m_s": law.speed_rad_s}
     if isinstance(law, Released):
-        return {"law": "free", **start, "duration_s": law.duration_s}
+        raise CrankcheckError("what is let go is told by a link: a scene file has no free slider")
     start |= {"travel_m": law.travel_rad}
     if isinstance(law, FromRest):
         return {"law": "from-rest", **start, "rise_s": law.rise_s}

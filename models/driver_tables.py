@@ -129,12 +129,14 @@ class FreeDriver(TurningDriver):
     start_deg: Degrees = 0.0
     duration_s: Duration = 10.0
 
-
-class FreeSlide(SlidingDriver):
-    law: Literal["free"]
-    speed_m_s: RateNumber = 0.0
-    start_m: Number = 0.0
-    duration_s: Duration = 10.0
+    @model_validator(mode="after")
+    def _is_told_by_a_link(self) -> FreeDriver:
+        if self.pin is not None:
+            raise ValueError(
+                "nothing drives what is let go: name a link at the ground, by whose angle its "
+                'motion is told, link = "crank"'
+            )
+        return self
 
 
 DriverTable = (
@@ -148,7 +150,6 @@ DriverTable = (
     | OscillatingSlide
     | FromRestSlide
     | AcceleratingSlide
-    | FreeSlide
 )
 DRIVERS: dict[str, type[DriverTable]] = {
     "constant": ConstantDriver,
@@ -163,6 +164,5 @@ SLIDES: dict[str, type[DriverTable]] = {
     "oscillating": OscillatingSlide,
     "from-rest": FromRestSlide,
     "accelerating": AcceleratingSlide,
-    "free": FreeSlide,
 }
 """Of drivers that name a slider."""

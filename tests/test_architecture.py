@@ -44,13 +44,15 @@ FLOORS: Mapping[str, str] = {
     "analytic": """
         elastic drawings
         free regulation
-        mechanism forces
+        circuits mechanism forces
         nearness kinematics
         prepared
+        assur
         change_points check reach result
-        turns assur
+        turns
         dyads
         structure multibody
+        chains
     """,
     "sim": f"""
         {" ".join(ENGINES)}

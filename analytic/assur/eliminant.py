@@ -95,7 +95,9 @@ def eliminant(rows: tuple[LegRow, LegRow, LegRow], turn: Turn) -> Eliminant:
     if not all(map(is_zero, (over, *place))):
         over, place = over / shared, (place[0] / shared, place[1] / shared)
     polynomial = last.u[0] * place[0] + last.u[1] * place[1] + last.k * over
-    if last.is_circle:
+    if is_zero(over) and not all(map(is_zero, place)):
+        polynomial = fmpq_poly([1])  # parallel at every angle: they give no place
+    elif last.is_circle:
         polynomial = W * (place[0] ** 2 + place[1] ** 2) + over * polynomial
     else:
         polynomial = _without(polynomial, over)  # there the place is infinitely far away

@@ -26,6 +26,11 @@ class CircleRow:
     pin: Point
     length: float
 
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """What of it is in metres."""
+        return (*self.a, *self.pin, self.length)
+
 
 @dataclass(frozen=True)
 class LineRow:
@@ -34,6 +39,11 @@ class LineRow:
     a: Point
     normal: Point
     through: Point
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """What of it is in metres."""
+        return (*self.a, *self.through)
 
 
 @dataclass(frozen=True)
@@ -45,6 +55,11 @@ class ThroughRow:
     b: Point
     pin: Point
 
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """What of it is in metres."""
+        return (*self.b, *self.pin)
+
 
 @dataclass(frozen=True)
 class AngleRow:
@@ -52,12 +67,11 @@ class AngleRow:
 
     along: Point
 
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """What of it is in metres."""
+        return ()
+
 
 LegRow = CircleRow | LineRow | ThroughRow | AngleRow
 LegRows = tuple[LegRow, LegRow, LegRow]
-
-
-def singular_kinds(angles: int) -> bool:
-    """Whether rows of which so many are of an angle leave the place open at every pose: two say the
-    same thing, or contradict each other."""
-    return angles > 1

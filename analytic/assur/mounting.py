@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 from analytic.assur.central_frame import CentralFrame
+from analytic.assur.driven_leg import DrivenBarLeg
 from analytic.assur.legs import (
     BarLeg,
     DoublySlidingLeg,
@@ -19,7 +21,7 @@ from analytic.assur.sampled_rows import SampledRow
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import BodyKinematics
 from analytic.dyads.riding import Placed
-from analytic.structure.compound import as_triad
+from analytic.structure.compound import Compound, as_triad
 from analytic.structure.groups import Group, JointKey, Triad
 from analytic.structure.groups import Leg as LegOfGroup
 from models.errors import StructureError
@@ -34,24 +36,21 @@ class Mounting:
         scene, compound = placed.scene, placed.structure.compound
         own = compound if compound is not None and compound.name in group.bodies else None
         if own is not None and isinstance(group, Triad) and group.central != own.name:
-            raise StructureError(
-                f"{scene.name}: the driver is {scene.driver.joint}, in a leg of the class III "
-                f"group about {group.central}, which has no solution here; drive another joint"
-            )
+            own = None  # a leg of it is driven
         central, held, joint = as_triad(group, own)
         body = central if own is None else own.base
-        frame = CentralFrame(scene, body, (0.0, 0.0), own)
-        self.size_m = _size(scene, frame)
-        self.frame = frame
-        legs = [self._leg(one) for one in held]
-        if joint is not None:
-            legs.append(self._joint(joint))
-        points = [place for leg in legs for part, place in leg.locals() if part == body]
+        self.frame, self.size_m = CentralFrame(scene, body, (0.0, 0.0), own), scene.longest_m
+        points = [
+            place for leg in self._made(held, joint) for at, place in leg.locals() if at == body
+        ]
         middle = _middle(points) if points else next(iter(scene.links[body].points.values()))
-        self.frame = replace(frame, origin=middle)
-        self.legs: list[Leg] = [self._leg(one) for one in held]
-        if joint is not None:
-            self.legs.append(self._joint(joint))
+        self.frame = replace(self.frame, origin=middle)
+        self.size_m = _size(scene, self.frame, points)
+        self.legs = self._made(held, joint)
+
+    def _made(self, held: Sequence[LegOfGroup], joint: JointKey | None) -> list[Leg]:
+        legs = [self._leg(one) for one in held]
+        return legs if joint is None else [*legs, self._joint(joint)]
 
     def rows(self, chunk: Chunk) -> list[SampledRow]:
         """The three rows of the central link."""
@@ -79,6 +78,9 @@ class Mounting:
 
     def _leg(self, leg: LegOfGroup) -> Leg:
         part, outer, inner = self._part(leg.inner), leg.outer[1], leg.inner[1]
+        compound = self.placed.structure.compound
+        if compound is not None and leg.body == compound.name:
+            return self._driven(leg, part, compound)
         given = (self.frame, self.placed, part, leg.body, outer, inner)
         if leg.kind == "RR":
             return BarLeg(*given)
@@ -87,6 +89,19 @@ class Mounting:
         if leg.kind == "RP":
             return GuidedLeg(*given)
         return DoublySlidingLeg(*given, self.size_m)
+
+    def _driven(self, leg: LegOfGroup, part: str, compound: Compound) -> Leg:
+        """A leg that the driver moves. Raises StructureError where it slides."""
+        scene = self.placed.scene
+        if leg.kind != "RR":
+            raise StructureError(
+                f"{scene.name}: the driver is {scene.driver.joint}, in a leg of the class III "
+                f"group about {self.frame.body} that slides ({leg.kind}), which has no solution "
+                "here; drive another joint, or a leg with pins at both ends"
+            )
+        own = CentralFrame(scene, compound.base, (0.0, 0.0), compound)
+        outer, inner = leg.outer[1], leg.inner[1]
+        return DrivenBarLeg(self.frame, self.placed, part, own, outer, inner)
 
     def _joint(self, joint: JointKey) -> Leg:
         part = self._part(joint)
@@ -102,9 +117,8 @@ def _middle(points: list[Point]) -> Point:
     )
 
 
-def _size(scene: Scene, frame: CentralFrame) -> float:
+def _size(scene: Scene, frame: CentralFrame, points: Sequence[Point]) -> float:
     """A length of the central link, or of the longest where it has none [m]."""
-    longest = max(
-        (span(scene.links[b].points) for b in frame.bodies if b in scene.links), default=0.0
-    )
-    return longest or scene.longest_m
+    spans = [span(scene.links[body].points) for body in frame.bodies if body in scene.links]
+    spans += [2.0 * math.dist(frame.origin, point) for point in points]
+    return max(spans, default=0.0) or scene.longest_m

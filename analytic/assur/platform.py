@@ -134,7 +134,8 @@ def _placed(
         wrenches = Wrenches.of(rows, body, size_m)
         gaps = [row.gap(0, body)[0] for row in rows]
         shift, by = wrenches.solve((gaps[0], gaps[1], gaps[2]))
-        least = np.minimum(1.0, TURN / np.maximum(np.abs(by) + shift.norm() / size_m, 1e-300))
+        length = size_m + place.norm()
+        least = np.minimum(1.0, TURN / np.maximum(np.abs(by) + shift.norm() / length, 1e-300))
         move = shift.norm() + size_m * np.abs(by)
         place, by = place - shift * least, -by * least
         turn = turn.turned(Vec(np.cos(by), np.sin(by)))

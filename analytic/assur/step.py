@@ -4,24 +4,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from analytic.assur.crossing import CrossingPiece
 from analytic.assur.mounting import Mounting
 from analytic.assur.platform import SolvedPlatform, solve_platform
+from analytic.assur.pose import pose_at
 from analytic.assur.sampled_rows import SampledRow
-from analytic.assur.track import Track, start_node
+from analytic.assur.track import Track
+from analytic.change_points.sign import AT_START, HALVES, whole_turns_off
 from analytic.dyads.chunk import Chunk, Passage
 from analytic.dyads.driven import driver_scale, told
 from analytic.dyads.parts import Closure, OpenError
-from analytic.dyads.plane import STEADY, AngleError, Vec
+from analytic.dyads.plane import STEADY, AngleError, BodyKinematics, Vec
 from analytic.dyads.steps import Step
 from analytic.structure.groups import Group
-from models.array import Array
-from models.errors import ReachError, StructureError
+from models.array import Array, Mask
+from models.errors import CrankcheckError, ReachError, StructureError
+from models.motion import Crossing
 from models.scene import Scene
 
+SIDE = HALVES[0]
+"""How near a change point may make itself felt [rad]."""
 TINY = 1e-15
 """By which a driver angle beside an end is on one side of it [rad]."""
 
@@ -53,6 +60,7 @@ class AssurStep:
         self.scene = mounting.placed.scene
         self.before = Before(self.scene, before)
         self._tracks: dict[frozenset[str], Track] = {}
+        self._pieces: dict[tuple[Track, int], CrossingPiece | None] = {}
 
     def advance(self, chunk: Chunk) -> None:
         """Add the group's bodies and sliders. Raises OpenError."""
@@ -60,7 +68,9 @@ class AssurStep:
         theta = track.home(chunk.theta)
         solved = self._solved(chunk, *track.guess(theta))
         beyond = track.beyond(theta)
-        closes = solved.closed & track.on_side(solved.det) & (beyond <= 0.0)
+        closes = solved.closed & track.on_side(theta, solved.det) & (beyond <= 0.0)
+        if track.crossings:
+            solved, closes = self._crossed(chunk, track, theta, solved, closes)
         # The end is known to rounding; beside it an assembly may be told open, or closed.
         short = self.mounting.size_m * np.where(
             closes, np.minimum(beyond, -1e-15), np.maximum(beyond, 1e-15)
@@ -74,6 +84,61 @@ class AssurStep:
             chunk.shortage[self.key] = short
             chunk.closures[self.key] = Closure(None, short, 0.0, slack)
         self.mounting.place(chunk, solved.body)
+
+    def _crossed(
+        self, chunk: Chunk, track: Track, theta: Array, solved: SolvedPlatform, closes: Mask
+    ) -> tuple[SolvedPlatform, Mask]:
+        """What is lost in and beside the change points of the group.
+
+        Raises CrankcheckError where the motion through one of them can not be told.
+        """
+        body = solved.body
+        for k in range(len(track.crossings)):
+            x = track.from_crossing(k, theta)
+            near = np.abs(x) < SIDE
+            if not near.any():
+                continue
+            piece = self._piece(track, k)
+            if piece is not None:
+                body = piece.put(body, x, chunk.driver)
+                closes = closes | piece.near(x)
+            elif not chunk.stretch:
+                at = told(self.scene, track.crossings[k].theta)
+                raise CrankcheckError(
+                    f"{self.scene.name}: at {self.scene.driver.joint} {at} the group about "
+                    f"{self.key} is in a change point with no smooth motion through it that can be "
+                    "told from others to within rounding: change a length, or keep the driver's "
+                    "range away from there"
+                )
+        return replace(solved, body=body), closes
+
+    def _piece(self, track: Track, k: int) -> CrossingPiece | None:
+        """The motion through a change point, worked out once."""
+        if (track, k) not in self._pieces:
+
+            def solved(theta: Array) -> BodyKinematics:
+                home = track.home(theta)
+                rows = track.rows(home, np.zeros(theta.shape))
+                size = self.mounting.size_m
+                return solve_platform(rows, *track.guess(home), size, certified=True).body
+
+            centre, room = track.crossings[k].theta, track.room_about(k)
+            self._pieces[track, k] = CrossingPiece.about(solved, centre, room, self.mounting.size_m)
+        return self._pieces[track, k]
+
+    def passed(
+        self, passages: Mapping[str, Passage], low: float, high: float
+    ) -> tuple[Crossing, ...]:
+        """The change points of the group, each once, that a driver passes between two angles."""
+        track = self.track(passages)
+        period = track.period
+        found = set()
+        for end in track.crossings:
+            turns = 0.0 if period is None else math.ceil((low - AT_START - end.theta) / period)
+            at = end.theta + turns * (period or 0.0)
+            if low - AT_START <= at <= high + AT_START:
+                found.add(whole_turns_off(end.theta))
+        return tuple(Crossing(self.key, place) for place in sorted(found))
 
     def _solved(self, chunk: Chunk, place: Vec, turn: Vec) -> SolvedPlatform:
         rows = self.mounting.rows(chunk)
@@ -97,12 +162,15 @@ class AssurStep:
         start = float(scene.driver.law.at(np.zeros(1))[0][0]) / driver_scale(scene)
         chosen = self._chosen(start, passages)
 
-        def solve(theta: Array, half: Array, place: Vec, turn: Vec) -> SolvedPlatform:
-            return self._solved(self.before.chunk(theta, half, passages), place, turn)
+        def rows(theta: Array, half: Array) -> list[SampledRow]:
+            return self.mounting.rows(self.before.chunk(theta, half, passages))
 
-        node = start_node(
-            start, solve(np.array([start]), np.zeros(1), *_pose(chosen)), chosen.angle_rad
-        )
+        pose = pose_at(rows, start, *_pose(chosen), self.mounting.size_m)
+        if pose is None:
+            raise ReachError(
+                f"{scene.name}: at {scene.driver.joint} {told(scene, start)}, where it starts, the "
+                f"group about {self.key} is singular to within rounding; start elsewhere"
+            )
         slides = scene.driver.slider is not None
         periods = [math.tau]
         periods += [one.period for key, one in passages.items()]  # type: ignore[attr-defined]
@@ -112,7 +180,7 @@ class AssurStep:
             if isinstance(one, AssurStep)
         ]
         repeats = None if slides else max(periods)
-        return Track.of(solve, self.mounting.size_m, node, repeats, math.pi)
+        return Track(rows, pose, self.mounting.size_m, repeats)
 
     def period(self, passages: Mapping[str, Passage]) -> float | None:
         """The driver angle after which the assembly comes back [rad]; None where it ends."""

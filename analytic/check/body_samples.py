@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
+from models.driver_course import driver_course
 from models.joints import block_name, local_point
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene
@@ -96,7 +97,7 @@ def weights_and_loads(scene: Scene, motion: Motion) -> Iterator[tuple[str, Point
         yield name, body.centre, rest + body.mass * np.array(scene.gravity_m_s2), rest[:, 0]
     for load in scene.loads.values():
         slider = None if load.slider is None else motion.sliders[load.slider]
-        x = {"time": motion.time_s, "angle": motion.links[scene.driver.link].theta}.get(load.over)
+        x = {"time": motion.time_s, "angle": driver_course(scene, motion)[0]}.get(load.over)
         if load.over == "omega":
             x = bodies[load.body].omega
         elif x is None:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from analytic.check.driver_row import DriverRow
 from analytic.multibody.assembly import Assembly
 from models.array import Array
 from models.errors import CrankcheckError
@@ -30,7 +31,7 @@ class Constraints:
         self._assembly = Assembly(scene)
         self.bodies, self.at = self._assembly.bodies, self._assembly.at
         self.size = 3 * len(self.bodies)
-        self._driver = self.at[scene.driver.link] + 2
+        self._driver = DriverRow(scene, dict(self.at))
         equations = self._assembly.joints.count + 1
         if equations != self.size:
             raise CrankcheckError(
@@ -48,18 +49,20 @@ class Constraints:
         return body, local_point(self.scene, body, slider.point)
 
     def phi(self, q: Array, theta: float) -> Array:
-        """The violation of each equation [m or rad] at driver angle ``theta``."""
+        """The violation of each equation [m or rad] at the driver's coordinate ``theta`` [rad or
+        m]."""
         rows = self._assembly.joints.gaps(self._assembly.at_rest(q[None]))[0]
-        return np.append(rows, q[self._driver] - theta)
+        return np.append(rows, self._driver.off(q, theta))
 
     def jacobian(self, q: Array) -> Array:
         """Phi_q (3 n, 3 n)."""
         rows = np.zeros((self.size, self.size))
         rows[:-1] = self._assembly.joints.jacobian(self._assembly.at_rest(q[None]))[0]
-        rows[-1, self._driver] = 1.0
+        rows[-1] = self._driver.gradient(q)
         return rows
 
     def gamma(self, q: Array, rates: Array, alpha: float) -> Array:
         """The right side of the acceleration equations: what q'' has to balance (3 n,)."""
         now = self._assembly.at_rates(q[None], rates[None])
-        return np.append(self._assembly.joints.gamma(now)[0], alpha)
+        pull = self._driver.quadratic(q, rates)
+        return np.append(self._assembly.joints.gamma(now)[0], alpha - pull)

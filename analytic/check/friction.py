@@ -12,6 +12,7 @@ import numpy as np
 
 from analytic.check.body_samples import BodySamples, cross
 from models.array import Array
+from models.driver_course import driver_course
 from models.forces import Forces
 from models.friction import CoulombFriction
 from models.joints import local_point, sliding_body
@@ -61,7 +62,7 @@ def rubbing_samples(
 ) -> dict[str, RubbingSamples]:
     """The joints that rub, by name."""
     found = {}
-    peak = float(np.max(np.abs(motion.links[scene.driver.link].omega)))
+    peak = float(np.max(np.abs(driver_course(scene, motion)[1]))) / scene.driver_arm_m
     for joint in scene.friction:
         if joint in scene.sliders:
             found[joint] = _slider(scene, joint, motion, bodies, peak)

@@ -27,6 +27,7 @@ from analytic.check.friction import rubbing_samples, turning
 from analytic.check.spring_samples import springs_on_bodies
 from analytic.multibody.joint_forces import joint_forces
 from models.array import Array
+from models.driver_course import driver_course
 from models.errors import CrankcheckError
 from models.forces import Forces
 from models.motion import Motion
@@ -132,7 +133,7 @@ def equations(scene: Scene, motion: Motion) -> Equations:
     own = [bodies[name] for name in system.bodies]
     q = np.concatenate([_columns(b.origin, b.theta) for b in own], axis=1)
     rates = np.concatenate([_columns(b.velocity, b.omega) for b in own], axis=1)
-    alpha = motion.links[scene.driver.link].alpha
+    alpha = driver_course(scene, motion)[2]
     mass, applied = np.zeros((*q.shape, system.size)), np.zeros_like(q)
     for name, body in bodies.items():
         _inertia(body, system.at[name], mass, applied)

@@ -19,6 +19,7 @@ from analytic.check.body_samples import body_samples, weights_and_loads
 from analytic.check.friction import rubbing_samples
 from analytic.check.spring_samples import springs_on_bodies
 from models.array import Array
+from models.driver_course import driver_course
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
@@ -58,5 +59,5 @@ def power_balance(
     for part in parts:
         used += part
         scale += np.abs(part)
-    put_in = torque * motion.links[scene.driver.link].omega
+    put_in = torque * driver_course(scene, motion)[1]
     return PowerBalance(put_in, used, scale + np.abs(put_in))

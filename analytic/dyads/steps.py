@@ -26,6 +26,7 @@ from analytic.dyads.rounding import rounding_of_angles
 from analytic.structure.groups import Group
 from models.array import Array
 from models.joints import less, sliding_body, turned
+from models.motion import Crossing
 from models.scene import Scene
 
 
@@ -46,6 +47,12 @@ class FollowedStep(Step, Protocol):
 
     def period(self, passages: Mapping[str, Passage]) -> float | None:
         """The driver angle after which the assembly comes back [rad]; None where it ends."""
+        ...
+
+    def passed(
+        self, passages: Mapping[str, Passage], low: float, high: float
+    ) -> tuple[Crossing, ...]:
+        """The change points of the group, each once, that a driver passes between two angles."""
         ...
 
     def end_in_words(self, passages: Mapping[str, Passage], theta: float) -> str:

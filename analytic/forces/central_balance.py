@@ -126,6 +126,45 @@ class BarHold:
 
 
 @dataclass(frozen=True)
+class DrivenBarHold:
+    """RR of two bodies, which the driver keeps apart by any force that it takes: as `BarHold`."""
+
+    central: Central
+    leg: Leg
+    own: Central
+
+    def _end(self, joint: JointKey) -> BoundedVec:
+        return self.own.to_point(self.own.part(joint), joint[1])
+
+    def _r(self) -> BoundedVec:
+        return self._end(self.leg.inner) - self._end(self.leg.outer)
+
+    def _at(self, force: BoundedVec) -> Wrench:
+        part = self.central.part(self.leg.inner)
+        return Wrench(force, self.central.to_point(part, self.leg.inner[1]).cross(force))
+
+    def known(self) -> Wrench:
+        r, given = self._r(), self.own.given()
+        turning = given.moment - self._end(self.leg.outer).cross(given.force)
+        return self._at(r.perp() * (turning * r.dot(r).inverse()))
+
+    def unknown(self) -> list[Wrench]:
+        return [self._at(self._r())]
+
+    def settle(self, found: Iterator[Bounded]) -> None:
+        on, leg = self.central.on, self.leg
+        force, given = self.known().force + self._r() * next(found), self.own.given().force
+        near, far = self.own.part(leg.outer), self.own.part(leg.inner)
+        pin, part = leg.inner[1], self.central.part(leg.inner)
+        on.on_pin(pin, part, force)
+        on.on_pin(pin, far, -force)
+        on.push(part, pin, force)
+        on.push(far, pin, -force)
+        on.hold(leg.outer[1], near, force - given)
+        on.push(near, leg.outer[1], force - given)
+
+
+@dataclass(frozen=True)
 class SlidingHold:
     """PR: along the known line the leg hands on what acts on it; across it, x n."""
 
@@ -288,7 +327,13 @@ def balance_central(on: Balance, part: Triad | Group) -> None:
     own = compound is not None and compound.name == central_name
     bodies = (compound.base, compound.link) if own and compound is not None else (central_name,)
     central = Central(on, bodies)
-    holds: list[Hold] = [_OF_LEGS[leg.kind](central, leg) for leg in legs]
+    holds: list[Hold] = []
+    for leg in legs:
+        if compound is not None and leg.body == compound.name:
+            driven = Central(on, (compound.base, compound.link))
+            holds.append(DrivenBarHold(central, leg, driven))
+        else:
+            holds.append(_OF_LEGS[leg.kind](central, leg))
     if joint is not None:
         holds.append(PinHold(central, joint) if joint[0] == "R" else SliderHold(central, joint))
     given = central.given().three

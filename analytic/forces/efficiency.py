@@ -14,6 +14,7 @@ from analytic.forces.self_locking import LockedRange, self_locking
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.array import Array
+from models.driver_course import driver_course
 from models.forces import Forces
 from models.joints import block_name
 from models.motion import Motion
@@ -60,7 +61,7 @@ class PowerFlow:
 
 def power_flow(scene: Scene, motion: Motion, found: Forces) -> PowerFlow:
     """What the drive and friction do in a whole motion with these forces."""
-    put_in = found.torque * motion.links[scene.driver.link].omega
+    put_in = found.torque * driver_course(scene, motion)[1]
     watts = friction_power(scene, motion, found.friction).values()
     lost = sum((-each for each in watts), np.zeros_like(put_in))
     going_on = put_in - lost
@@ -81,12 +82,12 @@ def efficiency(scene: Scene, count: int = SAMPLES) -> Efficiency:
     time_s, part_s = looks(scene, count), cycle_s(scene) / count
     motion = solve(scene, time_s, bound=False)
     found = forces(scene, time_s, bound=False, skip_dead_points=True)
-    omega = motion.links[scene.driver.link].omega
+    omega = driver_course(scene, motion)[1]
     flow = power_flow(scene, motion, found)
     against = -reduced_machine(scene, time_s).torque * omega  # weights do no work in a cycle
     works = [float(np.sum(each)) * part_s for each in (flow.put_in, against, flow.lost)]
     put_in, useful, wasted = works if np.isfinite(works).all() else [float("nan")] * 3
-    theta, locked = motion.links[scene.driver.link].theta, self_locking(scene, count)
+    theta, locked = driver_course(scene, motion)[0], self_locking(scene, count)
     parts = (flow.put_in, flow.lost, flow.efficiency)
     return Efficiency(theta, *parts, put_in, useful, wasted, locked)
 

@@ -7,12 +7,11 @@ chunks as their motion was. Source: I. I. Artobolevskii, Theory of Mechanisms, o
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.dyads.chunk import Chunk
+from analytic.dyads.driven import told
 from analytic.dyads.plane import Real
 from analytic.forces.applied_loads import apply_loads
 from analytic.forces.balance import Balance
@@ -172,8 +171,8 @@ def _check_friction(scene: Scene, structure: Structure) -> None:
 
 def _dead_point(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
     """Where the torque is not determined, by which dyad, and what would work."""
-    theta = math.degrees(_at(chunk.theta, index))
-    where = f"{scene.driver.link} at {theta:.6g} deg (t = {time_s[index]:.6g} s)"
+    place = told(scene, _at(chunk.theta, index))
+    where = f"{scene.driver.joint} at {place} (t = {time_s[index]:.6g} s)"
     if all(abs(_at(sine, index)) > 0.0 for sine in chunk.sines.values()):
         return (
             f"{scene.name}: {where}: forces are larger than numbers go; take smaller loads, masses "
@@ -193,9 +192,9 @@ def _dead_point(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
 
 def _locked(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
     """Where friction holds against any torque, and what would work."""
-    theta = math.degrees(_at(chunk.theta, index))
+    place = told(scene, _at(chunk.theta, index))
     return (
-        f"{scene.name}: {scene.driver.link} at {theta:.6g} deg (t = {time_s[index]:.6g} s) locks "
+        f"{scene.name}: {scene.driver.joint} at {place} (t = {time_s[index]:.6g} s) locks "
         f"itself: friction in {few(scene.coulomb_joints, 6)} grows by more than what overcomes it, "
         "so no finite torque keeps it moving; leave that instant out, lessen mu, or drive another "
         "link"

@@ -9,7 +9,14 @@ from reports.cli import changes, measuring
 from reports.cli import judging, showing  # --help lists commands in the order of these lines
 
 # isort: split
-from reports.cli import drawing_polygons, drawing_sheets, graph_sheets, regulating, vibrating
+from reports.cli import (
+    drawing_polygons,
+    drawing_sheets,
+    graph_sheets,
+    regulating,
+    structures,
+    vibrating,
+)
 
 # isort: split
 from reports.cli import recipes, schemes
@@ -30,5 +37,6 @@ __all__ = [
     "regulating",
     "schemes",
     "showing",
+    "structures",
     "vibrating",
 ]

@@ -6,9 +6,9 @@ from collections.abc import Collection, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from analytic.free.loosened import loosened
 from models.errors import CrankcheckError
 from models.motion import Motion
-from models.released import let_go
 from models.scene import Scene
 from reports.face.arguments import kind_of, path_of
 from reports.face.simulation import Simulation
@@ -78,7 +78,7 @@ def refuse_other_scene(scene: Scene, run: Run) -> None:
 def scene_of_run(scene: Scene, run: Run) -> Scene:
     """The scene as the run has it: let go where that was, with the torque of its controller if it
     has elastic links and one."""
-    return let_go(under_control(scene)) if run.drive == "free" else scene
+    return loosened(under_control(scene)) if run.drive == "free" else scene
 
 
 def _refuse_other(scene: Scene, motion: Motion) -> None:

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
+from analytic.free.loosened import loosened
 from models.errors import CrankcheckError
 from models.one_or_more import names_in
-from models.released import let_go
 from models.scene import Scene
 from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
 from reports.face.arguments import SceneLike, is_true, one_of, scene_of, tolerances_of
@@ -186,7 +186,7 @@ def judged(
         named = limits if every is None else {name: limits.get(name, every) for name in every_name}
         return verdict_of_run(scene, log, named)
     if free:
-        scene = let_go(scene)
+        scene = loosened(scene)
     of_some = [*limits.keys() - {EVERY}]
     refuse_of_other_motion("--target", of_some, [scene.is_free], bends=bool(scene.elastic))
     given = given_of(scene, segments, springs)

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
+from analytic.free.loosened import loosened
 from models.errors import CrankcheckError
-from models.released import let_go
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.compare.free.kept_motion import released_state
@@ -208,7 +208,7 @@ def simulated(
     if scene.elastic and driven != "free" and dt_s is None and steps_per_turn is None:
         steps_per_turn = held_steps(scene, bent.segments, bent.springs)
     if driven == "free" and turns is None and steps_per_turn is None:
-        loose, asked = let_go(scene), (dt_s, duration_s)
+        loose, asked = loosened(scene), (dt_s, duration_s)
         dt_s, steps = (
             counted_released(loose, *asked, bent.segments, bent.springs, every=every, least=1)
             if scene.elastic
@@ -218,7 +218,7 @@ def simulated(
         turns = TURNS if turns is None else turns
         dt_s, steps = counted(scene, dt_s, steps_per_turn, turns, every=every, least=1)
     if driven == "free":
-        scene = let_go(scene)
+        scene = loosened(scene)
     truth = _truth(scene, bent, dt_s, steps)
     done = stepping.run(
         scene if truth is None else truth.given,

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
+from analytic.free.loosened import loosened
 from models.controlled import Controlled
 from models.errors import CrankcheckError
 from models.files import kinds, shipped
-from models.released import let_go
 from models.rigid import with_rigid_links
 from models.scene import Scene
 from reports.judge.tolerance import check_names
@@ -39,7 +39,7 @@ def scenes_of(names: Sequence[str], *, free: bool) -> list[Scene]:
             refuse_giving_way(scene, "`crankcheck sweep --free` lets it go so, as `verify` does")
         return scenes
     scenes = chosen_scenes(free_names(names), check_names)
-    return [let_go(under_control(scene)) for scene in scenes]
+    return [loosened(under_control(scene)) for scene in scenes]
 
 
 def gives_way(scene: Scene) -> bool:

@@ -8,9 +8,9 @@ from functools import cached_property
 
 import pandas as pd
 
+from analytic.free.loosened import loosened
 from models.errors import CrankcheckError
 from models.files import parse_scene
-from models.released import let_go
 from models.scene import Scene
 from reports.plan.free import under_control
 from reports.results.candidates import Candidate, candidates
@@ -72,7 +72,7 @@ class Report:
         found = {name: _parsed(texts.get(name), name) for name in names}
         driven = {line.scene for line in self.lines if line.drive != "free"}
         return {
-            name: scene if scene is None or name in driven else let_go(under_control(scene))
+            name: scene if scene is None or name in driven else loosened(under_control(scene))
             for name, scene in found.items()
         }
 

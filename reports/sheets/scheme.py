@@ -71,7 +71,10 @@ def draw_scheme(axes: Axes, placement: PlacedMechanism, at: Callable[[Array], Ar
         radius = PIN_MM if point in pinned else 0.5 * PIN_MM
         face = "white" if point in pinned else INK
         axes.add_patch(Circle(tuple(spot), radius, fc=face, ec=INK, lw=0.7, zorder=FRONT))
-    _turning(axes, placement, places)
+    if scene.driver.is_crank:
+        _turning(axes, placement, places)
+    else:
+        _moved_joint(axes, placement, places)
 
 
 def point_letters(placement: PlacedMechanism, places: Mapping[str, Array]) -> list[Letter]:
@@ -163,3 +166,16 @@ def _turning(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]
     for angle, way in heads:
         radial = np.array([math.cos(math.radians(angle)), math.sin(math.radians(angle))])
         arrow_head(axes, middle + radius * radial, way * quarter_turn(radial), INK)
+
+
+def _moved_joint(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]) -> None:
+    """What drives but is no crank: a slider with an arrow along its line, a pin with a dot."""
+    driver = placement.scene.driver
+    if driver.slider is None:
+        spot = tuple(places[placement.scene.driver_pivot])
+        axes.add_patch(Circle(spot, 0.5 * PIN_MM, fc=INK, ec=INK, zorder=FRONT + 1))
+        return
+    way = math.copysign(1.0, placement.driver.omega) * placement.along(driver.slider)
+    start = places[placement.scene.sliders[driver.slider].point] + 0.6 * BLOCK_MM[0] * way
+    line(axes, start, start + 4.0 * way, linewidth=0.8)
+    arrow_head(axes, start + 4.0 * way, way, INK)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
 from models.array import Array
+from models.errors import EngineError
+from models.joints import turned
 from models.laws import ConstantSpeed
 from models.poses import inertia_scale
 from models.scene import Scene
@@ -15,6 +18,52 @@ from sim.exudyn.crank import CrankCourse
 from sim.exudyn.library import items
 from sim.exudyn.plane_system import Index, PlaneSystem
 from sim.exudyn.step_multipliers import Multipliers
+
+STRAIGHT = 1e-12
+"""Of a unit vector: what counts as along an axis."""
+
+
+def refuse_undriven(scene: Scene, drive: Drive) -> None:
+    """Raise EngineError for a joint that exudyn is given nothing to drive with."""
+    driver = scene.driver
+    if driver.is_crank or drive == "free":
+        return
+    if any(load.over == "angle" for load in scene.loads.values()):
+        raise EngineError(
+            f"{scene.name}: a load goes with the driver's angle, and exudyn is given that of a "
+            f"crank alone; this driver is {driver.joint}"
+        )
+    if drive == "servo":
+        raise EngineError(
+            f"{scene.name}: exudyn is given a servo for a crank alone, and this driver is "
+            f"{driver.joint}; use --drive prescribed"
+        )
+    if driver.slider is None:
+        return
+    slider = scene.sliders[driver.slider]
+    if driver.is_inner or (slider.link is None and slider.mass_kg == 0.0):
+        what = "lies between two moving bodies" if driver.is_inner else "has no mass_kg"
+        raise EngineError(
+            f"{scene.name}: exudyn is given a driven slider as a coordinate of its body, and "
+            f"slider {driver.slider} {what}; take another engine"
+        )
+    slider_axis(scene)
+
+
+def slider_axis(scene: Scene) -> tuple[int, float]:
+    """The coordinate that the driven slider runs along, 0 or 1, and its sense. Raises EngineError
+    for an oblique line, along which no coordinate goes."""
+    driver = scene.driver
+    assert driver.slider is not None
+    u = turned((1.0, 0.0), scene.sliders[driver.slider].direction_rad)
+    along = 0 if abs(u[0]) > abs(u[1]) else 1
+    if abs(u[1 - along]) > STRAIGHT:
+        raise EngineError(
+            f"{scene.name}: exudyn is given a driven slider as a coordinate of its body, and the "
+            f"line of {driver.slider} goes along neither x nor y; turn the scene, or take another "
+            "engine"
+        )
+    return along, math.copysign(1.0, u[along])
 
 
 class CrankDrive:
@@ -32,6 +81,7 @@ class CrankDrive:
     ) -> None:
         self._law, self._link, self._start_s = scene.driver.law, scene.driver.link, start_s
         self._system = made.system
+        self._sense = 1.0
         self.course: CrankCourse | None = None
         self._gain = 0.0
         self._constraint: Index = None
@@ -39,8 +89,11 @@ class CrankDrive:
             gain = float(settings["servo_gain"]) * inertia_scale(scene)
             self._gain = gain * self._law.peak_speed_rad_s
             self._add_motor(made.crank_markers(self._link))
+        elif drive == "prescribed" and scene.driver.slider is not None:
+            coordinate, self._sense = slider_axis(scene)
+            self._constrain(made.place_markers(self._link, coordinate), dt_s)
         elif drive == "prescribed":
-            self._constrain(made.crank_markers(self._link), dt_s)
+            self._constrain(made.crank_markers(self._link, scene.driver.base), dt_s)
 
     def _constrain(self, ends: list[Any], dt_s: float) -> None:
         """A constraint of the speed, or of the angle where the speed changes."""
@@ -51,7 +104,7 @@ class CrankDrive:
             self.course = course = CrankCourse(self._law, self._start_s, dt_s)
             told = {"offsetUserFunction": course.angle, "offsetUserFunction_t": course.speed}
         self._constraint = self._system.AddObject(
-            items.ObjectConnectorCoordinate(markerNumbers=ends, **told)
+            items.ObjectConnectorCoordinate(markerNumbers=ends, factorValue1=self._sense, **told)
         )
 
     def _add_motor(self, ends: list[Any]) -> None:
@@ -74,7 +127,8 @@ class CrankDrive:
         )
 
     def torque(self, poses: Poses, lambdas: Array, multipliers: Multipliers) -> Array:
-        """What it exerts on the crank [N m] at states with such multipliers, a row each."""
+        """What it exerts on the crank [N m], or on a slider along its line [N], at states with such
+        multipliers, a row each."""
         if self._constraint is not None:
             (row,) = multipliers.rows(self._constraint)
             return np.asarray(-lambdas[:, row])

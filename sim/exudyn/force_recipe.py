@@ -137,6 +137,7 @@ def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
         what
         for what, there in (
             ("loads", scene.loads),
+            ("a driver that is no crank", not scene.driver.is_crank),
             ("springs", scene.springs),
             ("friction", scene.friction),
             ("a driver whose speed changes", not isinstance(law, ConstantSpeed)),

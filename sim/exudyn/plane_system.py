@@ -59,9 +59,14 @@ class PlaneSystem:
             items.MarkerBodyRigid(bodyNumber=body, localPosition=[x, y, 0.0])
         )
 
-    def crank_markers(self, link: str) -> list[Index]:
-        """New markers of an angle of the ground and of that of a body."""
-        return [self.angle_marker(GROUND), self.angle_marker(link)]
+    def crank_markers(self, link: str, base: str = GROUND) -> list[Index]:
+        """New markers of the angles of a base and of a body."""
+        return [self.angle_marker(base), self.angle_marker(link)]
+
+    def place_markers(self, link: str, coordinate: int) -> list[Index]:
+        """New markers of a coordinate of the ground, which is 0, and of one of a body's centre."""
+        own = items.MarkerNodeCoordinate(nodeNumber=self.node[link], coordinate=coordinate)
+        return [self.angle_marker(GROUND), self.system.AddMarker(own)]
 
     def angle_marker(self, name: str) -> Index:
         """A new marker of the angle of a body or of the ground, which both count from the start.

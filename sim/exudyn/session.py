@@ -18,7 +18,7 @@ from sim.exudyn.applied import Applied
 from sim.exudyn.beams import held_beams, node_masses, rounding_n
 from sim.exudyn.body_coordinates import LEVELS, beam_angles, body_poses, widths
 from sim.exudyn.crank import CrankCourse
-from sim.exudyn.crank_drive import CrankDrive
+from sim.exudyn.crank_drive import CrankDrive, refuse_undriven
 from sim.exudyn.friction import apply_friction
 from sim.exudyn.library import VERSION, exu, items, plain, quiet
 from sim.exudyn.loads import apply_loads, follows_rates
@@ -48,6 +48,7 @@ class ExudynSession:
                 f"dt: found {dt_s:g} s; exudyn ends a step to 1e-10 s, so it takes "
                 f"{LEAST_DT_S:g} s or more"
             )
+        refuse_undriven(scene, drive)
         settings = of_drive(settings, drive)
         self._scene, self._settings, self._dt, self._drive = scene, settings, dt_s, drive
         self._start_s, self._done = state.time_s, 0

@@ -40,7 +40,7 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
             add_node(made, name, where[name], state)
             continue
         mass, inertia = mass_of(scene, name)
-        if not (prescribed and name == scene.driver.link):
+        if not (prescribed and name == scene.driver.link and not scene.driver.is_inner):
             _refuse_massless(name, mass, inertia, turns=name not in held)
         frame, centre = where[name], centre_of(scene, name)
         place = frame.at(centre)

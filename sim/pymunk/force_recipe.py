@@ -57,6 +57,8 @@ def _check_covered(scene: Scene) -> None:
     extra = [f"{table}.{name}" for table, named in acting.items() for name in named]
     if scene.is_free:
         extra.append("a driver that is let go")
+    elif not scene.driver.is_crank:
+        extra.append("a driver that is no crank")
     elif not isinstance(scene.driver.law, ConstantSpeed):
         extra.append("a driver whose speed is not constant")
     if extra:

@@ -113,7 +113,18 @@ class Chain:
             turn -= mpf(slider.direction_rad) + mpf(slider.angle_rad)
             whole = mp.nint(turn.value / (2 * mp.pi))  # angles of links are known but for turns
             rows += [along.cross(away), turn - 2 * mp.pi * whole]
-        return [*rows, frames[self.scene.driver.link][1] - drive]
+        return [*rows, self._driven(frames, drive)]
+
+    def _driven(self, frames: Mapping[str, tuple[Place, Jet, Place]], drive: Jet) -> Jet:
+        """The driver's coordinate less what it should be."""
+        driver = self.scene.driver
+        if driver.slider is not None:
+            away, along = self._ride(frames, self.scene.sliders[driver.slider])
+            return along.dot(away) - drive
+        off = frames[driver.link][1] - frames[driver.base][1] - drive
+        if driver.base == GROUND:
+            return off
+        return off - 2 * mp.pi * mp.nint(off.value / (2 * mp.pi))  # known but for turns
 
     def _ride(
         self, frames: Mapping[str, tuple[Place, Jet, Place]], slider: Slider

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from rich.console import Console
 
+from analytic.free.loosened import loosened
 from models.errors import CrankcheckError, harmless
 from models.files import find_scene, load_scene
-from models.released import let_go
 from models.scene import Scene
 from reports.cli.judging import JudgeRequest
 from reports.judge.tolerance import check_names, parse, refuse_of_other_motion
@@ -39,7 +39,7 @@ def run_judge(request: JudgeRequest, console: Console) -> int:
     read or asked, before anything is written."""
     scene = load_scene(request.scene)
     if request.free:
-        scene = let_go(scene)
+        scene = loosened(scene)
     asked = _checked(request, scene)
     check_names(scene)
     refuse_of_other_motion(

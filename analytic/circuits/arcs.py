@@ -1,0 +1,224 @@
+"""Arcs: the driver angles over which a mechanism closes with given branches of all its dyads.
+
+Dyads are taken in solving order. Over an arc of those before it, a dyad closes on parts of the arc,
+whose ends are its own limit positions or those of the arc. Looks at an arc are spread by the cosine
+of a parameter, and so lie close beside its ends, where what hangs on a dyad moves like a root.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.dyads.chunk import Chunk
+from analytic.dyads.plane import EPS
+from analytic.dyads.steps import Step, stretched
+from analytic.prepared import prepared
+from analytic.structure.mobility import analyse
+from models.array import Array
+from models.errors import StructureError
+from models.scene import Scene
+
+LOOKS = 1440
+"""Looks at an arc."""
+ZOOMS, FINER = 5, 33
+"""How often the smallest shortage between looks is looked for closer, and in how many places."""
+HALVINGS = 60
+ROUNDING = 64 * EPS
+"""What a dyad may be open by, over the longest link, and counts as closed: at a change point."""
+GAP = 1e-6
+"""Driver angles [rad] over which a dyad is open, or closes, and which are none: a change point, or
+a place where it just closes, to a root of rounding."""
+MOST = 8
+"""Dyads with two assemblies, 256 sets of signs, beyond which it takes a minute."""
+
+Signs = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class End:
+    """A limit position of the driver: its angle [rad] and the dyad whose two assemblies meet."""
+
+    angle_rad: float
+    dyad: str
+
+
+@dataclass(frozen=True)
+class Arc:
+    """A branch: driver angles from ``low`` to ``high``, with the ``signs`` of the dyads. A driver
+    that turns fully has no ends."""
+
+    signs: Signs
+    low: End | None = None
+    high: End | None = None
+
+    @property
+    def range_rad(self) -> tuple[float, float]:
+        """The driver's angles [rad]; a turn from -pi on where it turns fully."""
+        if self.low is None or self.high is None:
+            return -math.pi, math.pi
+        return self.low.angle_rad, self.high.angle_rad
+
+    def holds(self, theta: float, slack: float = 0.0) -> bool:
+        """Whether a driver angle [rad] is on it, whole turns apart."""
+        low, high = self.range_rad
+        off = math.remainder(theta - 0.5 * (low + high), math.tau)
+        return self.low is None or abs(off) <= 0.5 * (high - low) + slack
+
+    def angles(self, count: int) -> Array:
+        """So many driver angles from end to end [rad], close beside the ends of a limited one."""
+        low, high = self.range_rad
+        if self.low is None:
+            return np.linspace(low, high, count)
+        spread = -np.cos(np.linspace(0.0, math.pi, count))
+        return np.asarray(0.5 * (low + high) + 0.5 * (high - low) * spread)
+
+
+@dataclass(frozen=True)
+class SignedScene:
+    """A scene of dyads, driven at a crank, whose branches are chosen by signs in the order of
+    ``dyads``."""
+
+    scene: Scene
+    dyads: tuple[str, ...]
+
+    @staticmethod
+    def of(scene: Scene) -> SignedScene:
+        """Raises StructureError for another driver, and for groups that are no dyads."""
+        if not scene.driver.is_crank:
+            raise StructureError(
+                f"{scene.name}: circuits were asked for, and {scene.driver.joint} drives; they are "
+                "found of a scene whose driver is a link pinned to the ground"
+            )
+        structure = analyse(scene)
+        if structure.triads or structure.redundant:
+            odd = [*(t.central for t in structure.triads), *(b.link for b in structure.redundant)]
+            raise StructureError(
+                f"{scene.name}: circuits were asked for, and {', '.join(odd)} is of no dyad (a "
+                "triad's central link, or a redundant one); they are found of class II mechanisms"
+            )
+        dyads = tuple(g.branch_key for g in structure.groups if g.assemblies == 2)
+        if len(dyads) > MOST:
+            raise StructureError(
+                f"{scene.name}: circuits were asked for of {len(dyads)} dyads with two assemblies "
+                f"each; they are found of up to {MOST}"
+            )
+        return SignedScene(scene, dyads)
+
+    @property
+    def signs(self) -> Signs:
+        """Those of the scene's own branches."""
+        return tuple(self.scene.branch.get(key, 1) for key in self.dyads)
+
+    @property
+    def start_rad(self) -> float:
+        """The driver's angle at time 0."""
+        return prepared(self.scene).start
+
+    def with_signs(self, signs: Signs) -> Scene:
+        """The scene on other branches."""
+        return replace(self.scene, branch=dict(zip(self.dyads, signs, strict=True)))
+
+    def chunk(self, signs: Signs, theta: Array) -> Chunk:
+        """The mechanism with these signs at driver angles [rad], open dyads stretched."""
+        padded = signs + (1,) * (len(self.dyads) - len(signs))
+        return stretched(self.with_signs(padded), self._steps, theta)
+
+    @property
+    def _steps(self) -> tuple[Step, ...]:
+        return tuple(prepared(self.scene).steps)
+
+    def shortage(self, signs: Signs, theta: Array) -> Array:
+        """By how much the last of the dyads that signs are given of is open [m], <= 0 closes."""
+        short = self.chunk(signs, theta).shortage.get(self.dyads[len(signs) - 1], -np.inf)
+        less = ROUNDING * self.scene.longest_m
+        return np.array(np.broadcast_to(np.nan_to_num(short, nan=np.inf), theta.shape)) - less
+
+
+def arcs(signed: SignedScene) -> list[Arc]:
+    """All branches of a mechanism, in the order of their signs, + before -, and of the driver."""
+    found = [Arc(())]
+    for _ in signed.dyads:
+        parts = [list(_closing(signed, arc)) for arc in found]
+        found = [
+            replace(part, signs=(*part.signs, sign))
+            for closing in parts
+            for part in closing
+            for sign in (1, -1)
+        ]
+    return sorted(found, key=lambda arc: (tuple(-s for s in arc.signs), arc.range_rad))
+
+
+def _closing(signed: SignedScene, arc: Arc) -> Iterator[Arc]:
+    """The parts of an arc over which the next dyad closes: whatever its own sign."""
+    signs = (*arc.signs, 1)
+    key = signed.dyads[len(arc.signs)]
+    theta = _with_valleys(signed, signs, arc.angles(LOOKS + 1))
+    closes = signed.shortage(signs, theta) <= 0.0
+    if closes.all():
+        yield arc
+        return
+    edges = np.flatnonzero(closes[1:] != closes[:-1])
+    low, high, was = theta[edges], theta[edges + 1], closes[edges]
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        same = (signed.shortage(signs, middle) <= 0.0) == was
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    ends = [End(float(at), key) for at in np.where(was, low, high)]
+    opens = [end for end, closed in zip(ends, was, strict=True) if not closed]
+    shuts = [end for end, closed in zip(ends, was, strict=True) if closed]
+    if arc.low is None:  # round the turn: the part that holds its seam is one
+        if closes[0] and shuts:
+            first = shuts.pop(0)
+            shuts.append(_later(first))
+    else:
+        opens = [arc.low, *opens] if closes[0] else opens
+        shuts = [*shuts, *([arc.high] if closes[-1] and arc.high else [])]
+    yield from _merged(arc, opens, shuts)
+
+
+def _merged(arc: Arc, opens: list[End], shuts: list[End]) -> Iterator[Arc]:
+    """The parts of an arc between their ends, without gaps that are rounding."""
+    parts: list[tuple[End, End]] = []
+    for one, other in zip(opens, shuts, strict=True):
+        if parts and one.angle_rad - parts[-1][1].angle_rad < GAP:
+            parts[-1] = parts[-1][0], other
+        else:
+            parts.append((one, other))
+    turn = arc.low is None
+    if turn and parts and parts[0][0].angle_rad + math.tau - parts[-1][1].angle_rad < GAP:
+        if len(parts) == 1:
+            yield arc
+            return
+        parts = [*parts[1:-1], (parts[-1][0], _later(parts[0][1]))]
+    for one, other in parts:
+        if other.angle_rad - one.angle_rad > GAP:
+            yield Arc(arc.signs, one, other)
+
+
+def _later(end: End) -> End:
+    """An end a turn of the driver later."""
+    return End(end.angle_rad + math.tau, end.dyad)
+
+
+def _with_valleys(signed: SignedScene, signs: Signs, theta: Array) -> Array:
+    """The looks, and those closer ones where a dyad is nearest to closing, or to opening, between
+    two of them, so that no narrow part is passed over."""
+    short = signed.shortage(signs, theta)
+    size = np.abs(short[1:-1])
+    near = (size <= np.abs(short[:-2])) & (size <= np.abs(short[2:]))
+    places = np.flatnonzero(near) + 1
+    if not places.size:
+        return theta
+    low, high, sign = theta[places - 1], theta[places + 1], np.sign(short[places])
+    share = np.linspace(0.0, 1.0, FINER)
+    for _ in range(ZOOMS):
+        looks = low[:, None] + (high - low)[:, None] * share
+        value = signed.shortage(signs, looks.ravel()).reshape(looks.shape) * sign[:, None]
+        best = np.clip(np.argmin(value, axis=1), 1, FINER - 2)
+        rows = np.arange(len(best))
+        low, high, tip = looks[rows, best - 1], looks[rows, best + 1], looks[rows, best]
+    return np.unique(np.concatenate([theta, tip]))

@@ -1,0 +1,167 @@
+"""Circuits: the pieces that all configurations of a mechanism fall into, each in one piece.
+
+::
+
+    output |   ____        Two branches of a dyad (+ and -) end in the same limit positions of the
+           | /   +  \\     driver, and are there one: a circuit is what hangs together. To come from
+           |<        >     one circuit to another a mechanism has to be taken apart; from one branch
+           | \\__ - _/     to another of its circuit it can be brought, but not by this driver.
+           +----------- driver
+
+Source: T. R. Chase and J. A. Mirth, Circuits and branches of single-degree-of-freedom planar
+linkages, Journal of Mechanical Design 115 (1993), pages 223 to 230, whose words these are.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from analytic.change_points.find import passages
+from analytic.circuits.arcs import Arc, End, SignedScene, Signs, arcs
+from analytic.prepared import prepared
+from models.errors import CrankcheckError
+from models.scene import Scene
+
+SAME = 1e-7
+"""Limit positions that are nearer [rad] are one: what hangs on a dyad near its own limit finds its
+place to a root of rounding."""
+
+Defect = Literal["none", "branch", "circuit", "order"]
+
+
+@dataclass(frozen=True)
+class Position:
+    """A configuration: the driver's angle [rad] and the signs of the dyads."""
+
+    driver_rad: float
+    signs: Signs
+
+
+@dataclass(frozen=True)
+class Circuits:
+    """The circuits of a scene, each its branches; ``change_points`` is whether some of them meet
+    in change points, where those that do are counted as one."""
+
+    signed: SignedScene
+    circuits: tuple[tuple[Arc, ...], ...]
+    change_points: bool
+
+    @property
+    def own(self) -> tuple[int, Arc]:
+        """The circuit, from 0 on, and the branch that the scene is on at time 0."""
+        return self.place(Position(self.signed.start_rad, self.signed.signs))
+
+    def place(self, position: Position) -> tuple[int, Arc]:
+        """The circuit, from 0 on, and the branch of a position. Raises CrankcheckError where the
+        mechanism can not be assembled so."""
+        for number, circuit in enumerate(self.circuits):
+            for arc in circuit:
+                if arc.signs == position.signs and arc.holds(position.driver_rad, SAME):
+                    return number, arc
+        name, at = self.signed.scene.name, math.degrees(position.driver_rad)
+        text = "".join("+" if sign > 0 else "-" for sign in position.signs)
+        same = [a.range_rad for c in self.circuits for a in c if a.signs == position.signs]
+        spans = " and ".join(f"{math.degrees(a):.6g} to {math.degrees(b):.6g}" for a, b in same)
+        raise CrankcheckError(
+            f"{name}: the position {at:.6g} deg with the signs {text or 'none'} was asked for, and "
+            f"can not be assembled; with these signs it can at {spans or 'no angle'} deg"
+        )
+
+    def defect(self, positions: Sequence[Position]) -> Defect:
+        """What keeps the driver from leading through the positions in their order: that they lie
+        on several circuits, on several branches of one, or are met in another order.
+
+        Of a driver that turns fully the order is that of either sense of turning.
+        """
+        places = [self.place(position) for position in positions]
+        if len({number for number, _ in places}) > 1:
+            return "circuit"
+        if len({id(arc) for _, arc in places}) > 1:
+            return "branch"
+        return "none" if _in_order(places[0][1], positions) else "order"
+
+
+def _in_order(arc: Arc, positions: Sequence[Position]) -> bool:
+    """Whether a driver that goes one way along an arc meets the positions as they are listed."""
+    low = arc.range_rad[0]
+    angles = [(position.driver_rad - low + SAME) % math.tau for position in positions]
+    if arc.low is None:
+        ahead = [(b - a) % math.tau for a, b in itertools.pairwise(angles)]
+        behind = [(a - b) % math.tau for a, b in itertools.pairwise(angles)]
+        return min(sum(ahead), sum(behind)) < math.tau
+    return angles in (sorted(angles), sorted(angles, reverse=True))
+
+
+def circuits_of(scene: Scene) -> Circuits:
+    """The circuits of a mechanism whose driver is a crank.
+
+    Raises
+    ------
+    StructureError
+        Another driver; a group that is no dyad; too many dyads.
+    CrankcheckError
+        A limit position whose two sides do not fit together: as good as a change point.
+    """
+    signed = SignedScene.of(scene)
+    every = arcs(signed)
+    joined = list(range(len(every)))
+    for index, arc in enumerate(every):
+        for end, upper in ((arc.low, False), (arc.high, True)):
+            if end is not None:
+                _join(joined, index, _beyond(signed, every, arc, end, upper=upper))
+    meets = _join_change_points(signed, every, joined)
+    groups: dict[int, list[Arc]] = {}
+    for index, arc in enumerate(every):
+        groups.setdefault(_root(joined, index), []).append(arc)
+    return Circuits(signed, tuple(tuple(group) for group in groups.values()), meets)
+
+
+def _beyond(signed: SignedScene, every: list[Arc], arc: Arc, end: End, *, upper: bool) -> int:
+    """The branch that goes on from a limit position, back with the other sign of its dyad."""
+    flipped = _flipped(signed, arc.signs, end.dyad)
+    best, where = math.inf, -1
+    for index, other in enumerate(every):
+        meets = other.high if upper else other.low
+        if other.signs == flipped and meets is not None and meets.dyad == end.dyad:
+            off = abs(math.remainder(meets.angle_rad - end.angle_rad, math.tau))
+            best, where = min((best, where), (off, index))
+    if best > SAME:
+        raise CrankcheckError(
+            f"{signed.scene.name}: the limit position of the driver at "
+            f"{math.degrees(end.angle_rad):.6g} deg (dyad {end.dyad}) can not be told from a "
+            "change point; change a length by more than rounding"
+        )
+    return where
+
+
+def _join_change_points(signed: SignedScene, every: list[Arc], joined: list[int]) -> bool:
+    """Join the branches that meet in change points; whether there are any."""
+    meets, steps = False, prepared(signed.scene).steps
+    for index, arc in enumerate(every):
+        for key, passage in passages(signed.with_signs(arc.signs), steps).items():
+            flipped = _flipped(signed, arc.signs, key)
+            for angle in passage.angles.tolist():
+                for other, candidate in enumerate(every):
+                    if candidate.signs == flipped and candidate.holds(angle) and arc.holds(angle):
+                        _join(joined, index, other)
+                        meets = True
+    return meets
+
+
+def _flipped(signed: SignedScene, signs: Signs, dyad: str) -> Signs:
+    return tuple(-s if key == dyad else s for key, s in zip(signed.dyads, signs, strict=True))
+
+
+def _root(joined: list[int], index: int) -> int:
+    while joined[index] != index:
+        index = joined[index]
+    return index
+
+
+def _join(joined: list[int], one: int, other: int) -> None:
+    first, second = sorted((_root(joined, one), _root(joined, other)))
+    joined[second] = first

@@ -1,0 +1,132 @@
+"""Grashof: which links of a four-bar, a slider-crank or an inverted slider-crank turn fully.
+
+A pin of a loop turns fully if the two links beside it can stand in line both ways. Of a four-bar a
+link turns fully against the others if s + l <= p + q; of a slider-crank (a crank r, a rod l, the
+line e beside the crank's pin) if the shorter of r and l, and e, are no longer together than the
+longer one; so it is of the inversion, a guide that turns about D, with the crank a and ground d::
+
+      slider-crank                     inverted slider-crank
+
+            B                               B =====  guide, e beside D
+        r  /  \\  l                       a  /
+          A     [C]  line, e beside A      A ------- D
+                                               d
+
+Source: R. L. Norton, Design of Machinery, sections 2.13 to 2.15 (Grashof, and with a slider); the
+names of special four-bars are those of that book.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from analytic.mechanism.fourbar import SAME, FourBar
+
+
+@dataclass(frozen=True)
+class GrashofType:
+    """What a chain is called; ``margin_m`` is what it is a Grashof chain by [m]: negative where
+    it is none, 0 within rounding at a change point. ``driver_turns`` and ``follower_turns`` say
+    whether these turn fully against the ground (a block never does)."""
+
+    name: str
+    margin_m: float
+    driver_turns: bool
+    follower_turns: bool
+
+    @property
+    def is_grashof(self) -> bool:
+        """Whether some link turns fully; a change point counts."""
+        return self.margin_m >= 0.0
+
+
+def four_bar_type(bar: FourBar) -> GrashofType:
+    """The type of a four-bar by its driver, the first of its four lengths."""
+    a, b, c, d = lengths = (bar.driver, bar.coupler, bar.rocker, bar.ground)
+    excess, small = bar.excess_m, SAME * sum(lengths)
+    turns, back = bar.driver_turns_fully, FourBar(c, b, a, d).driver_turns_fully
+    if abs(excess) <= small:
+        return GrashofType(f"change point, {_special(a, b, c, d, small)}", 0.0, turns, back)
+    if excess > 0.0:
+        longest = ("driver", "coupler", "rocker", "ground")[lengths.index(max(lengths))]
+        name = f"non-Grashof triple-rocker (longest: {longest})"
+        return GrashofType(name, -excess, turns, back)
+    name = {
+        a: "Grashof crank-rocker",
+        b: "Grashof double-rocker",
+        c: "Grashof rocker-crank",
+        d: "Grashof double-crank (drag link)",
+    }[min(lengths)]
+    return GrashofType(name, -excess, turns, back)
+
+
+def _special(a: float, b: float, c: float, d: float, small: float) -> str:
+    """What a four-bar in which all links come to lie in line is called."""
+
+    def same(one: float, other: float) -> bool:
+        return abs(one - other) <= small
+
+    if same(a, b) and same(b, c) and same(c, d):
+        return "rhombus"
+    if same(a, c) and same(b, d):
+        return "parallelogram or antiparallelogram"
+    if (same(a, b) and same(c, d)) or (same(a, d) and same(b, c)):
+        return "kite (deltoid)"
+    kinds = {a: "crank-rocker", b: "double-rocker", c: "rocker-crank", d: "double-crank"}
+    return f"between {kinds[min(a, b, c, d)]} and triple-rocker"
+
+
+def slider_crank_type(crank: float, rod: float, offset: float) -> GrashofType:
+    """The type of a slider-crank driven at its crank: lengths and offset [m].
+
+    Raises
+    ------
+    ValueError
+        Lengths that are not above 0, or with which the loop can not close.
+    """
+    offset = abs(offset)
+    if not (crank > 0.0 and rod > 0.0 and crank + rod >= offset):
+        raise ValueError(
+            f"crank {crank:g} m, rod {rod:g} m, offset {offset:g} m: lengths above 0 that reach "
+            "the line together make a slider-crank"
+        )
+    margin, small = abs(rod - crank) - offset, SAME * (crank + rod + offset)
+    place = "central" if offset <= small else "offset"
+    if abs(rod - crank) <= small and offset <= small:
+        return GrashofType("change point, isosceles central slider-crank", 0.0, True, True)
+    if abs(margin) <= small:
+        return GrashofType(f"change point, {place} slider-crank", 0.0, crank < rod, crank > rod)
+    if margin < 0.0:
+        return GrashofType(f"non-Grashof {place} slider-crank", margin, False, False)
+    shortest = "crank" if crank < rod else "rod"
+    name = f"Grashof {place} slider-crank ({shortest} turns fully)"
+    return GrashofType(name, margin, crank < rod, crank > rod)
+
+
+def inverted_slider_crank_type(crank: float, ground: float, offset: float) -> GrashofType:
+    """The type of an inverted slider-crank, its guide ``offset`` [m] beside the guide's pin.
+
+    The block pinned to the crank reaches the guide where it is no nearer to the guide's pin than
+    the offset. The guide turns fully (Whitworth) where the crank goes round its pin, and swings
+    (slotted lever) where the crank does not.
+
+    Raises
+    ------
+    ValueError
+        Lengths that are not above 0, or with which the loop can not close.
+    """
+    offset = abs(offset)
+    if not (crank > 0.0 and ground > 0.0 and crank + ground >= offset):
+        raise ValueError(
+            f"crank {crank:g} m, ground {ground:g} m, offset {offset:g} m: lengths above 0 that "
+            "reach the guide together make an inverted slider-crank"
+        )
+    margin, small = abs(ground - crank) - offset, SAME * (crank + ground + offset)
+    if abs(margin) <= small:
+        return GrashofType("change point, inverted slider-crank", 0.0, True, crank >= ground)
+    if margin < 0.0:
+        name = "non-Grashof inverted slider-crank (crank and guide swing)"
+        return GrashofType(name, margin, False, False)
+    if crank < ground:
+        return GrashofType("Grashof crank and swinging guide (slotted lever)", margin, True, False)
+    return GrashofType("Grashof crank and turning guide (Whitworth)", margin, True, True)

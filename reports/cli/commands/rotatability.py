@@ -1,0 +1,186 @@
+"""`crankcheck rotatability`: what turns fully, on which circuit, between which dead points."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rich.console import Console
+
+from analytic.circuits.circuits import Circuits, Position, circuits_of
+from analytic.circuits.dead_points import dead_points
+from analytic.circuits.rotatability import rotations
+from analytic.circuits.transmission import Extreme, transmissions
+from analytic.mechanism.grashof_of_scene import grashof_of
+from models.errors import CrankcheckError, shown
+from models.files import load_scene
+from models.scene import Scene
+from reports.cli.structures import RotatabilityRequest
+from reports.output.columns import plain_table
+
+Row = Mapping[str, object]
+
+
+def run_rotatability(request: RotatabilityRequest, console: Console) -> int:
+    """Show it; the exit code. Raises CrankcheckError for what can not be asked."""
+    scene = load_scene(request.scene)
+    circuits = circuits_of(scene)
+    positions = [_position(circuits, text) for text in request.position]
+    defect = circuits.defect(positions) if positions else "none"
+    document = _document(scene, circuits)
+    if positions:
+        document["defect"] = defect
+    if request.json:
+        console.print(json.dumps(document, indent=1), highlight=False, markup=False, soft_wrap=True)
+    else:
+        _show(console, document)
+    return int(defect != "none")
+
+
+def _position(circuits: Circuits, text: str) -> Position:
+    """A position as written. Raises CrankcheckError."""
+    degrees, colon, written = text.partition(":")
+    signs = circuits.signed.signs
+    try:
+        angle = math.radians(float(degrees))
+    except ValueError:
+        angle = math.nan
+    fits = not colon or (len(written) == len(signs) and set(written) <= {"+", "-"})
+    if not math.isfinite(angle) or not fits:
+        dyads = ", ".join(circuits.signed.dyads) or "none"
+        raise CrankcheckError(
+            f"--position {shown(text)}: wants degrees, and a sign + or - for each dyad after a "
+            f"colon ({len(signs)}: {dyads}), such as 90:{'+' * len(signs)}"
+        )
+    given = tuple(1 if sign == "+" else -1 for sign in written)
+    return Position(angle, given if colon else signs)
+
+
+def _document(scene: Scene, circuits: Circuits) -> dict[str, object]:
+    """All of it, angles in degrees, as JSON has it."""
+    turning = rotations(circuits)
+    dyads, merit = transmissions(circuits)
+    grashof, (number, own) = grashof_of(scene), circuits.own
+    return {
+        "scene": scene.name,
+        "type": None if grashof is None else grashof.name,
+        "margin_m": None if grashof is None else grashof.margin_m,
+        "rotations": [
+            {
+                "link": one.link,
+                "against": one.against,
+                "does": one.word,
+                "turns": one.turns,
+                "driver_turns": None if own.low is not None else one.period_rad / math.tau,
+                **_swing(one.turns, one.low_rad, one.high_rad),
+            }
+            for one in turning
+        ],
+        "dyads": list(circuits.signed.dyads),
+        "change_points": circuits.change_points,
+        "circuit": number + 1,
+        "branches": [
+            {
+                "circuit": k + 1,
+                "signs": "".join("+" if sign > 0 else "-" for sign in arc.signs),
+                "driver_from_deg": math.degrees(arc.range_rad[0]),
+                "driver_to_deg": math.degrees(arc.range_rad[1]),
+                "limits": [end.dyad for end in (arc.low, arc.high) if end is not None],
+                "scene": arc is own,
+            }
+            for k, circuit in enumerate(circuits.circuits)
+            for arc in circuit
+        ],
+        "dead_points": [
+            {"input": p.input, "driver_deg": math.degrees(p.driver_rad), "where": p.where}
+            for p in dead_points(circuits, turning)
+        ],
+        "transmission": [
+            {
+                "dyad": one.dyad,
+                "kind": one.kind,
+                **_extreme("smallest_deg", one.smallest_rad),
+                **_extreme("largest_deg", one.largest_rad),
+                "pressure_deg": None
+                if one.pressure_rad is None
+                else math.degrees(one.pressure_rad),
+                "least_sine": one.least_sine.value,
+                "least_sine_at_deg": math.degrees(one.least_sine.driver_rad),
+            }
+            for one in dyads
+        ],
+        "merit": merit.value,
+        "merit_at_deg": math.degrees(merit.driver_rad),
+    }
+
+
+def _swing(turns: int, low_rad: float, high_rad: float) -> Row:
+    """The swing of a link that does not turn fully."""
+    if turns:
+        return {"from_deg": None, "to_deg": None, "swing_deg": None}
+    low, high = math.degrees(low_rad), math.degrees(high_rad)
+    return {"from_deg": low, "to_deg": high, "swing_deg": high - low}
+
+
+def _extreme(name: str, extreme: Extreme | None) -> Row:
+    """An extreme angle and where the driver stands, both in degrees."""
+    if extreme is None:
+        return {name: None}
+    at = math.degrees(extreme.driver_rad)
+    return {name: math.degrees(extreme.value), name.replace("_deg", "_at_deg"): at}
+
+
+TABLES = {
+    "rotations": "link against does turns from_deg to_deg swing_deg",
+    "branches": "circuit signs driver_from_deg driver_to_deg limits scene",
+    "dead_points": "input driver_deg where",
+    "transmission": "dyad kind smallest_deg smallest_at_deg largest_deg largest_at_deg "
+    "pressure_deg least_sine least_sine_at_deg",
+}
+"""The tables in their order, and their columns."""
+
+
+def _show(console: Console, document: Mapping[str, Any]) -> None:
+    """The same in words and tables."""
+
+    def say(text: str) -> None:
+        console.print(text, highlight=False, markup=False)
+
+    kind = "no four-bar or slider-crank driven at its crank, so of no Grashof type"
+    if document["type"] is not None:
+        kind = f"{document['type']}, margin {document['margin_m']:.6g} m"
+    say(f"{document['scene']}: {kind}")
+    for name, columns in TABLES.items():
+        if name == "branches":
+            meet = ", those that meet in change points as one" if document["change_points"] else ""
+            say(f"\ncircuits{meet}; signs of {', '.join(document['dyads']) or 'no dyad'}")
+        elif name != "rotations":
+            say(f"\n{name.replace('_', ' ')}" + ("" if document[name] else ": none"))
+        if document[name]:
+            _table(console, document[name], columns.split())
+    say(f"\nindex of merit {document['merit']:.6g} at {document['merit_at_deg']:.6g} deg")
+    if "defect" in document:
+        found = document["defect"]
+        told = "led through by the driver" if found == "none" else f"a {found} defect"
+        say(f"positions: {told}")
+
+
+def _table(console: Console, rows: Sequence[Row], columns: Sequence[str]) -> None:
+    table = plain_table(gap=2)
+    for column in columns:
+        table.add_column(column.replace("_", " "), overflow="fold")
+    for row in rows:
+        table.add_row(*(_cell(row.get(column)) for column in columns))
+    console.print(table, highlight=False)
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else ""
+    if isinstance(value, list):
+        return ", ".join(dict.fromkeys(value))
+    if isinstance(value, float):
+        return f"{0.0 if abs(value) < 1e-6 else value:.6g}"
+    return "" if value is None else str(value)

@@ -1,0 +1,142 @@
+"""Random triads as scenes: a central link on three legs of any kind, the first on a crank."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from models.files import parse_scene
+from models.scene import Scene
+
+KINDS = tuple(
+    kinds
+    for kinds in itertools.combinations_with_replacement(("RR", "PR", "RP", "PP"), 3)
+    if kinds.count("PP") < 2
+)
+"""The legs of all triads: outer joint, inner joint."""
+
+
+@dataclass
+class Drawn:
+    """A scene as it is drawn, at its start."""
+
+    rng: np.random.Generator
+    kinds: tuple[str, str, str]
+    crank_m: float = 0.3
+    ground: dict[str, complex] = field(default_factory=dict)
+    platform: dict[str, complex] = field(default_factory=dict)
+    crank: dict[str, complex] = field(default_factory=dict)
+    tables: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.place, self.pivot = self._point(), 2.0 * self._point()
+        self.angle, self.start = (float(x) for x in self.rng.uniform(-3.0, 3.0, 2))
+        self.ground["A"], self.crank["A"] = self.pivot, 0j
+        self.crank["B"] = complex(self.crank_m)
+        for i, kind in enumerate(self.kinds):
+            getattr(self, f"_{kind.lower()}")(i)
+
+    def _point(self) -> complex:
+        return complex(*self.rng.normal(size=2))
+
+    def _on_platform(self, at: complex) -> complex:
+        return (at - self.place) / np.exp(1j * self.angle)
+
+    def _known(self, i: int) -> tuple[str, float, complex]:
+        """The body that a leg hangs on, its angle and origin."""
+        return ("ground", 0.0, 0j) if i else ("crank", self.start, self.pivot)
+
+    def _pin(self, i: int) -> tuple[str, complex]:
+        """A pin of that body."""
+        if not i:
+            return "B", self.pivot + self.crank_m * np.exp(1j * self.start)
+        self.ground[f"K{i}"] = at = 2.0 * self._point()
+        return f"K{i}", at
+
+    def _corner(self, i: int) -> complex:
+        """A point of the platform, by name, and where it is."""
+        local = self._point()
+        self.platform[f"C{i}"] = local
+        return complex(self.place + local * np.exp(1j * self.angle))
+
+    def _rr(self, i: int) -> None:
+        corner, (pin, at) = self._corner(i), self._pin(i)
+        self._link(f"leg{i}", {pin: 0j, f"C{i}": complex(abs(corner - at))})
+
+    def _pr(self, i: int) -> None:
+        corner, (on, turn, origin) = self._corner(i), self._known(i)
+        direction = self._direction()
+        through = (corner - origin) / np.exp(1j * turn) - 0.4 * np.exp(1j * direction)
+        self._slider(f"C{i}", on, through, direction)
+
+    def _rp(self, i: int) -> None:
+        pin, at = self._pin(i)
+        direction = self._direction()
+        through = self._on_platform(at) - 0.3 * np.exp(1j * direction)
+        self._slider(pin, "platform", through, direction)
+
+    def _pp(self, i: int) -> None:
+        corner, (on, turn, origin) = self._corner(i), self._known(i)
+        out, lean, inner = (self._direction() for _ in range(3))
+        leg, at = turn + out + lean, corner + self._point()
+        through = (at - origin) / np.exp(1j * turn) - 0.2 * np.exp(1j * out)
+        self._slider(f"S{i}", on, through, out, f"leg{i}", f"X{i}", lean)
+        kept = self.angle - leg - inner
+        through = (corner - at) / np.exp(1j * leg) - 0.5 * np.exp(1j * inner)
+        self._slider(f"T{i}", f"leg{i}", through, inner, "platform", f"C{i}", kept)
+        self._link(f"leg{i}", {f"X{i}": 0j, f"Y{i}": 0.4 + 0.1j})
+
+    def _direction(self) -> float:
+        return float(self.rng.uniform(-3.0, 3.0))
+
+    def _link(self, name: str, points: dict[str, complex]) -> None:
+        self.tables.append(f"[links.{name}]\npoints = {_points(points)}")
+
+    def _slider(
+        self, name: str, on: str, through: complex, direction: float, link: str = "",
+        point: str = "", angle: float = 0.0,
+    ) -> None:  # fmt: skip
+        rows = [f'[sliders.{name}]\non = "{on}"', f"through_m = {_pair(through)}"]
+        rows.append(f"direction_deg = {math.degrees(direction)!r}")
+        if link:
+            rows.append(f'link = "{link}"\npoint = "{point}"\nangle_deg = {math.degrees(angle)!r}')
+        self.tables.append("\n".join(rows))
+
+    @property
+    def text(self) -> str:
+        platform, start = dict(self.platform), math.degrees(self.start)
+        if len(platform) < 2:
+            platform |= {"U": 0j, "V": 1.1 + 0j}
+        return "\n".join(
+            [
+                'name = "triad"\nsource = "test"',
+                f"[ground]\npoints = {_points(self.ground)}",
+                f"[links.crank]\npoints = {_points(self.crank)}",
+                *(t for t in self.tables if t.startswith("[links")),
+                f"[links.platform]\npoints = {_points(platform)}",
+                *(t for t in self.tables if t.startswith("[sliders")),
+                f'[driver]\nlink = "crank"\nspeed_rad_s = 1.0\nstart_deg = {start!r}',
+            ]
+        )
+
+
+def _pair(at: complex) -> str:
+    return f"[{float(at.real)!r}, {float(at.imag)!r}]"
+
+
+def _points(points: dict[str, complex]) -> str:
+    return "{ " + ", ".join(f"{name} = {_pair(at)}" for name, at in points.items()) + " }"
+
+
+def triad(kinds: tuple[str, str, str], seed: int, crank_m: float = 0.3) -> tuple[Scene, float]:
+    """A scene of one triad, and the angle of its central link as it was drawn [rad]."""
+    drawn = Drawn(np.random.default_rng(seed), kinds, crank_m)
+    return parse_scene(drawn.text, "test"), drawn.angle
+
+
+def on_branch(scene: Scene, number: int) -> Scene:
+    """The scene on another of its assemblies."""
+    return replace(scene, branch={"platform": number})

@@ -1,0 +1,112 @@
+"""Circuits and branches: four-bars by Grashof, six-bars by a count on a grid of configurations."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.circuits.circuits import Position, circuits_of
+from analytic.kinematics import reach, solve_driven
+from analytic.mechanism.fourbar import FourBar
+from models.array import Array
+from models.errors import CrankcheckError
+from models.files import load_scene
+from models.scene import Scene
+from tests.analytic.test_reach import fourbar
+
+
+def test_a_four_bar_has_two_circuits_if_it_is_grashof_and_else_one() -> None:
+    rng, seen = np.random.default_rng(3), [0, 0]
+    for _ in range(150):
+        lengths = [float(x) for x in rng.uniform(0.2, 1.0, 4)]
+        if 2.0 * max(lengths) > sum(lengths):
+            continue
+        bar = FourBar(*lengths)
+        if abs(bar.excess_m) < 1e-3:
+            continue
+        found = circuits_of(fourbar(*lengths)).circuits
+        grashof = bar.excess_m < 0.0
+        assert len(found) == (2 if grashof else 1), lengths
+        assert all((arc.low is None) == bar.driver_turns_fully for c in found for arc in c)
+        seen[grashof] += 1
+    assert min(seen) > 20
+
+
+def closes(spans: list[tuple[float, float]], theta: float) -> bool:
+    """Whether a driver angle is in one of the ranges, whole turns apart."""
+    turns = (theta - math.tau, theta, theta + math.tau)
+    return any(low <= at <= high for low, high in spans for at in turns)
+
+
+def pose(scene: Scene, dyads: tuple[str, ...], signs: tuple[int, ...], theta: float) -> Array:
+    """Where the inner pins of the dyads are."""
+    one = np.array([theta])
+    branch = dict(zip(dyads, signs, strict=True))
+    motion = solve_driven(replace(scene, branch=branch), one, one, one, bound=False)
+    return np.concatenate([motion.points[key].position[0] for key in dyads])
+
+
+def component_count(scene: Scene, dyads: tuple[str, ...], looks: int) -> int:
+    """Circuits by another way: all configurations at ``looks`` angles, each joined to those at the
+    next angle that are near, and where two end, to each other."""
+    signs = list(itertools.product((1, -1), repeat=len(dyads)))
+    spans = {s: reach(replace(scene, branch=dict(zip(dyads, s, strict=True)))) for s in signs}
+    theta = np.linspace(-math.pi, math.pi, looks, endpoint=False) + 1e-3
+    ends = [[s for s in signs if closes(spans[s], float(at))] for at in theta]
+    joined: dict[tuple[int, tuple[int, ...]], tuple[int, tuple[int, ...]]] = {}
+
+    def root(node: tuple[int, tuple[int, ...]]) -> tuple[int, tuple[int, ...]]:
+        while joined.setdefault(node, node) != node:
+            node = joined[node]
+        return node
+
+    for k in range(looks):
+        for there, side in ((ends[(k + 1) % looks], 1), (ends[k - 1], -1)):
+            lost = [s for s in ends[k] if s not in there]
+            for s in ends[k]:
+                if s in there:
+                    joined[root((k, s))] = root(((k + side) % looks, s))
+            for one in lost if len(lost) > 1 else ():
+                place = pose(scene, dyads, one, float(theta[k]))
+                rest = [s for s in lost if s != one]
+                apart = [np.abs(place - pose(scene, dyads, s, float(theta[k]))).max() for s in rest]
+                joined[root((k, one))] = root((k, rest[int(np.argmin(apart))]))
+    return len({root((k, s)) for k in range(looks) for s in ends[k]})
+
+
+@pytest.mark.parametrize("rod", [0.3, 0.14, 0.12, 0.45, 0.5])
+def test_circuits_of_a_stephenson_six_bar_are_those_counted_on_a_grid(rod: float) -> None:
+    scene = load_scene("sixbar-stephenson")
+    points = {"E": (0.0, 0.0), "F": (rod, 0.0)}
+    links = {**scene.links, "rod": replace(scene.links["rod"], points=points)}
+    changed = replace(scene, links=links)
+    found = circuits_of(changed)
+    assert len(found.circuits) == component_count(changed, found.signed.dyads, 720)
+
+
+def test_defects_are_told_apart() -> None:
+    circuits = circuits_of(load_scene("fourbar-double-rocker"))
+    number, own = circuits.own
+    low, high = own.range_rad
+    first, last = Position(low + 0.1, own.signs), Position(high - 0.1, own.signs)
+    middle = Position(0.5 * (low + high), own.signs)
+    assert circuits.defect([first, middle, last]) == "none"
+    assert circuits.defect([last, middle, first]) == "none"
+    assert circuits.defect([first, last, middle]) == "order"
+    back = next(arc for arc in circuits.circuits[number] if arc is not own)
+    assert circuits.defect([first, Position(middle.driver_rad, back.signs)]) == "branch"
+    other = circuits.circuits[1 - number][0]
+    there = Position(sum(other.range_rad) / 2, other.signs)
+    assert circuits.defect([first, there]) == "circuit"
+    with pytest.raises(CrankcheckError, match="can not be assembled; with these signs it can at"):
+        circuits.place(Position(math.pi, own.signs))
+
+
+def test_circuits_that_meet_in_change_points_are_one() -> None:
+    found = circuits_of(fourbar(0.1, 0.3, 0.1, 0.3))
+    assert found.change_points
+    assert len(found.circuits) == 1

@@ -1,0 +1,60 @@
+"""`crankcheck chains`: lists, sheets, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from reports.cli import app
+
+
+def chains(*arguments: str) -> Result:
+    return CliRunner().invoke(app, ["chains", *arguments])
+
+
+def test_chains_are_listed_with_their_assortments() -> None:
+    told = chains("--links", "8").output
+    assert told.startswith("16 chains of 8 links with mobility 1")
+    assert [line.split()[-1] for line in told.splitlines()[-3:]] == ["9", "5", "2"]
+
+
+def test_mechanisms_are_listed_with_their_class() -> None:
+    told = chains("--inversions").output
+    assert "2 chains of 6 links with mobility 1, 5 mechanisms" in told
+    line = next(line for line in told.splitlines() if line.startswith("Stephenson II "))
+    assert "class III or IV" in line
+
+
+def test_types_are_listed() -> None:
+    told = chains("--links", "4", "--sliders", "4").output
+    assert [line.split()[0] for line in told.splitlines()[2:]] == ["RRRR", "RRRP", "RRPP", "RPRP"]
+
+
+@pytest.mark.parametrize("ending", ["svg", "pdf"])
+def test_a_sheet_is_written(tmp_path: Path, ending: str) -> None:
+    file = tmp_path / f"chains.{ending}"
+    result = chains("--links", "4", "--sliders", "2", "--inversions", "-o", str(file))
+    assert result.exit_code == 0
+    assert "7 mechanisms" in result.output
+    raw = file.read_bytes()
+    assert b"layer-chains" in raw if ending == "svg" else raw.startswith(b"%PDF")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--links", "7"), "4, 6, 8, 10 links"),
+        (("--links", "99"), "3 to 10 links"),
+        (("--links", "10", "--sliders", "1"), "up to 8 links"),
+        (("--sliders", "-1"), "take 0 or more"),
+        (("--links", "8", "--inversions", "-o", "x.svg"), "--paper A3 would do"),
+        (("-o", "x.txt"), "x.txt"),
+    ],
+)
+def test_what_can_not_be_asked_is_one_message(arguments: tuple[str, ...], message: str) -> None:
+    result = chains(*arguments)
+    assert result.exit_code == 2
+    assert message in result.output + result.stderr
+    assert "Traceback" not in result.output + result.stderr

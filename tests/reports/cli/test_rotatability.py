@@ -1,0 +1,38 @@
+"""`crankcheck rotatability`: tables, JSON, exit codes, refusals."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from reports.cli import app
+
+
+def test_json_holds_what_the_tables_say() -> None:
+    table = CliRunner().invoke(app, ["rotatability", "fourbar-lecture-1"])
+    assert "Grashof crank-rocker, margin 0.05 m" in table.output
+    assert "60.0323" in table.output
+    told = json.loads(CliRunner().invoke(app, ["rotatability", "whitworth", "--json"]).output)
+    assert told["rotations"][1]["turns"] == 1
+    assert [branch["scene"] for branch in told["branches"]].count(True) == 1
+
+
+@pytest.mark.parametrize(
+    ("positions", "code", "word"),
+    [(("30", "90"), 0, "led through"), (("30:+", "90:-"), 1, "a circuit defect")],
+)
+def test_the_exit_code_tells_a_defect(positions: tuple[str, str], code: int, word: str) -> None:
+    options = [part for position in positions for part in ("--position", position)]
+    result = CliRunner().invoke(app, ["rotatability", "fourbar-lecture-1", *options])
+    assert result.exit_code == code
+    assert word in result.output
+
+
+@pytest.mark.parametrize("position", ["x", "30:", "30:+-", "nan", "30:1"])
+def test_a_position_that_is_none_is_refused(position: str) -> None:
+    line = ["rotatability", "fourbar-lecture-1", "--position", position]
+    result = CliRunner().invoke(app, line)
+    assert result.exit_code == 2
+    assert "wants degrees" in result.output
