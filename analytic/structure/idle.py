@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analytic.structure.drawing_frame import DrawingFrame
 from analytic.structure.freedom_names import axis_in_words
 from analytic.structure.scheme_loops import Loops
 from analytic.structure.screws import DEPENDENT, kernel, reciprocal
@@ -45,7 +46,7 @@ def idle_freedoms(loops: Loops, q: Array) -> list[Idle]:
             continue
         own = _common(next_to, outer)
         if own.shape[1]:
-            words = _words(_common(drawn, outer), own.shape[1], outer, loops.scale)
+            words = _words(_common(drawn, outer), own.shape[1], outer, loops.frame)
             found.append(Idle(links, own.shape[1], words))
     return found
 
@@ -74,12 +75,12 @@ def _common(twists: Mapping[str, Array], joints: list[SchemeJoint]) -> Array:
     return kernel(np.vstack([reciprocal(twists[joint.name]) for joint in joints]))
 
 
-def _words(motions: Array, freedoms: int, outer: list[SchemeJoint], scale: float) -> str:
+def _words(motions: Array, freedoms: int, outer: list[SchemeJoint], frame: DrawingFrame) -> str:
     """What the motion is, by the joints' names where its axis goes through both."""
     if freedoms > 1 or motions.shape[1] != 1:
         return f"{freedoms} freedoms of its own"
     twist = motions[:, 0]
-    places = [np.array(joint.at) / scale for joint in outer]
+    places = [frame.at(joint.at) for joint in outer]
     omega, v = twist[:3], twist[3:]
     stays = [np.abs(v + np.cross(omega, place)).max() < DEPENDENT for place in places]
     names = [joint.name for joint in outer]
@@ -87,4 +88,4 @@ def _words(motions: Array, freedoms: int, outer: list[SchemeJoint], scale: float
         return f"turns about the line through {names[0]} and {names[1]}"
     if np.abs(omega[:2]).max() < DEPENDENT and any(stays):
         return f"turns about {names[stays.index(True)]}"
-    return axis_in_words(np.r_[omega, v * scale])
+    return axis_in_words(frame.in_drawing(twist))

@@ -23,6 +23,9 @@ AWAY = 0.2
 LOOK = 1e-2
 """The step that tests a motion; what survives differs from the step by its square."""
 CLOSED = 1e-13
+SHAKES = 1e-5
+"""Next to the drawn position a scheme that shakes is closed to its rounding, and so is off by the
+root of that; what opens its loops by less may be such a motion, and is tried."""
 MOST_STEPS = 60
 TRIES = 4
 SEED = 18
@@ -59,7 +62,7 @@ def neighbourhood(loops: Loops) -> Neighbourhood:
     found = []
     for _ in range(TRIES):
         at = _left(loops, here, draw)
-        moves = loops.moves(at)
+        moves = loops.moves(at, SHAKES)
         found.append((_finite(loops, at, moves, draw), at, moves))
         if not loops.closing:
             break  # without loops all positions are alike

@@ -47,6 +47,10 @@ class Passive:
         parts += [
             f"joint {name} may leave {', '.join(each)} too" for name, each in by_joint.items()
         ]
+        if by_joint:
+            parts[-1] += (
+                " (Q turn, T displacement along an axis of the drawing; one choice of several)"
+            )
         return "; ".join(parts)
 
 
@@ -111,7 +115,7 @@ def _singles(loops: Loops, q: Array) -> Iterable[tuple[str, str]]:
         if used == spare:
             return
         effect = _effect(loops, joint, q)
-        at = links[joint.between[0]].pose @ np.r_[np.array(joint.at) / loops.scale, 1.0]
+        at = links[joint.between[0]].pose @ np.r_[loops.frame.at(joint.at), 1.0]
         for name, twist in named_twists(at[:3], planar).items():
             column = (effect @ twist[rows])[:, None]
             wider = np.hstack([slope, column])

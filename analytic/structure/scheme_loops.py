@@ -9,10 +9,11 @@ mobility at a position f - rank of the equations' derivative.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from analytic.structure.drawing_frame import DrawingFrame
 from analytic.structure.joint_chains import Element, chain_of
 from analytic.structure.screws import DEPENDENT, carried, displaced, gap, kernel
 from models.array import Array
@@ -34,10 +35,10 @@ class Placed:
 
 @dataclass(frozen=True)
 class Loops:
-    """A scheme whose lengths are over ``scale`` [m], so that they are of the size of 1."""
+    """A scheme's joints in ``frame``, its tree, and the joints that close loops."""
 
     scheme: Scheme
-    scale: float
+    frame: DrawingFrame
     chains: Mapping[str, tuple[Element, ...]]
     columns: Mapping[str, range]
     tree: tuple[tuple[SchemeJoint, str, str], ...]
@@ -45,18 +46,18 @@ class Loops:
     freedoms: int = field(default=0)
 
     @classmethod
-    def of(cls, scheme: Scheme, scale: float | None = None) -> Loops:
+    def of(cls, scheme: Scheme, frame: DrawingFrame | None = None) -> Loops:
         """The loops of a scheme. Raises StructureError where a link hangs on nothing."""
         if loose := scheme.loose():
             raise StructureError(f"{scheme.name}: no row of joints leads to {', '.join(loose)}")
-        scale = scale or size_of(scheme)
-        chains = {joint.name: chain_of(_scaled(joint, scale)) for joint in scheme.joints}
+        frame = frame or DrawingFrame.of(scheme)
+        chains = {joint.name: chain_of(frame.joint(joint)) for joint in scheme.joints}
         columns, used = {}, 0
         for joint in scheme.joints:
             count = scheme.freedoms(joint)
             columns[joint.name], used = range(used, used + count), used + count
         tree, closing = _spanned(scheme)
-        return cls(scheme, scale, chains, columns, tree, closing, used)
+        return cls(scheme, frame, chains, columns, tree, closing, used)
 
     def placed(self, q: Array) -> dict[str, Placed]:
         """Every link as the joints of the tree place it, their freedoms at ``q`` (f,)."""
@@ -77,9 +78,11 @@ class Loops:
             slopes.append((there.twists - links[second].twists)[rows])
         return np.concatenate(open_by), np.concatenate(slopes)
 
-    def moves(self, q: Array) -> Array:
-        """The motions of the joints' freedoms that keep all loops closed at ``q``: (f, d)."""
-        return kernel(self.closure(q)[1])
+    def moves(self, q: Array, share: float = DEPENDENT) -> Array:
+        """The motions of the joints' freedoms that keep all loops closed at ``q``: (f, d).
+
+        What opens the loops by less than a ``share`` of what does most is one of them."""
+        return kernel(self.closure(q)[1], share)
 
     def margin(self, q: Array) -> float:
         """The least of what holds: the smallest singular value of the closure that is not 0, over
@@ -103,7 +106,7 @@ class Loops:
 
     def part(self, scheme: Scheme, q: Array) -> tuple[Loops, Array]:
         """The loops of a scheme with fewer joints, and what of ``q`` is theirs."""
-        loops = Loops.of(scheme, self.scale)
+        loops = Loops.of(scheme, self.frame)
         kept = [column for joint in scheme.joints for column in self.columns[joint.name]]
         return loops, q[kept]
 
@@ -119,25 +122,6 @@ class Loops:
             twists[:, column] += factor * carried(pose, element.twist)
             pose = pose @ displaced(element.twist, factor * q[column])
         return Placed(pose, twists)
-
-
-def size_of(scheme: Scheme) -> float:
-    """The size of a scheme [m]: how far its joints are apart, at most in a coordinate; 1 for none.
-
-    Of prismatic joints alone there is none."""
-    places = [np.array(joint.at) for joint in scheme.joints if any(joint.at)]
-    places += [
-        np.array([each, 0.0, 0.0]) for j in scheme.joints for each in j.radii if np.isfinite(each)
-    ]
-    spread = float(np.ptp(np.array([np.zeros(3), *places]), axis=0).max())
-    return spread if spread > 0.0 else 1.0
-
-
-def _scaled(joint: SchemeJoint, scale: float) -> SchemeJoint:
-    """The joint with its lengths over the scale."""
-    x, y, z = (each / scale for each in joint.at)
-    first, second = (each / scale for each in joint.radii)
-    return replace(joint, at=(x, y, z), radii=(first, second), lead=joint.lead / scale)
 
 
 def _spanned(

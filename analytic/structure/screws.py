@@ -92,16 +92,16 @@ def rank(rows: Array) -> int:
     return 0 if rows.size == 0 else _rank(np.linalg.svd(rows)[1])
 
 
-def kernel(rows: Array) -> Array:
+def kernel(rows: Array, share: float = DEPENDENT) -> Array:
     """An orthonormal basis (m, d) of what the rows (k, m) take to 0."""
     if rows.shape[0] == 0 or rows.size == 0:
         return np.eye(rows.shape[1])
     _, values, basis = np.linalg.svd(rows)
-    return np.asarray(basis[_rank(values) :].T)
+    return np.asarray(basis[_rank(values, share) :].T)
 
 
-def _rank(values: Array) -> int:
-    return int(np.count_nonzero(values > DEPENDENT * max(1.0, float(values[0]))))
+def _rank(values: Array, share: float = DEPENDENT) -> int:
+    return int(np.count_nonzero(values > share * max(1.0, float(values[0]))))
 
 
 def reciprocal(twists: Array) -> Array:
