@@ -68,7 +68,7 @@ def taylor(theta: mpmath.mpf, omega: mpmath.mpf, gain: mpmath.mpf) -> Iterator[t
             a.append(-gain * c[n] / ((n + 1) * (n + 2)))
             c.append(-sum((k + 1) * a[k + 1] * s[n - k] for k in range(n + 1)) / (n + 1))
             s.append(sum((k + 1) * a[k + 1] * c[n - k] for k in range(n + 1)) / (n + 1))
-        theta, omega = mpmath.polyval(a, step, derivative=True, asc=True)
+        theta, omega = mpmath.polyval(a[::-1], step, derivative=True)
 
 
 @pytest.mark.parametrize("chain", CHAINS)
