@@ -103,8 +103,10 @@ class CrankDrive:
         else:
             self.course = course = CrankCourse(self._law, self._start_s, dt_s)
             told = {"offsetUserFunction": course.angle, "offsetUserFunction_t": course.speed}
+        if self._sense < 0.0:
+            told["factor1"] = self._sense
         self._constraint = self._system.AddObject(
-            items.ObjectConnectorCoordinate(markerNumbers=ends, factorValue1=self._sense, **told)
+            items.ObjectConnectorCoordinate(markerNumbers=ends, **told)
         )
 
     def _add_motor(self, ends: list[Any]) -> None:
