@@ -44,7 +44,7 @@ FLOORS: Mapping[str, str] = {
     "analytic": """
         elastic drawings
         free regulation
-        circuits mechanism forces
+        circuits mechanism forces in_assembly
         nearness kinematics
         prepared
         assur

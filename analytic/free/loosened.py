@@ -7,27 +7,20 @@ and with the speed that it has at the start, in the assembly that stands there.
 
 from __future__ import annotations
 
-import itertools
-import math
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
+from analytic.in_assembly import in_assembly
 from analytic.kinematics import solve
-from analytic.structure.mobility import Structure, analyse
-from models.errors import CrankcheckError, ReachError, StructureError
+from models.errors import CrankcheckError
 from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.released import Released, let_go
 from models.scene import Driver, Scene
 
-SAME = 1e-9
-"""Of the longest length: two places that are one."""
 STILL = 1e-9
 """Of the fastest link's rate: a link that does not move at the start tells no speed."""
-MOST_SIDES = 8
-"""Assemblies of dyads that are tried in every combination."""
 
 
 def loosened(scene: Scene, duration_s: float | None = None) -> Scene:
@@ -47,10 +40,11 @@ def loosened(scene: Scene, duration_s: float | None = None) -> Scene:
     assert isinstance(law, Released)
     for link in _by_speed(scene, start):
         theta, omega = (float(s[0]) for s in (start.links[link].theta, start.links[link].omega))
-        for held in _assembled(scene, link, theta, start):
-            return replace(
-                held, driver=Driver(link, Released(theta, omega, law.duration_s)), start=free.start
-            )
+        told = Driver(link, ConstantSpeed(theta, 1.0))
+        held = in_assembly(replace(scene, driver=told), start)
+        if held is not None:
+            told = Driver(link, Released(theta, omega, law.duration_s))
+            return replace(held, driver=told, start=free.start)
     raise CrankcheckError(
         f"{scene.name}: it is driven at {scene.driver.joint}, and no link that is pinned to the "
         "ground can tell its motion when it is let go; drive it at a link"
@@ -68,33 +62,3 @@ def _by_speed(scene: Scene, start: Motion) -> list[str]:
     most = max((abs(float(m.omega[0])) for m in start.links.values()), default=0.0)
     moving = [name for name, speed in speeds.items() if speed > STILL * most]
     return sorted(moving or speeds, key=lambda name: -speeds[name])
-
-
-def _assembled(scene: Scene, link: str, theta: float, start: Motion) -> Iterator[Scene]:
-    """The scene driven by a link, in the assembly of a start."""
-    driver = Driver(link, ConstantSpeed(theta, 1.0))
-    bare = replace(scene, driver=driver, branch={})
-    try:
-        structure = analyse(bare)
-    except StructureError:
-        return
-    for branch in _branches(structure):
-        held = replace(bare, branch=branch)
-        try:
-            places = solve(held, np.zeros(1), links=(), sliders=(), bound=False).points
-        except (ReachError, StructureError):
-            continue
-        off = max(
-            math.dist(at.position[0], places[p].position[0]) for p, at in start.points.items()
-        )
-        if off <= SAME * scene.longest_m:
-            yield held
-
-
-def _branches(structure: Structure) -> Iterator[dict[str, int]]:
-    """Every choice of assemblies."""
-    sides = [group.branch_key for group in structure.groups if group.assemblies == 2][:MOST_SIDES]
-    numbers = [triad.branch_key for triad in structure.triads]
-    choices = [*([1, -1] for _ in sides), *(range(1, 7) for _ in numbers)]
-    for chosen in itertools.product(*choices):
-        yield dict(zip([*sides, *numbers], chosen, strict=True))

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.kinematics import reach, solve
+from analytic.in_assembly import in_assembly
+from analytic.kinematics import reach, solve, solve_driven
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, ReachError, few
 from models.laws import ConstantSpeed
+from models.names import MOST_ASSEMBLIES
 from models.poses import Frame, frames
 from models.scene import Driver, Scene
 from reports.own_model.request import ModelRequest
@@ -60,6 +62,9 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
     except CrankcheckError as error:
         raise CrankcheckError(f"{request.path}: {error}{_why_not_one(own, request)}") from None
     keys = [group.branch_key for group in structure.groups if group.assemblies == 2]
+    numbered: dict[str, Sequence[int]] = dict.fromkeys(keys, (1, -1))
+    numbered |= {t.branch_key: range(1, MOST_ASSEMBLIES + 1) for t in structure.triads}
+    keys = list(numbered)
     unknown = [key for key in request.branch if key not in keys]
     if unknown:
         have = f"it has {', '.join(keys)}" if keys else "it has none"
@@ -73,7 +78,7 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
             f"are found by trying; choose {len(free) - MOST_CHOICES} or more with --branch NAME=1 "
             f"or NAME=-1, of {', '.join(free)}"
         )
-    ranked = sorted(_fits(own, bare, keys, request.branch), key=lambda fit: fit[0])
+    ranked = sorted(_fits(own, bare, numbered, request.branch), key=lambda fit: fit[0])
     if not ranked:
         raise CrankcheckError(f"{request.path}: {_not_assembled(own, bare, request)}")
     far, scene = ranked[0]
@@ -86,7 +91,7 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
     notes = [f"assembly: {_words(scene.branch)}, nearest to the pose"] if keys else []
     if request.start_deg is not None:
         law = replace(law, start_rad=math.radians(request.start_deg))
-        scene = replace(scene, driver=Driver(scene.driver.link, law))
+        scene = _led_to(scene, replace(scene, driver=Driver(scene.driver.link, law)), request)
     return Assembled(scene, far, tuple(notes))
 
 
@@ -104,14 +109,30 @@ def _why_not_one(own: OwnModel, request: ModelRequest) -> str:
     return ""
 
 
+def _led_to(scene: Scene, elsewhere: Scene, request: ModelRequest) -> Scene:
+    """A scene that starts elsewhere, in the assembly that the driver leads to from the pose: those
+    of class III groups are numbered where they start. Raises CrankcheckError."""
+    if not analyse(scene).triads:
+        return elsewhere
+    there = elsewhere.driver.law.at(np.zeros(1))[0]
+    motion = solve_driven(scene, there, np.ones(1), np.zeros(1), bound=False)
+    found = in_assembly(elsewhere, motion)
+    if found is None:
+        raise CrankcheckError(
+            f"{request.path}: --start {request.start_deg:g}: the assembly of the pose is not told "
+            "there from others; start nearer to the pose"
+        )
+    return found
+
+
 def _fits(
-    own: OwnModel, bare: Scene, keys: list[str], chosen: Mapping[str, int]
+    own: OwnModel, bare: Scene, choices: Mapping[str, Sequence[int]], chosen: Mapping[str, int]
 ) -> Iterator[tuple[float, Scene]]:
     """Every assembly, with how far the pose is from it."""
-    free = [key for key in keys if key not in chosen]
+    free = [key for key in choices if key not in chosen]
     drawn = own.drawn().bodies
-    for signs in itertools.product((1, -1), repeat=len(free)):
-        branch = dict.fromkeys(keys, 1) | dict(chosen) | dict(zip(free, signs, strict=True))
+    for signs in itertools.product(*(choices[key] for key in free)):
+        branch = dict.fromkeys(choices, 1) | dict(chosen) | dict(zip(free, signs, strict=True))
         scene = replace(bare, branch=branch)
         try:
             state = solve(scene, np.zeros(1), bound=False).state()

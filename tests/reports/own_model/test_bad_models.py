@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
+from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.mjcf import build
@@ -150,7 +151,7 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     ),
     "no step": (planted('timestep="0.001"', 'timestep="0"'), "its timestep is 0 s; give it one"),
     "two cranks": (FIVE, "(with A held these still move: B, E, D)"),
-    "no closed form": (TRIAD, "form an Assur group of 4 links"),
+    "a triad that does not turn": (TRIAD, "joint A would turn from 0 to 360 deg, and reaches -147"),
     "a third link that does not fit": (
         PLATES.replace("<!-- more -->", THIRD.format(off=0.001)).replace("<!-- ties -->", TIED),
         "redundant link third fits in place only",
@@ -330,3 +331,11 @@ def test_a_run_to_a_singular_position_is_refused_with_the_range_that_can_be_set(
         read_text(tmp_path, build(scene, state), joint="lever.A")
     assert "at driver 90 deg the dyad of" in str(refused.value)
     assert "--start and --turns set the range of joint lever.A" in str(refused.value)
+
+
+def test_a_model_with_a_triad_has_a_reference_from_its_pose_and_from_elsewhere(
+    tmp_path: Path,
+) -> None:
+    for start in (None, -20.0):
+        account = read_text(tmp_path, TRIAD, turns=0.05, dt_s=2e-4, start_deg=start)
+        assert [triad.central for triad in analyse(account.scene).triads] == ["plate"]
