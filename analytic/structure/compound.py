@@ -32,16 +32,21 @@ class Compound:
         """What stands for the bodies, each once."""
         return tuple(dict.fromkeys(self.unit(body) for body in bodies))
 
+    def joined(self, pins: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+        """The pins that are left between units."""
+        units = {pin: tuple(dict.fromkeys(map(self.unit, on))) for pin, on in pins.items()}
+        return {pin: names for pin, names in units.items() if len(names) > 1}
+
+    def sliding(self, prismatics: Mapping[str, tuple[str, str]]) -> dict[str, tuple[str, str]]:
+        """The prismatic pairs that are left between units."""
+        units = {n: (self.unit(a), self.unit(b)) for n, (a, b) in prismatics.items()}
+        return {name: ends for name, ends in units.items() if ends[0] != ends[1]}
+
     def pairs(
         self, pins: Mapping[str, tuple[str, ...]], prismatics: Mapping[str, tuple[str, str]]
     ) -> Pairs:
-        """The pins and prismatic pairs that are left between units."""
-        joined = {pin: tuple(dict.fromkeys(map(self.unit, on))) for pin, on in pins.items()}
-        sliding = {n: (self.unit(a), self.unit(b)) for n, (a, b) in prismatics.items()}
-        return Pairs(
-            {pin: names for pin, names in joined.items() if len(names) > 1},
-            {name: ends for name, ends in sliding.items() if ends[0] != ends[1]},
-        )
+        """All that are left between units."""
+        return Pairs(self.joined(pins), self.sliding(prismatics))
 
 
 def compound_of(scene: Scene) -> Compound | None:

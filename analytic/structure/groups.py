@@ -192,16 +192,14 @@ def _dyad(a: str, b: str, outer1: JointKey, inner: JointKey, outer2: JointKey) -
 
 def _triads(outer: Mapping[str, list[JointKey]], known: set[str], pairs: Pairs) -> Iterator[Triad]:
     """The triads that can be placed next, in the order of their central links."""
+    ready = {body: place for place, (body, ends) in enumerate(outer.items()) if len(ends) == 1}
     for central, held in outer.items():
         if held:
             continue
-        legs = []
-        beside = pairs.partners(central, known)
-        for body in outer if len(beside) == 3 else ():
-            if body in beside and len(outer[body]) == 1:
-                inner = pairs.inner(central, body, known)
-                if len(inner) == 1:
-                    legs.append(Leg(body, outer[body][0], inner[0]))
+        # Others beside it belong to groups that come later.
+        beside = sorted(pairs.partners(central, known) & ready.keys(), key=ready.__getitem__)
+        inner = {body: pairs.inner(central, body, known) for body in beside}
+        legs = [Leg(b, outer[b][0], inner[b][0]) for b in beside if len(inner[b]) == 1]
         if len(legs) == 3 and sum(leg.kind == "PP" for leg in legs) < 2:
             yield Triad(central, (legs[0], legs[1], legs[2]))
 

@@ -11,21 +11,15 @@ A link that is pinned at two or more points to bodies that move without it is re
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from analytic.structure.compound import Compound, compound_of
 from analytic.structure.groups import Bridge, Group, Pairs, Part, Triad, decompose
-from models.errors import StructureError, few
+from analytic.structure.unsolved import unsolved
+from models.errors import StructureError
 from models.joints import block_name, joined_at, sliding_body
 from models.scene import GROUND, Scene
-
-MOST_LOOKS = 200_000
-"""Pairs that are looked at, over all sets of links, to name a group without closed form: about
-0.2 s, however many links there are."""
-SHOWN = 8
-"""Links that are named of those left over."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +87,8 @@ def analyse(scene: Scene) -> Structure:
     ------
     StructureError
         Mobility other than 1; links that hang on nothing, or in pairs on one pin; a group that is
-        not a dyad (the message names its links); a branch for something that has one assembly only.
+        neither a dyad nor a triad (the message names its links); a driven joint that cannot move; a
+        branch for something that has one assembly only.
     """
     blocks = [block_name(s) for s in scene.sliders.values() if s.link is None]
     bodies = (*scene.links, *blocks)
@@ -107,6 +102,7 @@ def analyse(scene: Scene) -> Structure:
         units = compound.units(bodies)
         order, left = decompose(units, frozenset({GROUND}), compound.pairs(pins, prismatics))
     structure = Structure(bodies, pins, prismatics, order, compound)
+    _check_driver(scene, pins, prismatics)
     if left or structure.mobility != 1:
         raise StructureError(f"{scene.name}: {_fault(structure, left)}")
     _check_held(scene, structure.groups)
@@ -118,7 +114,9 @@ def _fault(structure: Structure, left: list[str]) -> str:
     """Why this is no mechanism of dyads with one driver: ``left`` could not be placed."""
     mobility = structure.mobility
     if mobility == 1:
-        return _no_closed_form(structure, left)
+        return unsolved(
+            structure.compound, structure.pins, structure.prismatics, structure.bodies, left
+        )
     n, p5 = len(structure.bodies), structure.pairs
     count = f"mobility W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {structure.count}"
     if structure.redundant:
@@ -129,70 +127,18 @@ def _fault(structure: Structure, left: list[str]) -> str:
     return f"{count}; one driver needs mobility 1. {cure}"
 
 
-def _no_closed_form(structure: Structure, left: list[str]) -> str:
-    """Which of the links left over are in the way, and why."""
-    pins, prismatics = structure.pins, structure.prismatics
-    placed, pairs = {GROUND, *structure.bodies} - set(left), Pairs(pins, prismatics)
-    outer = {body: pairs.outer(body, placed) for body in left}
-    for body in left:
-        if len(outer[body]) > 1:
-            names = ", ".join(name for _, name in outer[body])
-            return (
-                f"{body} is held by {len(outer[body])} pairs ({names}) to bodies that are placed "
-                "before it, so it is rigid and another link is loose: mobility 1 is only a count"
-            )
-    parts = _parts(structure, left)
-    most = MOST_LOOKS // (len(left) + len(pins) + len(prismatics))
-    for group in itertools.islice(_sets(parts), most):
-        size = len(group)
-        inside, outside = _pairs_of(set(group), structure, left)
-        if 3 * size == 2 * (inside + sum(len(outer[body]) for body in group)) and not outside:
-            return (
-                f"links {few(group, SHOWN)} form an Assur group of {size} links and "
-                f"{3 * size // 2} pairs (class III or higher), which has no closed form here; "
-                "dyads (RRR, RRP, RPR, PRP, RPP) have"
-            )
-    return f"{few(left, SHOWN)} do not hang on the driver and the ground by dyads; check their pins"
-
-
-def _parts(structure: Structure, left: list[str]) -> list[list[str]]:
-    """The links left over, apart where no pair without a known body joins them: a group is one."""
-    unknown = set(left)
-    part = {body: [body] for body in left}
-    for names in (*structure.pins.values(), *structure.prismatics.values()):
-        if not unknown.issuperset(names):
-            continue
-        first = part[names[0]]
-        for name in names[1:]:
-            other = part[name]
-            if other is not first:
-                first.extend(other)
-                part.update(dict.fromkeys(other, first))
-    place = {body: k for k, body in enumerate(left)}
-    return [
-        sorted(own, key=place.__getitem__) for own in {id(p): p for p in part.values()}.values()
-    ]
-
-
-def _sets(parts: list[list[str]]) -> Iterator[tuple[str, ...]]:
-    """The sets of links that may form a group of class III or higher, the smallest first."""
-    for size in range(4, max(map(len, parts)) + 1, 2):
-        for part in parts:
-            yield from itertools.combinations(part, size)
-
-
-def _pairs_of(group: set[str], structure: Structure, left: list[str]) -> tuple[int, int]:
-    """The pairs between members of the group, and whether it hangs on others that are left."""
-    others = set(left) - group
-    inside = outside = 0
-    for names in structure.pins.values():
-        unknown = [name for name in names if name in group]
-        if unknown and set(names) <= group | others:
-            inside += len(unknown) - 1
-    for a, b in structure.prismatics.values():
-        inside += {a, b} <= group
-        outside += len({a, b} & group) == 1 and len({a, b} & others) == 1
-    return inside, outside
+def _check_driver(
+    scene: Scene, pins: Mapping[str, tuple[str, ...]], prismatics: Mapping[str, tuple[str, str]]
+) -> None:
+    """Refuse a driven pair whose bodies another pair joins as well."""
+    driver, own = scene.driver, {scene.driver.base, scene.driver.link}
+    joined = [name for name, ends in {**pins, **prismatics}.items() if own <= {*ends}]
+    others = [name for name in joined if name != (driver.slider or scene.driver_pivot)]
+    if others:
+        raise StructureError(
+            f"{scene.name}: {driver.joint} cannot move: {' and '.join(sorted(own))} are joined at "
+            f"{', '.join(others)} too; take one of these joints out, or drive another"
+        )
 
 
 def _check_held(scene: Scene, groups: tuple[Group, ...]) -> None:

@@ -10,11 +10,13 @@ import pytest
 from analytic.check import newton
 from analytic.check.newton import Guess
 from analytic.kinematics import solve
-from analytic.structure import mobility as structure
-from analytic.structure.mobility import Structure, analyse
+from analytic.structure.groups import Bridge
+from analytic.structure.mobility import analyse
+from analytic.structure.unsolved import MOST_LOOKS, LeftOver
 from models.errors import StructureError
 from models.files import load_scene, parse_scene, shipped
-from models.scene import Scene
+from models.laws import ConstantSpeed
+from models.scene import Driver, Scene
 
 FOURBAR = {"crank": "AB", "coupler": "BC", "rocker": "DC"}
 GROUND = {"A": (0.0, 0.0), "D": (0.3, 0.0), "G": (0.6, 0.1), "H": (0.5, 0.4)}
@@ -106,33 +108,75 @@ def test_a_guide_that_holds_the_mechanism_rigid_is_said_with_the_count() -> None
         analyse(guided)
 
 
-def test_class_iii_group_names_its_links() -> None:
-    """A platform on three legs, one of them on the crank."""
-    legs = {"crank": "AB", "platform": "CEF", "leg1": "BC", "leg2": "DE", "leg3": "GF"}
-    with pytest.raises(StructureError, match="class III") as raised:
-        analyse(build(legs, "ADG"))
+TRIAD = {"crank": "AB", "platform": "CEF", "leg1": "BC", "leg2": "DE", "leg3": "GF"}
+SIX = {"crank": "AB", "plate1": "CEF", "plate2": "FKL", "leg1": "BC", "leg2": "DE", "leg3": "GK"}
+SIX |= {"leg4": "HL"}
+"""Two plates pinned to each other, each on two legs."""
+
+
+def test_a_platform_on_three_legs_is_a_triad() -> None:
+    """One leg is on the crank."""
+    found = analyse(build(TRIAD, "ADG"))
+    assert [(triad.central, triad.kind) for triad in found.triads] == [("platform", "RR-RR-RR")]
+    assert not found.groups
+
+
+def test_dyads_stand_before_and_after_a_triad() -> None:
+    bars = FOURBAR | {"rocker": "DCI", "platform": "EFJK", "leg1": "IE", "leg2": "GF", "leg3": "HJ"}
+    bars |= {"rod": "KL", "lever": "GL"}
+    order = analyse(build(bars, "ADGH")).order
+    kinds = [(part.kind, part.bodies[0]) for part in order if not isinstance(part, Bridge)]
+    assert kinds == [("RRR", "coupler"), ("RR-RR-RR", "platform"), ("RRR", "rod")]
+
+
+def test_a_larger_group_names_its_links() -> None:
+    with pytest.raises(StructureError, match="class III or higher, order 4") as raised:
+        analyse(build(SIX, "ADGH"))
     said = str(raised.value)
-    assert "platform, leg1, leg2, leg3 form an Assur group of 4 links and 6 pairs" in said
-    assert "RRR, RRP, RPR, PRP, RPP" in said
+    links = "plate1, plate2, leg1, leg2, leg3, leg4"
+    assert f"{links} form an Assur group of 6 links and 9 pairs" in said
+    assert "dyads (RRR, RRP, RPR, PRP, RPP) and triads (class III, order 3) have" in said
 
 
-def platforms(count: int) -> Scene:
-    """Platforms on three legs, each with one of them on the crank."""
-    scene = build(
-        {"crank": "AB", "platform": "CEF", "leg1": "BC", "leg2": "DE", "leg3": "GF"}, "ADG"
+def test_four_links_in_a_ring_are_of_class_iv() -> None:
+    bars = {"crank": "AB", "one": "BCE", "two": "DFJ", "bar1": "CF", "bar2": "EJ"}
+    with pytest.raises(StructureError, match=r"4 links and 6 pairs \(class IV, order 2\)"):
+        analyse(build(bars))
+
+
+def test_legs_that_slide_at_both_ends_leave_no_two_of_a_triad() -> None:
+    slides = "".join(
+        f'[sliders.S{i}]\non = "ground"\nlink = "leg{i}"\npoint = "{p}"\n'
+        f'[sliders.T{i}]\non = "leg{i}"\nlink = "platform"\npoint = "{q}"\ndirection_deg = 50.0\n'
+        for i, p, q in ((2, "G", "E"), (3, "H", "F"))
     )
+    bars = {"crank": "AB", "platform": "CEF", "leg1": "BC", "leg2": "GI", "leg3": "HK"}
+    with pytest.raises(StructureError, match="order 3, two of whose legs slide at both ends"):
+        analyse(build(bars, "A", sliders=slides))
+
+
+def test_what_the_driver_moves_against_each_other_is_one_link_of_a_group() -> None:
+    bars = {"crank": "ACM", "arm": "ME", "two": "DFJ", "bar1": "CF", "bar2": "EJ"}
+    driver = Driver("arm", ConstantSpeed(0.1, 1.0), "crank", pin="M")
+    with pytest.raises(StructureError, match=r"crank \+ arm, two, bar1, bar2 form .* \(class IV"):
+        analyse(replace(build(bars), driver=driver))
+
+
+def pairs_of_platforms(count: int) -> Scene:
+    """Groups of six links, each with one leg on the crank."""
+    scene = build(SIX, "ADGH")
     links = {"crank": scene.links["crank"]}
-    for name in ("leg1", "leg2", "leg3", "platform"):
+    for name in ("leg1", "leg2", "leg3", "leg4", "plate1", "plate2"):
         for i in reversed(range(count)):
             link = scene.links[name]
-            points = {p if p in "BDG" else f"{p}{i}": at for p, at in link.points.items()}
+            points = {p if p in "BDGH" else f"{p}{i}": at for p, at in link.points.items()}
             links[f"{name}-{i}"] = replace(link, name=f"{name}-{i}", points=points)
     return replace(scene, links=links)
 
 
 def chain_of_platforms(count: int) -> Scene:
-    """As `platforms`, and each next one hangs on the last by its first leg."""
-    scene = platforms(count)
+    """As `pairs_of_platforms`, and each next one hangs on the last by its first leg."""
+    scene = pairs_of_platforms(count)
     links = dict(scene.links)
     for i in range(1, count):
         leg = links[f"leg1-{i}"]
@@ -143,8 +187,9 @@ def chain_of_platforms(count: int) -> Scene:
 
 def test_a_group_of_many_alike_is_named_alone() -> None:
     with pytest.raises(StructureError, match="class III") as raised:
-        analyse(platforms(50))
-    assert "links leg1-49, leg2-49, leg3-49, platform-49 form an Assur group" in str(raised.value)
+        analyse(pairs_of_platforms(20))
+    named = "leg1-19, leg2-19, leg3-19, leg4-19, plate1-19, plate2-19"
+    assert f"links {named} form an Assur group" in str(raised.value)
 
 
 @pytest.mark.parametrize("count", [10, 60])
@@ -153,29 +198,27 @@ def test_the_work_of_naming_a_group_does_not_grow_with_the_links(
 ) -> None:
     """All hang together, so a group is searched for among all; what is left is not listed whole."""
     looks = 0
-    whole = structure._pairs_of
+    whole = LeftOver.pairs_of
 
-    def counting(group: set[str], counted: Structure, left: list[str]) -> tuple[int, int]:
+    def counting(rest: LeftOver, group: set[str]) -> tuple[int, int]:
         nonlocal looks
-        looks += len(left) + len(counted.pins)
-        return whole(group, counted, left)
+        looks += len(rest.left) + len(rest.pins)
+        return whole(rest, group)
 
-    monkeypatch.setattr(structure, "_pairs_of", counting)
+    monkeypatch.setattr(LeftOver, "pairs_of", counting)
     with pytest.raises(StructureError) as raised:
         analyse(chain_of_platforms(count))
-    assert looks <= structure.MOST_LOOKS
+    assert looks <= MOST_LOOKS
     said = str(raised.value)
-    assert f" and {4 * count - 8} more do not hang on the driver" in said
+    assert f" and {6 * count - 8} more do not hang on the driver" in said
     assert len(said) < 300
 
 
-def test_class_iii_group_is_named_apart_from_the_dyads_before_and_after_it() -> None:
-    bars = FOURBAR | {"rocker": "DCI", "platform": "EFJK", "leg1": "IE", "leg2": "GF", "leg3": "HJ"}
-    bars |= {"rod": "KL", "lever": "GL"}
-    with pytest.raises(
-        StructureError, match="links platform, leg1, leg2, leg3 form an Assur group"
-    ):
-        analyse(build(bars, "ADGH"))
+def test_a_driven_pair_whose_bodies_are_joined_again_cannot_move() -> None:
+    bars = {"crank": "AB", "plate": "BCE", "brace": "CEF", "rocker": "DF"}
+    scene = replace(build(bars), driver=Driver("brace", ConstantSpeed(0.1, 1.0), "plate", pin="C"))
+    with pytest.raises(StructureError, match=r"pin C of plate and brace cannot move: .* at E too"):
+        analyse(scene)
 
 
 def test_rigid_part_beside_a_loose_link_is_not_taken_for_mobility_one() -> None:
