@@ -119,9 +119,9 @@ def test_freedoms_have_their_place_where_they_are_not_about_the_joints_point() -
     joint = analyse_joint(Touching("", "", (0.0, 0.1, 0.0), (thread,)))
     (screw,) = joint.alone.freedoms
     assert screw == "screw about (0, 0, 1) through (0.5, 0.2, 0) m, 0.01 m in a turn"
-    tube = contact("cylinder", (0.5, 0.2, 0.0), axis=(0.6, 0.8, 0.0))
+    tube = contact("cylinder", (0.5, 0.2, 0.3), axis=(0.6, 0.8, 0.0))
     joint = analyse_joint(Touching("", "", tube.at, (tube,)))
-    turn = "turn about (0.6, 0.8, 0) through (0.224, -0.168, 0) m"
+    turn = "turn about (0.6, 0.8, 0) through (0.224, -0.168, 0.3) m"
     assert joint.alone.freedoms == (turn, "slide along (0.6, 0.8, 0)")
 
 

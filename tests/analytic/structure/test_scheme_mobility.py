@@ -10,6 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from analytic.structure.drawing_frame import DrawingFrame
+from analytic.structure.passive import effect_of
 from analytic.structure.scheme_loops import IN_PLANE, Loops
 from analytic.structure.scheme_mobility import SchemeMobility, scheme_mobility
 from analytic.structure.screws import rank, reciprocal, rotation
@@ -91,6 +92,16 @@ def test_the_derivative_of_the_closure_is_that_of_differences(name: str) -> None
     way = np.random.default_rng(5).standard_normal(loops.freedoms)
     ahead, behind = (loops.closure(at + step * way)[0] for step in (1e-5, -1e-5))
     assert np.allclose((ahead - behind) / 2e-5, slope @ way, atol=1e-7)
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+def test_a_motion_in_a_joint_opens_the_loops_as_its_own_freedoms_do(name: str) -> None:
+    loops, at = Loops.of(load_scheme(name)), known(name).near.at
+    rows = IN_PLANE if loops.scheme.dimension == 3 else list(range(6))
+    slope, own = loops.closure(at)[1], loops.joint_twists(at)
+    for joint in loops.scheme.joints:
+        opened = effect_of(loops, joint, at) @ own[joint.name][rows]
+        assert np.allclose(opened, slope[:, loops.columns[joint.name]], atol=1e-9)
 
 
 def moved(scheme: Scheme, seed: int, far: float = 1.0) -> Scheme:
