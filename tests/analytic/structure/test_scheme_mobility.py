@@ -100,7 +100,7 @@ def test_a_motion_in_a_joint_opens_the_loops_as_its_own_freedoms_do(name: str) -
     rows = IN_PLANE if loops.scheme.dimension == 3 else list(range(6))
     slope, own = loops.closure(at)[1], loops.joint_twists(at)
     for joint in loops.scheme.joints:
-        opened = effect_of(loops, joint, at) @ own[joint.name][rows]
+        opened = effect_of(loops, joint) @ own[joint.name][rows]
         assert np.allclose(opened, slope[:, loops.columns[joint.name]], atol=1e-9)
 
 
