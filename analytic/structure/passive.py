@@ -114,7 +114,7 @@ def _singles(loops: Loops, q: Array) -> Iterable[tuple[str, str]]:
     for joint in loops.scheme.joints:
         if used == spare:
             return
-        effect = _effect(loops, joint, q)
+        effect = effect_of(loops, joint)
         at = links[joint.between[0]].pose @ np.r_[loops.frame.at(joint.at), 1.0]
         for name, twist in named_twists(at[:3], planar).items():
             column = (effect @ twist[rows])[:, None]
@@ -124,7 +124,7 @@ def _singles(loops: Loops, q: Array) -> Iterable[tuple[str, str]]:
                 yield joint.name, name
 
 
-def _effect(loops: Loops, joint: SchemeJoint, q: Array) -> Array:
+def effect_of(loops: Loops, joint: SchemeJoint) -> Array:
     """How a twist in a joint (the second link against the first) opens the loops: (k, 3 or 6)."""
     size = loops.scheme.dimension
     blocks = [np.zeros((0, size))]

@@ -9,7 +9,7 @@ mobility at a position f - rank of the equations' derivative.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -43,7 +43,7 @@ class Loops:
     columns: Mapping[str, range]
     tree: tuple[tuple[SchemeJoint, str, str], ...]
     closing: tuple[SchemeJoint, ...]
-    freedoms: int = field(default=0)
+    freedoms: int
 
     @classmethod
     def of(cls, scheme: Scheme, frame: DrawingFrame | None = None) -> Loops:

@@ -114,6 +114,17 @@ def test_form_keeps_what_no_motion_opens_and_a_force_the_rest() -> None:
     assert [name for name, held in kept.items() if held] == ["between two planes", "kept both ways"]
 
 
+def test_freedoms_have_their_place_where_they_are_not_about_the_joints_point() -> None:
+    thread = contact("thread", (0.5, 0.2, 0.0), lead=0.01)
+    joint = analyse_joint(Touching("", "", (0.0, 0.1, 0.0), (thread,)))
+    (screw,) = joint.alone.freedoms
+    assert screw == "screw about (0, 0, 1) through (0.5, 0.2, 0) m, 0.01 m in a turn"
+    tube = contact("cylinder", (0.5, 0.2, 0.3), axis=(0.6, 0.8, 0.0))
+    joint = analyse_joint(Touching("", "", tube.at, (tube,)))
+    turn = "turn about (0.6, 0.8, 0) through (0.224, -0.168, 0.3) m"
+    assert joint.alone.freedoms == (turn, "slide along (0.6, 0.8, 0)")
+
+
 def test_points_make_the_class_of_the_surface_that_they_stand_for() -> None:
     def by(*contacts: Contact) -> int:
         joint = Touching("points", "", (0.0, 0.0, 0.0), contacts)

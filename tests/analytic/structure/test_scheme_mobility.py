@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from analytic.structure.drawing_frame import DrawingFrame
+from analytic.structure.passive import effect_of
 from analytic.structure.scheme_loops import IN_PLANE, Loops
 from analytic.structure.scheme_mobility import SchemeMobility, scheme_mobility
-from analytic.structure.screws import rank, reciprocal
+from analytic.structure.screws import rank, reciprocal, rotation
 from models.scene import GROUND
 from models.scheme import Place, Scheme, SchemeJoint
 from models.scheme_files import load_scheme, shipped_schemes
@@ -90,6 +92,16 @@ def test_the_derivative_of_the_closure_is_that_of_differences(name: str) -> None
     way = np.random.default_rng(5).standard_normal(loops.freedoms)
     ahead, behind = (loops.closure(at + step * way)[0] for step in (1e-5, -1e-5))
     assert np.allclose((ahead - behind) / 2e-5, slope @ way, atol=1e-7)
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+def test_a_motion_in_a_joint_opens_the_loops_as_its_own_freedoms_do(name: str) -> None:
+    loops, at = Loops.of(load_scheme(name)), known(name).near.at
+    rows = IN_PLANE if loops.scheme.dimension == 3 else list(range(6))
+    slope, own = loops.closure(at)[1], loops.joint_twists(at)
+    for joint in loops.scheme.joints:
+        opened = effect_of(loops, joint) @ own[joint.name][rows]
+        assert np.allclose(opened, slope[:, loops.columns[joint.name]], atol=1e-9)
 
 
 def moved(scheme: Scheme, seed: int, far: float = 1.0) -> Scheme:
@@ -181,6 +193,19 @@ def test_a_shaft_in_two_bearings_has_one_that_is_passive_and_no_idle_turn() -> N
     assert mobility.passive.joints == ("B",)
 
 
+def test_a_spare_rod_between_balls_is_redundant_and_has_an_idle_turn() -> None:
+    four_bar = load_scheme("four-bar-in-space")
+    across = {"C": (0.36, 0.08, 0.0), "D": (0.3, 0.0, 0.0)}  # a parallelogram
+    joints = [replace(each, at=across.get(each.name, each.at)) for each in four_bar.joints]
+    ends = (("E", "coupler", (0.2, 0.08, 0.05)), ("F", GROUND, (0.14, 0.0, 0.05)))
+    joints += [SchemeJoint(name, "spherical", (link, "rod"), at) for name, link, at in ends]
+    scheme = replace(four_bar, links=(*four_bar.links, "rod"), joints=tuple(joints))
+    mobility = scheme_mobility(scheme)
+    assert (scheme.count, mobility.real, mobility.useful) == (-2, 2, 1)
+    assert mobility.passive.links == ("rod",)
+    assert len(mobility.passive.single) == 3
+
+
 def test_a_momentary_motion_counts_in_the_drawn_position_alone() -> None:
     flat, shaky = known("parallelogram-flat"), known("stretched-bars")
     assert flat.near.is_singular
@@ -199,6 +224,13 @@ def test_a_shaky_part_on_a_crank_is_told_from_the_motion_of_the_crank() -> None:
     scheme = replace(bars, links=("crank", *bars.links), joints=(crank, *carried))
     mobility = scheme_mobility(scheme)
     assert (mobility.near.here, mobility.real, mobility.yielding) == (2, 1, 1)
+
+
+def test_a_twist_of_the_frame_is_one_about_the_drawings_origin() -> None:
+    frame = DrawingFrame((1.0, 2.0, 3.0), 0.5)
+    axis, place = (0.0, 0.6, 0.8), (1.5, 1.0, 2.0)
+    there = frame.in_drawing(rotation(frame.at(place), axis))
+    assert np.allclose(there, rotation(place, axis))
 
 
 def test_lengths_that_are_a_little_off_are_told() -> None:
