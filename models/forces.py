@@ -56,7 +56,8 @@ class Forces:
     ``pins`` holds, by point and body, the force of the pin on the body [N], (T, 2), in the ground's
     frame. Bodies stand in the order of the pin, the ground first, then links, then slider blocks:
     where two meet, the force on the second is what the first exerts on it. All forces of a pin add
-    up to 0. ``torque`` [N m], (T,), is what the drive exerts on the driver. ``undetermined`` says
+    up to 0. ``torque``, (T,), is what the drive exerts on the driver, in ``drive_unit``: N m, or N
+    along its line where that is a slider. ``undetermined`` says
     why there are no reactions where the equations of statics leave them open. What a producer does
     not give is NaN. ``friction`` holds what rubs, by joint: in a pin the couple [N m] that its
     first body exerts on its second, in a slider the force [N] of the guide on what slides, along
@@ -73,6 +74,7 @@ class Forces:
     friction: Mapping[str, Array] = field(default_factory=dict)
     friction_solution: FrictionSolution | None = None
     contradictions: tuple[str, ...] = ()
+    drive_unit: str = "N m"
 
     def has_equilibria(self, number: int) -> NDArray[np.bool_]:
         """The samples (T,) at which Coulomb's friction has so many equilibria: 0 where it locks the

@@ -119,6 +119,16 @@ class Driver:
         """Of its coordinate: rad or m."""
         return "rad" if self.slider is None else "m"
 
+    @property
+    def effort(self) -> str:
+        """What moves it: a torque, or of a slider a force along its line."""
+        return "torque" if self.slider is None else "force"
+
+    @property
+    def effort_unit(self) -> str:
+        """Of what moves it: N m or N."""
+        return "N m" if self.slider is None else "N"
+
 
 @dataclass(frozen=True)
 class Scene:

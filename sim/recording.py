@@ -60,7 +60,9 @@ def recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway: 
     if not logs:
         logs, opened = [facts.start], [gaps(scene, facts.start)]
     poses = joined(logs)
-    forces = Forces.joined(acting) if acting else None
+    forces = None
+    if acting:
+        forces = replace(Forces.joined(acting), drive_unit=scene.driver.effort_unit)
     return replace(
         blank,
         status=status,

@@ -110,7 +110,7 @@ class ForceArrays:
             for array in _arrays(self.bound):
                 array[span][samples] = np.inf
 
-    def forces(self, undetermined: str) -> Forces:
+    def forces(self, undetermined: str, drive_unit: str) -> Forces:
         """The filled arrays as forces."""
         bound = self.bound if self.certified else None
         return Forces(
@@ -122,6 +122,7 @@ class ForceArrays:
             undetermined,
             self.friction,
             self.solution,
+            drive_unit=drive_unit,
         )
 
 

@@ -99,7 +99,7 @@ def forces(
             result.leave_out(span, dead)
         elif dead.any():
             raise CrankcheckError(_dead_point(scene, chunk, time_s[span], int(np.argmax(dead))))
-    return result.forces(_undetermined(structure))
+    return result.forces(_undetermined(structure), scene.driver.effort_unit)
 
 
 def _write(

@@ -8,6 +8,7 @@ import numpy as np
 
 from analytic.forces.springs import spring_lengths
 from analytic.kinematics import reach, repeats_after, unit_chunk
+from analytic.structure.cranked import refuse_other_than_cranked
 from models.characteristics import Constant
 from models.errors import CrankcheckError, few
 from models.laws import ConstantSpeed
@@ -57,7 +58,8 @@ def cycle_angle(scene: Scene) -> float:
 
 
 def _check_turns(scene: Scene) -> None:
-    """Refuse a driver that no cycle is like the next of."""
+    """Refuse a driver that no cycle is like the next of, or whose speed is no body's own."""
+    refuse_other_than_cranked(scene, "a cycle of speed")
     if not (scene.is_free or isinstance(scene.driver.law, ConstantSpeed)):
         raise CrankcheckError(
             f"{scene.name}: its driver swings or speeds up by its law, and a cycle of speed is "

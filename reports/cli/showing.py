@@ -35,6 +35,10 @@ class SolveRequest:
     at_deg: Annotated[
         float | None, typer.Option(metavar="DEG", help="One position: the driver's angle.")
     ] = None
+    at_m: Annotated[
+        float | None,
+        typer.Option(metavar="M", help="One position: the displacement of a slider that drives."),
+    ] = None
     turns: Annotated[
         float | None, typer.Option(help="A motion over so many turns (default 1).")
     ] = None
@@ -101,6 +105,13 @@ class SolveRequest:
             "as a length.",
         ),
     ] = None
+
+    @property
+    def at_place(self) -> str:
+        """The option by which one position was asked for; "" where a motion was."""
+        if self.at_deg is None and self.at_m is None:
+            return ""
+        return f"--at-m {self.at_m:g}" if self.at_deg is None else f"--at-deg {self.at_deg:g}"
 
 
 @command

@@ -34,19 +34,44 @@ def time_at(scene: Scene, at_s: float) -> float:
     return at_s
 
 
-def driver_at(
-    scene: Scene, at_deg: float, *, clockwise: bool = False
-) -> tuple[float, float, float]:
-    """Angle [rad], angular velocity [rad/s] and acceleration [rad/s^2] as the driver's law moves it
-    through an angle [deg]. Raises CrankcheckError for an angle that it never has."""
+def place_at(scene: Scene, at_deg: float | None, at_m: float | None) -> float:
+    """Where the driver was asked to stand: an angle [rad] that is given in degrees, or a slider's
+    displacement [m]. Raises CrankcheckError for what is none, or not the driver's."""
+    if at_deg is not None and at_m is not None:
+        raise CrankcheckError("--at-deg and --at-m: the driver stands at one place; give one")
+    slides = scene.driver.slider is not None
+    if at_m is not None:
+        if not slides:
+            raise CrankcheckError(
+                f"--at-m: the driver of {scene.name} is {scene.driver.joint}, which turns; give "
+                "its angle by --at-deg"
+            )
+        if not math.isfinite(at_m):
+            raise CrankcheckError(f"--at-m {at_m:g}: give a displacement in metres")
+        return at_m
+    assert at_deg is not None
     theta = angle_at(at_deg)
-    if scene.driver.slider is not None:
+    if slides:
         raise CrankcheckError(
-            f"--at-deg {at_deg:g}: the driver of {scene.name} is {scene.driver.joint}, which has a "
-            "place and no angle; ask for its motion"
+            f"--at-deg {at_deg:g}: the driver of {scene.name} is {scene.driver.joint}, which has "
+            "no angle; give its displacement by --at-m"
+        )
+    return theta
+
+
+def driver_at(
+    scene: Scene, at_deg: float | None, at_m: float | None = None, *, clockwise: bool = False
+) -> tuple[float, float, float]:
+    """Place [rad or m], speed and acceleration as the driver's law moves it through an angle [deg]
+    or a displacement [m]. Raises CrankcheckError for one that it never has."""
+    place = place_at(scene, at_deg, at_m)
+    asked = f"--at-deg {at_deg:g}" if at_m is None else f"--at-m {at_m:g}"
+    if clockwise and at_m is not None:
+        raise CrankcheckError(
+            f"{asked} --clockwise: {scene.driver.joint} does not turn; leave it out"
         )
     try:
-        omega, alpha = passing(scene.driver.law, theta, clockwise=clockwise)
+        speed, rate = passing(scene.driver.law, place, clockwise=clockwise, slides=at_m is not None)
     except ValueError as error:
-        raise CrankcheckError(f"--at-deg {at_deg:g}: the driver of {scene.name} {error}") from None
-    return theta, omega, alpha
+        raise CrankcheckError(f"{asked}: the driver of {scene.name} {error}") from None
+    return place, speed, rate

@@ -27,9 +27,9 @@ def acted_on(acting: Forces) -> Iterator[tuple[str, str, str, Array]]:
 
 
 def force_columns(acting: Forces, *, lengths: bool = True) -> dict[str, Array]:
-    """Columns by name: the driving torque, pins by point and body, sliders, and what rubs; vectors
-    also by length."""
-    columns = {"torque_n_m": acting.torque}
+    """Columns by name: the driving torque or force, pins by point and body, sliders, and
+    what rubs; vectors also by length."""
+    columns = {"torque_n_m" if acting.drive_unit == "N m" else "drive_force_n": acting.torque}
     for point, body, _, force in acted_on(acting):
         stem = f"{point}_{body.replace(' ', '_')}"
         columns[f"{stem}_fx_n"], columns[f"{stem}_fy_n"] = force[:, 0], force[:, 1]

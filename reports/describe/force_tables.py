@@ -9,6 +9,8 @@ import numpy as np
 from rich.table import Table
 
 from models.array import Array
+from models.driver_course import driver_course, driver_place
+from models.driver_shown import driver_shown, driver_unit
 from models.forces import Forces
 from models.motion import Motion
 from models.scene import Scene
@@ -28,11 +30,12 @@ def position_force_tables(scene: Scene, motion: Motion, acting: Forces) -> list[
     """The driving torque with its power, the force in every pin, and that of every guide, at one
     position; of a guide also how far along its line from the slider's point the normal force
     acts alone."""
-    drive = head_table("drive on", ("torque N m", "power W"))
+    drive = head_table("drive on", (_effort(scene), "power W"))
     torque = float(acting.torque[0])
-    driver = motion.links.get(scene.driver.link)
-    power = torque * float(driver.omega[0]) if driver is not None else math.nan
-    drive.add_row(scene.driver.link, digits(torque), digits(power))
+    power = math.nan
+    if driver_place(scene, motion) is not None:
+        power = torque * float(driver_course(scene, motion)[1][0])
+    drive.add_row(scene.driver.joint, digits(torque), digits(power))
     pins = head_table("pin, force on", ("from ", "x N", "y N", "size N", "direction deg"))
     for point, body, source, force in acted_on(acting):
         x, y = (float(each) for each in force[0])
@@ -51,7 +54,9 @@ def position_force_tables(scene: Scene, motion: Motion, acting: Forces) -> list[
 
 def motion_force_tables(scene: Scene, motion: Motion, acting: Forces, width: int) -> list[Table]:
     """Torque, pins and sliders over time, as many to a table as the terminal has room for."""
-    bodies: list[tuple[str, Columns]] = [("drive", [("torque\nN m", acting.torque)])]
+    bodies: list[tuple[str, Columns]] = [
+        ("drive", [(_effort(scene).replace(" ", "\n", 1), acting.torque)])
+    ]
     for point, body, _, force in acted_on(acting):
         x, y = force.T
         columns = [("x\nN", x), ("y\nN", y), ("size\nN", np.hypot(x, y))]
@@ -63,23 +68,30 @@ def motion_force_tables(scene: Scene, motion: Motion, acting: Forces, width: int
     return tables_over_time(scene, motion, bodies, width)
 
 
+def _effort(scene: Scene) -> str:
+    """What the drive exerts, with its unit."""
+    return f"{scene.driver.effort} {scene.driver.effort_unit}"
+
+
 @dataclass(frozen=True)
 class Largest:
-    """The largest value over a turn, with its sign, in ``unit``; the driver's angle there [deg],
-    and the mean over time, NaN where friction locks in part of it."""
+    """The largest value over a turn, with its sign, in ``unit``; where the driver is there
+    [deg or m], and the mean over time, NaN where friction locks in part of it."""
 
     name: str
     value: float
     unit: str
-    at_deg: float
+    at: float
     mean: float
 
 
 def largest_of(scene: Scene, turn: Motion, acting: Forces) -> list[Largest]:
     """The torque, each pin by the size of its force, and each slider; a row for what is
     determined. ``turn`` has both its ends."""
-    degrees = np.degrees(turn.links[scene.driver.link].theta) % 360.0
-    series: list[tuple[str, Array, str]] = [("driving torque", acting.torque, "N m")]
+    places = driver_shown(scene, turn)
+    places = places % 360.0 if driver_unit(scene) == "deg" else places
+    drive = (f"driving {scene.driver.effort}", acting.torque, scene.driver.effort_unit)
+    series: list[tuple[str, Array, str]] = [drive]
     for point, body, _, force in acted_on(acting):
         series.append((f"{point} on {body}", np.hypot(force[:, 0], force[:, 1]), "N"))
     for name, slider in acting.sliders.items():
@@ -102,7 +114,7 @@ def largest_of(scene: Scene, turn: Motion, acting: Forces) -> list[Largest]:
             mean = float(np.nanmean(values[:-1]))
             # What comes and goes alike has no mean but rounding.
             mean = mean if abs(mean) > 1e-9 * abs(value) else 0.0
-        rows.append(Largest(name, value, unit, float(degrees[at]) if value else math.nan, mean))
+        rows.append(Largest(name, value, unit, float(places[at]) if value else math.nan, mean))
     return rows
 
 
@@ -112,10 +124,10 @@ def largest_table(scene: Scene, turn: Motion, acting: Forces) -> Table:
     table.add_column("over a turn", no_wrap=True)
     table.add_column("largest", justify="right", no_wrap=True)
     table.add_column("", no_wrap=True)
-    table.add_column(f"{scene.driver.link} at", justify="right", no_wrap=True)
+    table.add_column(f"{scene.driver.joint} at", justify="right", no_wrap=True)
     table.add_column("mean", justify="right", no_wrap=True)
     for row in largest_of(scene, turn, acting):
-        at = "-" if math.isnan(row.at_deg) else f"{row.at_deg:.4g} deg"
+        at = "-" if math.isnan(row.at) else f"{row.at:.4g} {driver_unit(scene)}"
         mean = "-" if math.isnan(row.mean) else f"{row.mean:.6g}"
         table.add_row(row.name, f"{row.value:.6g}", row.unit, at, mean)
     return table

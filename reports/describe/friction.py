@@ -26,7 +26,7 @@ def position_friction_tables(scene: Scene, motion: Motion, acting: Forces) -> li
         return []
     drive = head_table("power of", ("drive W", "friction W", "efficiency "))
     numbers = (flow.put_in, -flow.lost, flow.efficiency)
-    drive.add_row(scene.driver.link, *(digits(float(each[0])) for each in numbers))
+    drive.add_row(scene.driver.joint, *(digits(float(each[0])) for each in numbers))
     joints = head_table("friction on", ("from ", "couple N m", "force N", "power W"))
     watts = friction_power(scene, motion, acting.friction)
     for joint, series in acting.friction.items():
@@ -106,7 +106,7 @@ def cycle_words(scene: Scene, cycle: Efficiency | None) -> list[str]:
         (False, "may jam", "the load helps, and another equilibrium, of more friction, is as good"),
     ):
         if ranges := [each.ends for each in cycle.locked if each.locks == locks]:
-            words.append(f"It {what} with {scene.driver.link} {listed(ranges)}: there {why}.")
+            words.append(f"It {what} with {scene.driver.joint} {listed(ranges)}: there {why}.")
     return words
 
 

@@ -14,6 +14,8 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
 from models.characteristics import Constant
+from models.driver_course import driver_place
+from models.driver_shown import driver_shown, driver_unit
 from models.errors import CrankcheckError
 from models.forces import Forces, SliderForces
 from models.motion import Motion
@@ -30,7 +32,7 @@ NAMED = 4
 
 
 def with_forces(scene: Scene, motion: Motion, *, by_law: bool = True, bound: bool = True) -> Motion:
-    """The motion with its reactions and driving torque.
+    """The motion with its reactions and driving torque, of a slider force.
 
     ``by_law`` says that its times are instants of the driver's law, of which the forces are worked
     out; else the whole motion itself is taken.
@@ -83,8 +85,8 @@ def left_out_notes(scene: Scene, motion: Motion) -> list[str]:
     notes = []
     if dead.size:
         notes.append(
-            f"Dead point, {_where(scene, motion, dead)}: the driving torque and the reactions are "
-            "not determined there, and left out; beside it they may be of any size."
+            f"Dead point, {_where(scene, motion, dead)}: the driving {scene.driver.effort} and the "
+            "reactions are not determined there, and left out; beside it they may be of any size."
         )
     if locked.size:
         notes.append(
@@ -96,13 +98,14 @@ def left_out_notes(scene: Scene, motion: Motion) -> list[str]:
 
 def _where(scene: Scene, motion: Motion, samples: NDArray[np.intp]) -> str:
     """The driver's angles at samples."""
-    driver = motion.links.get(scene.driver.link)
-    if driver is None:
+    if driver_place(scene, motion) is None:
         return count(samples.size, "instant")
-    degrees = np.round(np.degrees(driver.theta[samples]) % 360.0, 6) % 360.0
-    angles = [f"{each:g} deg" for each in sorted(set(degrees.tolist()))]
+    places, unit = driver_shown(scene, motion)[samples], driver_unit(scene)
+    places = np.round(places % 360.0 if unit == "deg" else places, 6)
+    places = places % 360.0 if unit == "deg" else places
+    angles = [f"{each:g} {unit}" for each in sorted(set(places.tolist()))]
     few = [*angles[:NAMED], "more"] if len(angles) > NAMED else angles
-    return f"{scene.driver.link} at {listed(few)}"
+    return f"{scene.driver.joint} at {listed(few)}"
 
 
 def force_certainty(scene: Scene, acting: Forces) -> str:
@@ -116,7 +119,8 @@ def force_certainty(scene: Scene, acting: Forces) -> str:
     bound = acting.bound
     if bound is None:
         return ""
-    kinds: dict[str, list[tuple[Array, Array]]] = {"N": [], "N m": [(acting.torque, bound.torque)]}
+    kinds: dict[str, list[tuple[Array, Array]]] = {"N": [], "N m": []}
+    kinds[acting.drive_unit].append((acting.torque, bound.torque))
     for point, bodies in acting.pins.items():
         kinds["N"] += [(f, bound.pins[point][body]) for body, f in bodies.items()]
     for name, slider in acting.sliders.items():

@@ -17,6 +17,7 @@ from matplotlib.patheffects import withStroke
 from PIL import Image
 
 from models.array import Array
+from models.driver_shown import driver_stands
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 from reports.drawing.force_arrows import ForceArrows, force_arrows
@@ -146,13 +147,16 @@ def _draw(axes: Axes, turn: _Turn, index: int) -> None:
         x, y = (float(each) + aside for each in point.position[index])
         halo = [withStroke(linewidth=2.5, foreground="white")] if turn.arrows else []
         axes.annotate(name, (x, y), fontsize=8, color=INK, zorder=9, path_effects=halo)
-    theta = math.degrees(motion.links[scene.driver.link].theta[index])
-    title = f"{scene.name}   {scene.driver.link} {theta:.0f} deg"
+    title = f"{scene.name}   {driver_stands(scene, motion, index)}"
     if turn.arrows is not None and motion.forces is not None:
         draw_arrows(axes, turn.arrows, motion, index)
         scale_bar(axes, turn.arrows, turn.box, fontsize=8)
-        torque = float(motion.forces.torque[index])
-        title += f"   torque {readable(torque)} N m" if math.isfinite(torque) else ""
+        torque, effort = float(motion.forces.torque[index]), scene.driver.effort
+        title += (
+            f"   {effort} {readable(torque)} {scene.driver.effort_unit}"
+            if math.isfinite(torque)
+            else ""
+        )
     axes.set_title(title, fontsize=9 if turn.arrows is None else 8, color=INK)
     axes.set_xlabel("x [m]", fontsize=8)
     axes.set_ylabel("y [m]", fontsize=8)

@@ -14,6 +14,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from models.array import Array
+from models.driver_course import driver_course
+from models.driver_shown import driver_axis, driver_unit
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene
@@ -54,7 +56,6 @@ def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[st
     ``truth`` takes the place of the driven reference, where something else is true.
     """
     motion = true_motion(scene, time_s) if truth is None else truth
-    driver = motion.links[scene.driver.link].theta
     points = {name: motion.points[name].position for name in moving_points(scene)}
     links = drawn_links(scene)
     places = np.concatenate([point.position for point in motion.points.values()])
@@ -68,8 +69,13 @@ def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[st
         "guides": links,
         "sliders": [_slider(scene, name, motion) for name in scene.sliders],
         "box": [*places.min(axis=0), *places.max(axis=0)],
-        "turning": not isinstance(scene.driver.law, Oscillating),
-        "crank_deg": np.degrees(first_turn(driver)),
+        "turning": goes_round(scene),
+        "told": {
+            "joint": scene.driver.joint,
+            "axis": driver_axis(scene),
+            "unit": driver_unit(scene),
+            "at": told_places(scene, driver_course(scene, motion)[0]),
+        },
         "places": packed(_rows(points.values(), len(time_s))),
         "angles": packed(_stacked([motion.links[name].theta for name in links], len(time_s))),
     }
@@ -114,6 +120,16 @@ def _slider(scene: Scene, name: str, motion: Motion) -> dict[str, object]:
         "reach": [float(travel.min()), float(travel.max())],
         "along": packed(travel),
     }
+
+
+def goes_round(scene: Scene) -> bool:
+    """Whether the driver goes on turning: what is told of it by its place, else by its period."""
+    return scene.driver.slider is None and not isinstance(scene.driver.law, Oscillating)
+
+
+def told_places(scene: Scene, place: Array) -> Array:
+    """The driver's places [rad or m] as they are told [deg or m], angles from the first turn on."""
+    return place if scene.driver.slider is not None else np.degrees(first_turn(place))
 
 
 def first_turn(angle_rad: Array) -> Array:

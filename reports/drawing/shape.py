@@ -90,5 +90,5 @@ def guide_direction(slider: Slider, motion: Motion, index: int) -> Array:
 
 def colours_of(scene: Scene) -> dict[str, str]:
     """A colour for every link, the driver's first."""
-    names = [scene.driver.link, *(name for name in scene.links if name != scene.driver.link)]
+    names = sorted(scene.links, key=lambda name: name != scene.driver.link)
     return {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}

@@ -14,6 +14,7 @@ from html import escape
 import numpy as np
 
 from models.array import Array
+from models.driver_shown import driver_stands
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 from reports.drawing.force_arrows import Arrow, ForceArrows, force_arrows
@@ -70,8 +71,7 @@ def svg(
     colours = colours_of(scene)
     spare_m = 0.08 * size
     sheet = Sheet(low, (wide / INCH, tall / INCH), per_m / INCH, spare_m, math.hypot(*BLOCK) / INCH)
-    degrees = math.degrees(path.links[scene.driver.link].theta[at]) % 360.0
-    title = f"{scene.name}, {scene.driver.link} at {degrees:.0f} deg"
+    title = f"{scene.name}, {driver_stands(scene, path, at)}"
     acting = arrows.at(path, at) if arrows else []
     taken = [each.shaft for each in acting]
     parts = [
@@ -95,8 +95,7 @@ def svg(
 
 def colours_of(scene: Scene) -> dict[str, str]:
     """A colour for every link, the driver's first."""
-    driver = scene.driver.link
-    order = [driver, *(name for name in scene.links if name != driver)]
+    order = sorted(scene.links, key=lambda name: name != scene.driver.link)
     return {name: COLOURS[index % len(COLOURS)] for index, name in enumerate(order)}
 
 

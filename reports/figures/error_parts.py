@@ -1,4 +1,4 @@
-"""The error over the crank angle, split into what a user can turn.
+"""The error over the driver's place, split into what a user can turn.
 
 A panel for each variant, at one step. The parts are those of `reports.results.error_parts`, with
 sign: drive, model floor and discretisation add up to the total; the gap of the pins stands beside
@@ -17,7 +17,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
-from reports.drawing.moving import first_turn
+from models.driver_shown import driver_axis
+from models.scene import Scene
+from reports.drawing.moving import told_places
 from reports.figures.grids import grid
 from reports.figures.style import INK, TINY, power_of_ten
 from reports.output.numbers import short
@@ -53,8 +55,9 @@ def draw(report: Report, name: str) -> Figure | None:
     titles = [label(named(line)) for line in lines]
     steps = {one.steps_per_turn for one in cells if one is not None}
     at = " and ".join(f"{n:g}" for n in sorted(steps))
-    title = f"Error over the crank angle: {name}, {body.name}, {at} steps per turn"
-    labels = (f"angle of {scene.driver.link} [deg]", f"error of {body.name} [unit in the panel]")
+    over = driver_axis(scene).rpartition(" [")[0]
+    title = f"Error over the {over}: {name}, {body.name}, {at} steps per turn"
+    labels = (driver_axis(scene), f"error of {body.name} [unit in the panel]")
     drawn = {part for one in cells if one is not None for part in one.parts.curves}
     entries = [(Line2D([], [], **LOOKS[n][1]), LOOKS[n][0]) for n in LOOKS if n in drawn]
     figure, axes = grid(titles, title, labels, entries, notes(report, lines), apart=True)
@@ -63,7 +66,7 @@ def draw(report: Report, name: str) -> Figure | None:
             panel.set(xticks=[], yticks=[])
             panel.text(0.5, 0.5, ends(line) or "no trace", ha="center", transform=panel.transAxes)
         else:
-            _panel(panel, one, unit)
+            _panel(panel, one, scene, unit)
     return figure
 
 
@@ -96,15 +99,16 @@ def _cell(line: Line, parts: Split) -> ShownCell | None:
     return ShownCell(float(row["steps_per_turn"]), parts.cells[str(row["key"])], floor)
 
 
-def _panel(axes: Axes, cell: ShownCell, unit: str) -> None:
-    """The curves of a cell over the angle of the driver, from its first turn on."""
-    turn = np.degrees(first_turn(cell.parts.driver_rad))
+def _panel(axes: Axes, cell: ShownCell, scene: Scene, unit: str) -> None:
+    """The curves of a cell over the driver's place, angles from the first turn on."""
+    turn = told_places(scene, cell.parts.driver_rad)
     for name, curve in cell.parts.curves.items():
         axes.plot(turn, curve / cell.scale, **LOOKS[name][1])
     axes.set_xlim(float(turn.min()), float(turn.max()))
     axes.xaxis.set_major_locator(MultipleLocator(90.0) if np.ptp(turn) > 180 else MaxNLocator(4))
     axes.yaxis.set_major_locator(MaxNLocator(4))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda angle, _: f"{angle % 360:g}"))
+    if scene.driver.slider is None:
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda angle, _: f"{angle % 360:g}"))
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.16 * (high - low))  # room for the words
     paper = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}  # over a tick behind

@@ -6,7 +6,6 @@ figure of a column's width has little room for them.
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
+from models.driver_shown import driver_stands
 from models.scene import Scene
 from reports.describe.law import describe_law
 from reports.drawing.gif import draw_bodies
@@ -42,8 +42,7 @@ def draw(report: Report, name: str) -> Figure | None:
     wide = COLUMN_IN - panels.left - panels.right
     height = float(np.clip(wide * (high[1] - low[1]) / (high[0] - low[0]), 1.0, 4.0))
     at = clearest(path)
-    angle = math.degrees(path.links[scene.driver.link].theta[at]) % 360.0
-    title = f"{name}, {scene.driver.link} at {angle:.0f} deg"
+    title = f"{name}, {driver_stands(scene, path, at)}"
     under = [f"{scene.source}. {scene.note}", _origin(report, scene)]
     figure, (axes,) = sheet(COLUMN_IN, replace(panels, height=height), title, [], under)
     per_m = min(wide / (high[0] - low[0]), height / (high[1] - low[1]))

@@ -231,7 +231,8 @@ def _judged_as(scene: Scene, channel: Channel) -> tuple[str, ...]:
     if kind.quantity == "deflection":
         return "deflection", "segments"
     if kind.order or not scene.is_free:
-        is_drive = (kind.name, channel.of) == ("angle", scene.driver.link)
+        driver = scene.driver
+        is_drive = driver.is_crank and (kind.name, channel.of) == ("angle", driver.link)
         return ("drive",) if is_drive else (kind.quantity,)
     is_phase = (kind.name, channel.of) == ("angle", scene.driver.link)
     return ("phase" if is_phase else kind.quantity, "geometry")

@@ -14,10 +14,13 @@ from models.errors import CrankcheckError, cut, few
 from models.forces import Forces, SliderForces
 from models.joints import joined_at
 from models.scene import Scene
-from reports.logs.force_names import Place, force_meaning, force_places, shown_names
+from reports.logs.force_names import Place, drive_place, force_meaning, force_places, shown_names
 
 if TYPE_CHECKING:
     from reports.logs.columns import Columns  # and the readers of files with it
+
+QUANTITIES = {"pin": "reaction", "push": "torque"}
+"""What a kind of column is judged as, where that is called otherwise."""
 
 
 @dataclass(frozen=True)
@@ -73,13 +76,14 @@ def log_forces(
             )
             for name in scene.sliders
         },
-        read.get(("torque", scene.driver.link, "", 0), nothing),
+        read.get(drive_place(scene), nothing),
+        drive_unit=scene.driver.effort_unit,
     )
     by_body: dict[tuple[str, str], tuple[str, ...]] = {}
     for (kind, of, body, _), (column, _) in found.items():
         pair = len(joined_at(scene).get(of, ())) == 2
         name = f"{of} on {body}" if kind == "pin" and not pair else of
-        key = ("reaction" if kind == "pin" else kind, name)
+        key = (QUANTITIES.get(kind, kind), name)
         by_body[key] = (*by_body.get(key, ()), column)
     of_steps = any(np.isnan(values[0]) for values in read.values())
     return LogForces(forces, by_body, of_steps)

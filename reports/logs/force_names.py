@@ -2,9 +2,9 @@
 
 ``C_rod_fx_n`` is the force of pin C on the rod, along x of the ground; ``C_fx_n`` will do where two
 bodies meet, and is that on the second of them. ``C_slider_normal_n`` and ``C_slider_moment_n_m``
-are what the guide exerts, ``torque_n_m`` is the drive's on the driver. Dots and spaces stand for
-underscores, and the unit may be in brackets. ``force_time_s`` are the instants that forces act at,
-where they are others than those of the rows.
+are what the guide exerts, ``torque_n_m`` is the drive's on the driver, ``drive_force_n`` that on a
+slider. Dots and spaces stand for underscores, and the unit may be in brackets. ``force_time_s`` are
+the instants that forces act at, where they are others than those of the rows.
 """
 
 from __future__ import annotations
@@ -38,8 +38,9 @@ UNITS: Mapping[str, Mapping[str, float]] = {
 }
 """What one is in SI, by how it is spelled: in letters of any size, but for milli and mega."""
 TIMES = "force_time_s"
-Place = tuple[Literal["torque", "pin", "normal", "moment"], str, str, int]
-"""What a column is of: kind, point or slider, body, and axis."""
+Place = tuple[Literal["torque", "push", "pin", "normal", "moment"], str, str, int]
+"""What a column is of: kind, point or slider, body, and axis; a push is what drives a slider."""
+MOMENTS = ("torque", "moment")
 LENGTH = "it is the length of a force, whose components are judged with --forces"
 FRICTION = "it is friction, which is not judged"
 
@@ -57,15 +58,17 @@ def shown_names(scene: Scene) -> list[str]:
         kind, of, body, _ = place
         if kind == "pin" and len(bodies := joined_at(scene)[of]) == 2 and body != bodies[1]:
             continue
-        names.setdefault(place, f"{name}_{'n' if kind in ('pin', 'normal') else 'n_m'}")
+        names.setdefault(place, f"{name}_{'n_m' if kind in MOMENTS else 'n'}")
     return list(names.values())
 
 
 def force_places(scene: Scene) -> dict[str, Place]:
     """What columns may be called, without their units."""
-    driver = scene.driver.link
-    torque: Place = ("torque", driver, "", 0)
-    found = dict.fromkeys(("torque", f"{driver}_torque", "drive_torque"), torque)
+    drive = drive_place(scene)
+    names = [f"drive_{scene.driver.effort}"]
+    if drive[0] == "torque":
+        names = ["torque", f"{drive[1]}_torque", *names]
+    found = dict.fromkeys(names, drive)
     for point, bodies in joined_at(scene).items():
         for axis, letter in enumerate("xy"):
             for body in bodies:
@@ -83,12 +86,17 @@ def force_places(scene: Scene) -> dict[str, Place]:
     return found
 
 
+def drive_place(scene: Scene) -> Place:
+    """What a column of the drive on the driver is of."""
+    return "torque" if scene.driver.slider is None else "push", scene.driver.name, "", 0
+
+
 def force_meaning(column: str, places: Mapping[str, Place]) -> tuple[Place, float] | None:
     """What a column is of, and what one of its numbers is in SI, NaN where that may be milli or
     mega; None for none."""
     for stem, kind, unit in _stems(column):
         place = places.get(stem)
-        if place and (place[0] in ("torque", "moment")) == (kind == "moment"):
+        if place and (place[0] in MOMENTS) == (kind == "moment"):
             known = {"": 1.0, **UNITS[kind]}
             return place, known.get(unit, known.get(unit.lower(), math.nan))
     return None

@@ -62,8 +62,8 @@ def refuse_far(columns: Columns, column: str, time_s: Array, scene: Scene) -> No
     if turns > MOST_TURNS:
         raise CrankcheckError(
             f"{columns.source}, column {cut(column)!r}: t = {far:.9g} s is {turns:.3g} turns of "
-            f"{scene.driver.link} after the start; count the time from the start of the motion, or "
-            f"from the first row: zero = {'first'!r} in [time] of the map"
+            f"{scene.driver.joint} after the start; count the time from the start of the motion, "
+            f"or from the first row: zero = {'first'!r} in [time] of the map"
         )
 
 

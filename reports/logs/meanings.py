@@ -135,5 +135,5 @@ def _nothing(columns: Columns, scene: Scene, unused: Sequence[tuple[str, str]]) 
     return (
         f"{columns.source}: no column is of scene {scene.name}, which has {bodies}; found "
         f"{few(map(cut, columns.raw), 8)}{why}; name columns such as "
-        f"{scene.driver.link}_deg, or write a map: --write-map map.toml"
+        f"{next(iter(scene.links))}_deg, or write a map: --write-map map.toml"
     )

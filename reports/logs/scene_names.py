@@ -54,7 +54,7 @@ class SceneNames:
         if not bodies:
             bodies, words = self._apart(self._parted(text))
         if not bodies and not DRIVERS.isdisjoint(words):
-            bodies = [self.scene.driver.link]
+            bodies = [self.scene.driver.name]
             words = [word for word in words if word not in DRIVERS]
         return bodies, words
 

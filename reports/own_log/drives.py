@@ -9,6 +9,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from analytic.structure.cranked import refuse_other_than_cranked
 from models.array import Array
 from models.errors import CrankcheckError, shown
 from models.laws import ConstantSpeed
@@ -79,6 +80,7 @@ def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     links, points = _compared(log)
     if drive == "scene":
         return Truth(log.scene, links=links, points=points), None
+    refuse_other_than_cranked(log.scene, f"--drive {drive}")
     crank = crank_reading(log)
     if drive == "logged":
         if crank is None or not np.array_equal(crank.instants, log.time_s):

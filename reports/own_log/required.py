@@ -21,14 +21,14 @@ def required_name(scene: Scene, name: str) -> tuple[str, str, str]:
     if name in bodies:
         return name, "", name
     body, dot, quantity = name.rpartition(".")
-    if (body, quantity) == (scene.driver.link, "angle"):
+    if scene.driver.is_crank and (body, quantity) == (scene.driver.link, "angle"):
         quantity = "phase" if scene.is_free else "drive"
     if dot and body in bodies and quantity in QUANTITIES:
         return name, quantity, body
     names = [*QUANTITIES, *sorted(bodies)]
     raise CrankcheckError(
         f"--require {shown(name)}: neither a quantity nor a body of {scene.name}, nor both as in "
-        f"{scene.driver.link}.angle; {suggestion(name, names, 'there are')}"
+        f"{next(iter(scene.links))}.angle; {suggestion(name, names, 'there are')}"
     )
 
 

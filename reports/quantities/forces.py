@@ -98,11 +98,14 @@ def largest_moment(scene: Scene, reference: Motion) -> float:
 
 
 def largest_torque(scene: Scene, reference: Motion) -> float:
-    """The largest torque over the run, or of the largest reaction on the least arm [N m]."""
+    """The largest torque over the run, or of the largest reaction on the least arm [N m]; of a
+    driven slider the force, or the least share of that reaction [N]."""
     forces = reference.forces
     assert forces is not None
     bears = largest_reaction(scene, reference) if forces.pins else _inertia(scene)
-    return max(_largest([np.abs(forces.torque)]), LEAST_ARM * scene.longest_m * bears)
+    return max(
+        _largest([np.abs(forces.torque)]), LEAST_ARM * scene.longest_m / scene.driver_arm_m * bears
+    )
 
 
 def _inertia(scene: Scene) -> float:

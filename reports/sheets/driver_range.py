@@ -19,10 +19,14 @@ def range_about(scene: Scene, theta: float) -> tuple[float, float]:
     Raises CrankcheckError where the scene can not be assembled there.
     """
     for low, high in reach(scene):
-        shift = math.tau * round((theta - 0.5 * (low + high)) / math.tau)
+        shift = 0.0
+        if scene.driver.slider is None:
+            shift = math.tau * round((theta - 0.5 * (low + high)) / math.tau)
         if low + shift - 1e-9 <= theta <= high + shift + 1e-9:
             return low + shift, high + shift
-    raise CrankcheckError(f"{scene.name}: can not be assembled at {math.degrees(theta):g} deg")
+    slides = scene.driver.slider is not None
+    place = f"{theta:g} m" if slides else f"{math.degrees(theta):g} deg"
+    raise CrankcheckError(f"{scene.name}: can not be assembled at {place}")
 
 
 def assembled(scene: Scene, theta: Array) -> Mask:
@@ -50,9 +54,13 @@ def sense_of_law(scene: Scene) -> float:
 
 
 def range_of_law(scene: Scene) -> tuple[float, float]:
-    """What the driver swings through, or reaches from its start [rad]. Raises as `range_about`."""
+    """What the driver goes through, or reaches from its start [rad or m]; as `range_about`."""
     law = scene.driver.law
     if isinstance(law, Oscillating):
         swing = abs(law.amplitude_rad)
         return law.centre_rad - swing, law.centre_rad + swing
-    return range_about(scene, float(law.at(np.zeros(1))[0][0]))
+    start = float(law.at(np.zeros(1))[0][0])
+    if scene.driver.slider is not None:  # it goes no further than the way of a run
+        end = float(law.at(np.array([law.period_s]))[0][0])
+        return min(start, end), max(start, end)
+    return range_about(scene, start)

@@ -66,15 +66,15 @@ class PositionSheet:
 
 def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
     """The scene with its crank circle in so many parts, from the driver's angle at time 0 on; a
-    driver that does not turn fully is drawn from end to end of what it swings through or reaches.
-    The positions are numbered in the sense in which the driver starts.
+    slider, or a driver that does not turn fully, is drawn from end to end of what it goes through
+    or reaches. The positions are numbered in the sense in which the driver starts.
 
     Raises CrankcheckError where the parts are too small to be told apart on the paper.
     """
     start = float(scene.driver.law.at(np.zeros(1))[0][0])
     low, high = range_of_law(scene)
     sense = sense_of_law(scene)
-    whole = high - low >= math.tau - 1e-9
+    whole = scene.driver.slider is None and high - low >= math.tau - 1e-9
     if whole:
         angles = start + sense * math.tau * np.arange(divisions) / divisions
         dense = np.linspace(start, start + math.tau, LOCUS)
@@ -99,17 +99,25 @@ def _points(scene: Scene, angles: Array) -> dict[str, Array]:
 
 def _check_apart(sheet: PositionSheet, divisions: int) -> None:
     """Refuse divisions that fall together on the paper."""
-    crank = sheet.scene.links[sheet.scene.driver.link].points
     apart = max(
-        float(np.hypot(*np.diff(sheet.at(sheet.points[name])[:2], axis=0)[0])) for name in crank
+        float(np.hypot(*np.diff(sheet.at(sheet.points[name])[:2], axis=0)[0]))
+        for name in _driven(sheet.scene)
     )
     if apart < LEAST_APART_MM:
         fit = max(2, int(divisions * apart / LEAST_APART_MM))
+        joint, paper = sheet.scene.driver.joint, sheet.paper
         raise CrankcheckError(
-            f"--divisions {divisions}: the crank's positions are {apart:.2g} mm apart on "
-            f"{sheet.paper.width:g} x {sheet.paper.height:g} mm; at most {fit} fit, or take larger "
-            "paper"
+            f"--divisions {divisions}: the positions of {joint} are {apart:.2g} mm apart on "
+            f"{paper.width:g} x {paper.height:g} mm; at most {fit} fit, or take larger paper"
         )
+
+
+def _driven(scene: Scene) -> tuple[str, ...]:
+    """The points that the driver moves: those of a crank, that of a slider, a pin of two links."""
+    driver = scene.driver
+    if driver.slider is not None:
+        return (scene.sliders[driver.slider].point,)
+    return (driver.pin,) if driver.pin is not None else tuple(scene.links[driver.link].points)
 
 
 def draw_positions(sheet: PositionSheet, note: str) -> Canvas:
@@ -125,8 +133,8 @@ def draw_positions(sheet: PositionSheet, note: str) -> Canvas:
 
 
 def _frame(axes: Axes, sheet: PositionSheet, note: str) -> None:
-    count, driver = len(sheet.angles), sheet.scene.driver.link
-    told = f"{sheet.scene.name}: {count} positions of {driver}, K_l = {sheet.scale:g} m/mm"
+    count, driver = len(sheet.angles), sheet.scene.driver
+    told = f"{sheet.scene.name}: {count} positions of {driver.joint}, K_l = {sheet.scale:g} m/mm"
     write_head(axes, sheet.paper, told, note)
     draw_border(axes, sheet.box)
 
@@ -154,8 +162,7 @@ def _positions(axes: Axes, sheet: PositionSheet) -> None:
             ring = [*ring, ring[0]] if len(ring) > 2 else ring
             for start, end in itertools.pairwise(ring):
                 line(axes, start, end, color=FAINT, linewidth=0.5)
-    crank = sheet.scene.links[sheet.scene.driver.link].points
-    for name in crank:
+    for name in _driven(sheet.scene):
         for at in sheet.at(sheet.points[name]):
             axes.add_patch(Circle(tuple(at), DOT_MM, fc=FAINT, ec="none"))
 
@@ -183,13 +190,14 @@ def _arc(axes: Axes, centre: Array, through: Array) -> None:
 
 
 def _letters(sheet: PositionSheet) -> list[Letter]:
-    """Letters of the points in the first position, numbers along the driver's circle, and the names
+    """Letters of the points in the first position, numbers along the driver's way, and the names
     of the loci."""
     spots = {name: sheet.at(at[0]) for name, at in sheet.points.items()}
     letters = point_letters(sheet.placement, spots)
-    pivot = sheet.scene.driver_pivot
-    crank = sheet.scene.links[sheet.scene.driver.link].points
-    pin = max(crank, key=lambda name: float(np.hypot(*(spots[name] - spots[pivot]))))
+    pivot = sheet.scene.driver_pivot if sheet.scene.driver.is_crank else ""
+    pin, *others = _driven(sheet.scene)
+    if pivot:
+        pin = max((pin, *others), key=lambda name: float(np.hypot(*(spots[name] - spots[pivot]))))
     for k, at in enumerate(sheet.at(sheet.points[pin])):
         radius = symbol_radius(sheet.placement, pin) if k == 0 else DOT_MM
         letters.append(Letter(str(k), at, radius, NUMBER, QUIET))

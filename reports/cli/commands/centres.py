@@ -6,6 +6,8 @@ from rich.console import Console
 
 from analytic.drawings.drawn_polygons import draw_polygons
 from analytic.drawings.placed_mechanism import DriverState
+from analytic.structure.cranked import refuse_other_than_cranked
+from analytic.structure.mobility import analyse
 from models.array import Array
 from models.files import find_scene, load_scene
 from models.scene import Scene
@@ -27,6 +29,7 @@ def run_centres(request: CentresRequest, console: Console) -> int:
     if request.output is not None:
         check_file(request.output, "-o", ENDINGS, inputs=[find_scene(request.scene)])
     scene = load_scene(request.scene)
+    refuse_other_than_cranked(scene, "a sheet of instant centres", analyse(scene))
     # Centres do not depend on the speed; circles ask for the acceleration at a constant one.
     drawn = draw_polygons(scene, DriverState(_angle(scene, request.at_deg), sense_of_law(scene)))
     sheet = centres_of(drawn, request.link, paper)

@@ -6,6 +6,8 @@ from rich.console import Console
 
 from analytic.drawings.drawn_polygons import DrawnPolygons, polygons_of
 from analytic.drawings.placed_mechanism import PlacedMechanism
+from analytic.structure.cranked import refuse_other_than_cranked
+from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, harmless
 from models.files import find_scene, load_scene
 from models.scene import Scene
@@ -34,6 +36,7 @@ def run_polygon(request: PolygonRequest, console: Console) -> int:
     paper = Paper.of(request.paper)
     _check(request)
     scene = load_scene(request.scene)
+    refuse_other_than_cranked(scene, "a vector polygon", analyse(scene))
     log = _logged(scene, request)
     placement = log.placement if log is not None else _placed(scene, request)
     time_s = request.at_s if log is None else log.time_s

@@ -68,13 +68,9 @@ def run_solve(request: SolveRequest, console: Console) -> None:
     _check_driven(scene, request)
     along = [_along(scene, text) for text in request.along]
     structure = analyse(scene)
-    motion = (
-        _over(scene, request)
-        if request.at_deg is None
-        else _at(scene, request.at_deg, clockwise=request.clockwise)
-    )
+    motion = _over(scene, request) if not request.at_place else _at(scene, request)
     if request.forces:
-        motion = with_forces(scene, motion, by_law=request.at_deg is None)
+        motion = with_forces(scene, motion, by_law=not request.at_place)
     if request.output is not None or request.figures is not None:
         _tell_written(console, scene, motion, request)
         return
@@ -94,12 +90,12 @@ def elastic_choice(request: SolveRequest) -> ElasticChoice:
 def _check_driven(scene: Scene, request: SolveRequest) -> None:
     """Refuse what can not be asked of a scene that is driven. Raises CrankcheckError."""
     refuse_times(scene, request)
-    if request.at_deg is not None and (request.turns or request.steps_per_turn):
+    if request.at_place and (request.turns or request.steps_per_turn):
         raise CrankcheckError(
-            "--at-deg with --turns or --steps-per-turn: one is a single position, the others a "
-            "motion; give one of them"
+            f"{request.at_place} with --turns or --steps-per-turn: one is a single "
+            "position, the others a motion; give one of them"
         )
-    if request.clockwise and request.at_deg is None:
+    if request.clockwise and not request.at_place:
         raise CrankcheckError("--clockwise: it is of one position; give --at-deg, such as 90")
     _check_figures(request)
     _check_page(request)
@@ -113,14 +109,14 @@ def _tell_written(console: Console, scene: Scene, motion: Motion, request: Solve
 
         told.append(written_figures(scene, request.figures))
     if request.output is not None:
-        told.append(_write(request.output, scene, motion, is_turn=request.at_deg is None))
+        told.append(_write(request.output, scene, motion, is_turn=not request.at_place))
     for each in told:
         console.print(harmless(each), highlight=False, markup=False, soft_wrap=True)
 
 
 def _show(console: Console, scene: Scene, motion: Motion, request: SolveRequest) -> None:
     """Print one position, or a motion."""
-    if request.at_deg is not None:
+    if request.at_place:
         show_position(console, scene, motion)
         if request.forces:
             show_friction(console, scene)
@@ -147,11 +143,11 @@ def refuse_times(scene: Scene, request: SolveRequest) -> None:
 
 def _check_page(request: SolveRequest) -> None:
     """Refuse a page of a single position, or of other than a turn."""
-    given = [request.at_deg, request.turns, request.steps_per_turn]
+    given = [request.at_deg, request.at_m, request.turns, request.steps_per_turn]
     is_page = request.output is not None and request.output.suffix.lower() == PAGE
     if is_page and any(each is not None for each in given):
         raise CrankcheckError(
-            f"-o {request.output}: a page shows a turn; leave out --at-deg, --turns and "
+            f"-o {request.output}: a page shows a turn; leave out --at-deg, --at-m, --turns and "
             "--steps-per-turn"
         )
 
@@ -162,9 +158,9 @@ def _check_figures(request: SolveRequest) -> None:
         return
     if not request.forces:
         raise CrankcheckError("--figures: it draws forces; give --forces as well")
-    if request.at_deg is not None:
+    if request.at_place:
         raise CrankcheckError(
-            f"--figures with --at-deg {request.at_deg:g}: they are of a turn; leave one of them out"
+            f"--figures with {request.at_place}: they are of a turn; leave one of them out"
         )
     from reports.figures.forces.writing import figure_files
 
@@ -188,9 +184,11 @@ def _along(scene: Scene, text: str) -> Along:
     return Along(point, math.radians(direction_deg))
 
 
-def _at(scene: Scene, at_deg: float, *, clockwise: bool = False) -> Motion:
-    """The mechanism with its driver at an angle, moving as its law moves it there."""
-    theta, omega, alpha = driver_at(scene, at_deg, clockwise=clockwise)
+def _at(scene: Scene, request: SolveRequest) -> Motion:
+    """The mechanism with its driver at a place, moving as its law moves it there."""
+    theta, omega, alpha = driver_at(
+        scene, request.at_deg, request.at_m, clockwise=request.clockwise
+    )
     return solve_driven(scene, np.array([theta]), np.array([omega]), np.array([alpha]))
 
 

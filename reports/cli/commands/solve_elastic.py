@@ -43,6 +43,7 @@ def _check(scene: Scene, request: SolveRequest) -> None:
     (refuse_turns if scene.is_free else refuse_times)(scene, request)
     given = {
         "--at-deg": request.at_deg,
+        "--at-m": request.at_m,
         "--clockwise": request.clockwise or None,
         "--along": request.along or None,
     }

@@ -85,6 +85,7 @@ def _check(scene: Scene, request: SolveRequest) -> None:
         )
     for option, given in (
         ("--at-deg", request.at_deg is not None),
+        ("--at-m", request.at_m is not None),
         ("--clockwise", request.clockwise),
         ("--along", bool(request.along)),
         ("--forces", request.forces),

@@ -62,6 +62,7 @@ def refuse_turns(scene: Scene, request: SolveRequest) -> None:
     """Refuse what is asked of a driver that follows a law. Raises CrankcheckError."""
     given = {
         "--at-deg": request.at_deg,
+        "--at-m": request.at_m,
         "--turns": request.turns,
         "--steps-per-turn": request.steps_per_turn,
         "--clockwise": request.clockwise or None,

@@ -15,7 +15,7 @@ from models.files import find_scene, load_scene
 from models.scene import Scene
 from reports.cli.commands.sheets import ENDINGS, save_sheet
 from reports.cli.structures import StructureRequest
-from reports.describe.driver_at import angle_at
+from reports.describe.driver_at import place_at
 from reports.describe.roman import roman
 from reports.face.assemblies import Assembled, all_assemblies
 from reports.output.columns import plain_table
@@ -56,25 +56,8 @@ def run_structure(request: StructureRequest, console: Console) -> int:
 
 def _coordinate(scene: Scene, request: StructureRequest) -> float:
     """Where the driver stands [rad, m]: as asked, or where the scene starts."""
-    sliding = scene.driver.slider is not None
-    if request.at_deg is not None and request.at_m is not None:
-        raise CrankcheckError("--at-deg and --at-m: the driver stands at one place; give one")
-    if request.at_deg is not None and sliding:
-        raise CrankcheckError(
-            f"--at-deg: the driver of {scene.name} is {scene.driver.joint}, which has no angle; "
-            "give its displacement by --at-m"
-        )
-    if request.at_m is not None and not sliding:
-        raise CrankcheckError(
-            f"--at-m: the driver of {scene.name} is {scene.driver.joint}, which turns; give its "
-            "angle by --at-deg"
-        )
-    if request.at_deg is not None:
-        return angle_at(request.at_deg)
-    if request.at_m is not None:
-        if not math.isfinite(request.at_m):
-            raise CrankcheckError(f"--at-m {request.at_m:g}: give a displacement in metres")
-        return request.at_m
+    if request.at_deg is not None or request.at_m is not None:
+        return place_at(scene, request.at_deg, request.at_m)
     return float(scene.driver.law.at(np.zeros(1))[0][0])
 
 

@@ -14,13 +14,15 @@ from numpy.typing import NDArray
 from analytic.forces.reduced_machine import ReducedMachine, reduced_machine
 from models.array import Array
 from models.characteristics import Constant
+from models.driver_shown import driver_axis, driver_shown
 from models.forces import Forces
-from models.laws import ConstantSpeed, Oscillating
+from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.law import describe_law
 from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_forces
 from reports.drawing.beside_locking import clear_of_locking
+from reports.drawing.moving import goes_round
 from reports.figures.style import SMALL
 from reports.output.provenance import crankcheck_version
 
@@ -86,13 +88,11 @@ def force_turn(scene: Scene) -> ForceTurn:
     reduced = reduced_machine(scene, motion.time_s)
     acting = clear_of_locking(cleaned_forces(motion.forces))
     law, every = scene.driver.law, np.arange(motion.time_s.size)
-    label = f"angle of {scene.driver.link} [deg]"
-    theta = motion.links[scene.driver.link].theta
-    x = np.degrees(theta)
+    label, x = driver_axis(scene), driver_shown(scene, motion)
     ends = (float(x.min()), float(x.max()))
-    if isinstance(law, Oscillating):  # every angle is passed twice
+    if not goes_round(scene):  # every place may be passed twice
         x, label, ends = motion.time_s, "time [s]", (0.0, law.period_s)
-    elif isinstance(law, ConstantSpeed) and _is_cyclic(scene, theta):
+    elif isinstance(law, ConstantSpeed) and _is_cyclic(scene, np.radians(x)):
         # A turn is like every other: it is drawn from 0 on, wherever it began.
         around = np.mod(np.round(x[:-1], 9), 360.0)
         every = np.argsort(around)

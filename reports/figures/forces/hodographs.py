@@ -13,9 +13,10 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
-from models.laws import Oscillating
+from models.driver_shown import driver_shown
 from reports.describe.force_frame import acted_on
 from reports.drawing.lettering import Label, place
+from reports.drawing.moving import goes_round
 from reports.drawing.shape import colours_of
 from reports.figures.forces.force_turn import ForceTurn
 from reports.figures.sheet import Panels, sheet
@@ -43,7 +44,7 @@ def draw(turn: ForceTurn) -> Figure | None:
     entries = [(Line2D([], [], color=INK, marker="+", linestyle="none"), "no force")]
     if _dots(turn):
         dot = Line2D([], [], color=INK, marker="o", markersize=3.0, linestyle="none")
-        words = f"every {EVERY_DEG} deg of {turn.scene.driver.link}, numbers in deg"
+        words = f"every {EVERY_DEG} deg of {turn.scene.driver.joint}, numbers in deg"
         entries.append((dot, words))
     figure, axes = sheet(width, panels, title, entries, turn.notes)
     colours = colours_of(turn.scene)
@@ -102,10 +103,10 @@ def _numbers(
 
 def _dots(turn: ForceTurn) -> dict[int, int]:
     """The samples whose driver stands at a multiple of `EVERY_DEG`, with that angle [deg]; none of
-    a driver that swings."""
-    if isinstance(turn.scene.driver.law, Oscillating):
+    a driver that swings or slides."""
+    if not goes_round(turn.scene):
         return {}
-    degrees = np.degrees(turn.motion.links[turn.scene.driver.link].theta)
+    degrees = driver_shown(turn.scene, turn.motion)
     found = {}
     for deg in range(0, 360, EVERY_DEG):
         off = np.abs((degrees - deg + 180.0) % 360.0 - 180.0)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from models.driver_shown import driver_stands
 from reports.drawing.force_arrows import force_arrows
 from reports.drawing.gif import draw_bodies
 from reports.drawing.names import Sheet, names
@@ -33,12 +33,11 @@ def draw(turn: ForceTurn) -> Figure | None:
     height = float(np.clip(wide * (high[1] - low[1]) / (high[0] - low[0]), 1.0, 4.0))
     at = arrows.largest_at(path)
     assert path.forces is not None
-    angle = math.degrees(path.links[scene.driver.link].theta[at]) % 360.0
-    torque = readable(float(path.forces.torque[at]))
-    title = f"{scene.name}, {scene.driver.link} at {angle:.0f} deg"
+    drive, torque = scene.driver, readable(float(path.forces.torque[at]))
+    title = f"{scene.name}, {driver_stands(scene, path, at)}"
     words = (
-        f"Where the reactions are largest; driving torque {torque} N m. An arrow is the force on "
-        "the body of its colour, a black one that on a block."
+        f"Where the reactions are largest; driving {drive.effort} {torque} {drive.effort_unit}. An "
+        "arrow is the force on the body of its colour, a black one that on a block."
     )
     figure, (axes,) = sheet(
         COLUMN_IN, replace(panels, height=height), title, [], [words, *turn.notes]

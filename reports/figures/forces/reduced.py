@@ -14,14 +14,15 @@ from reports.figures.style import COLUMN_IN, QUIET
 
 def draw(turn: ForceTurn) -> Figure:
     """The reduced moment of inertia, and below it the reduced torque where weights or loads act."""
-    reduced, notes = turn.reduced, turn.notes
-    panels: list[tuple[str, Array]] = [("moment of inertia [kg m²]", reduced.inertia)]
+    reduced, notes, drive = turn.reduced, turn.notes, turn.scene.driver
+    mass = "moment of inertia [kg m²]" if drive.slider is None else "mass [kg]"
+    panels: list[tuple[str, Array]] = [(mass, reduced.inertia)]
     if np.nanmax(np.abs(reduced.torque), initial=0.0) > 0.0:
-        panels.append(("torque [N m]", reduced.torque))
+        panels.append((f"{drive.effort} [{drive.effort_unit}]", reduced.torque))
     else:
-        notes = ["No weight or load acts, so the reduced torque is 0.", *notes]
+        notes = [f"No weight or load acts, so the reduced {drive.effort} is 0.", *notes]
     shape = Panels(len(panels), 1, 1.6 if len(panels) > 1 else 2.1, *SIDES, 0.15, between=(0, 0.22))
-    title = f"Reduced to {turn.scene.driver.link}: {turn.scene.name}"
+    title = f"Reduced to {drive.joint}: {turn.scene.name}"
     figure, axes = sheet(COLUMN_IN, shape, title, [], notes)
     for one, (label, series) in zip(axes, panels, strict=True):
         turn.plot(one, series, color="#1f5f9e", linewidth=1.2)

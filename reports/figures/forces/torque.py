@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from models.array import Array
+from models.driver_course import driver_course
 from reports.describe.friction import flow_of
 from reports.figures.forces.force_turn import SIDES, ForceTurn
 from reports.figures.sheet import Panels, sheet
@@ -32,13 +33,15 @@ def draw(turn: ForceTurn) -> Figure | None:
     """
     if not turn.has_forces:
         return None
+    drive = turn.scene.driver
     torque, held, rubbing = turn.acting.torque, -turn.reduced.torque, _of_friction(turn)
     mean = math.nan if turn.acting.has_equilibria(0).any() else mean_torque(turn)
     entries: list[tuple[Artist, str]] = [
-        (Line2D([], [], **TORQUE), "driving torque"),  # type: ignore[arg-type]  # looks of a line
+        (Line2D([], [], **TORQUE), f"driving {drive.effort}"),  # type: ignore[arg-type]  # looks of a line
     ]
     if math.isfinite(mean):
-        entries.append((Line2D([], [], **MEAN), f"mean over time {readable(mean)} N m"))  # type: ignore[arg-type]  # as above
+        words = f"mean over time {readable(mean)} {drive.effort_unit}"
+        entries.append((Line2D([], [], **MEAN), words))  # type: ignore[arg-type]  # as above
     is_loaded = rubbing is not None or bool(np.nanmax(np.abs(held), initial=0.0) > 0.0)
     if is_loaded:
         entries += [
@@ -48,7 +51,7 @@ def draw(turn: ForceTurn) -> Figure | None:
     if rubbing is not None:
         entries.append((Line2D([], [], **FRICTION), "friction"))  # type: ignore[arg-type]  # as above
     panels = Panels(1, 1, 2.1, *SIDES, 0.15)
-    title = f"Driving torque: {turn.scene.name}"
+    title = f"Driving {drive.effort}: {turn.scene.name}"
     figure, (axes,) = sheet(COLUMN_IN, panels, title, entries, turn.notes)
     axes.axhline(0.0, color=QUIET, linewidth=0.5)
     if rubbing is not None:
@@ -61,7 +64,7 @@ def draw(turn: ForceTurn) -> Figure | None:
         axes.axhline(mean, **MEAN)  # type: ignore[arg-type]  # as above
     turn.mark_axis(axes)
     axes.set_xlabel(turn.label)
-    axes.set_ylabel(f"torque on {turn.scene.driver.link} [N m]")
+    axes.set_ylabel(f"{drive.effort} on {drive.joint} [{drive.effort_unit}]")
     return figure
 
 
@@ -70,7 +73,7 @@ def _of_friction(turn: ForceTurn) -> Array | None:
     flow = flow_of(turn.scene, turn.motion, turn.acting)
     if flow is None:
         return None
-    omega = turn.motion.links[turn.scene.driver.link].omega
+    omega = driver_course(turn.scene, turn.motion)[1]
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(flow.lost / omega)
 

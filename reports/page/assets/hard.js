@@ -28,9 +28,9 @@
     return found;
   }
 
-  /** How long a picture lasts, by the turns of its crank. */
+  /** How long a picture lasts, by the turns of its driver, of a slider as of one. */
   function lasts() {
-    const degrees = picture.shape.crank_deg;
+    const degrees = picture.shape.told.unit === "deg" ? picture.shape.told.at : [0, 360];
     const turned = degrees.slice(1).reduce((sum, each, i) => sum + Math.abs(each - degrees[i]), 0);
     return ROUND_MS * Math.min(Math.max(turned / 360, 0.7), 2.5);
   }

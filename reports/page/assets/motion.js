@@ -23,7 +23,7 @@
     });
   }
 
-  /** The line in the diagram at the drawing's crank angle. */
+  /** The line in the diagram where the drawing's driver stands. */
   function cursor() {
     const axes = part("chart")._fullLayout;
     const line = part("cursor");
@@ -31,7 +31,7 @@
     if (!axes?.xaxis || !last) return;
     const { mechanism, position } = last;
     const turning = shown.drawing.turning;
-    const x = turning ? mechanism.degrees(position) : (100 * position) / (mechanism.samples - 1);
+    const x = turning ? mechanism.driver(position) : (100 * position) / (mechanism.samples - 1);
     const place = axes.xaxis.l2p(x);
     if (!(place >= 0 && place <= axes.xaxis._length)) return;
     line.hidden = false;
@@ -53,7 +53,7 @@
   const plot = crankcheck.chart(part("chart"), () => {
     const found = partsChosen();
     const axis = found && shown.axes[found.axis];
-    return crankcheck.parts.figure(found, axis, shown.body, shown.drawing.turning, scale.value === "log", parts.on);
+    return crankcheck.parts.figure(found, axis, shown.body, shown.drawing, scale.value === "log", parts.on);
   }, cursor);
 
   /** The curves of the run that is chosen, with their legend and what is said of its floor. */

@@ -1,5 +1,5 @@
 "use strict";
-// The error over the crank angle, split into its parts.
+// The error over the driver's place, split into its parts.
 
 crankcheck.parts = (() => {
   const { colour, short } = crankcheck;
@@ -26,7 +26,7 @@ crankcheck.parts = (() => {
   }
 
   /** The figure of one cell: its `parts` and their `axis` as embedded, and which parts to show. */
-  function figure(parts, axis, body, turning, logarithmic, on) {
+  function figure(parts, axis, body, { turning, told }, logarithmic, on) {
     const rows = parts ? crankcheck.unpacked(parts.curves) : [];
     const x = axis ? (turning ? axis.angle : axis.part) : [];
     const traces = (parts?.names ?? []).map((name, i) => {
@@ -44,7 +44,7 @@ crankcheck.parts = (() => {
       layout: {
         hovermode: "x",
         xaxis: {
-          title: { text: turning ? "crank angle [deg]" : "part of the period [%]" },
+          title: { text: turning ? crankcheck.escaped(told.axis) : "part of the period [%]" },
           ...(turning ? turns(x) : {}), zeroline: false,
         },
         yaxis: logarithmic

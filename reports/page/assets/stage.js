@@ -1,5 +1,5 @@
 "use strict";
-// A stage: the drawing of a mechanism with what moves it. Play and pause, the crank's angle, a factor
+// A stage: the drawing of a mechanism with what moves it. Play and pause, where the driver stands, a factor
 // by which errors are magnified, and what the runs are off by at the moment.
 
 /**
@@ -25,13 +25,18 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
   let greeted = false; // it has moved by itself once
 
   const degrees = (at) => {
-    const rounded = Math.round(mechanism.degrees(at));
+    const rounded = Math.round(mechanism.driver(at));
     return (drawing.turning ? ((rounded % 360) + 360) % 360 : rounded).toFixed(0);
   };
 
-  /** Where the drawing stands, as it is shown and as it is said: a crank's angle, or a time. */
+  /** Where the drawing stands, as it is shown and as it is said: the driver's place, or a time. */
   function place(at) {
-    if (drawing.until_s === undefined) return [`${degrees(at)}°`, `crank at ${degrees(at)} degrees`];
+    if (drawing.until_s === undefined) {
+      const { joint, unit } = drawing.told;
+      if (unit === "deg") return [`${degrees(at)}°`, `${joint} at ${degrees(at)} degrees`];
+      const metres = mechanism.driver(at).toPrecision(3);
+      return [`${metres} m`, `${joint} at ${metres} metres`];
+    }
     const seconds = ((at / (mechanism.samples - 1)) * drawing.until_s).toPrecision(3);
     return [`${seconds} s`, `at ${seconds} seconds`];
   }

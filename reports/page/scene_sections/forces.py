@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 from collections.abc import Mapping
 
+from models.driver_shown import driver_unit
 from models.scene import Scene
 from reports.describe.force_tables import largest_of
 from reports.describe.friction import friction_words
@@ -17,7 +18,7 @@ from reports.describe.with_forces import (
 from reports.page.sections.section import Section
 
 CAPTIONS: Mapping[str, str] = {
-    "torque": "The driving torque, and its mean over the turn.",
+    "torque": "What drives, and its mean over the turn.",
     "reactions": "How large the reactions are; normal forces of guides with their sign.",
     "reactions-polar": "The tip of each reaction over a turn, drawn from the cross.",
     "efficiency": "What of the drive's power goes on to loads and masses.",
@@ -36,7 +37,9 @@ def build(scene: Scene, figures: Mapping[str, bytes]) -> Section:
         title="Forces",
         template="scene_forces.html",
         words={
-            "driver": scene.driver.link,
+            "driver": scene.driver.joint,
+            "effort": scene.driver.effort,
+            "degrees": "\N{DEGREE SIGN}" if driver_unit(scene) == "deg" else " m",
             "rows": largest_of(scene, turn, cleaned_forces(turn.forces)),
             "notes": [
                 *friction_words(scene),

@@ -21,9 +21,9 @@ from reports.drawing.moving import (
     displacements,
     drawing,
     drawn_links,
-    first_turn,
     instants,
     moving_points,
+    told_places,
 )
 from reports.drawing.packed import packed, size_of
 from reports.output.numbers import error_text
@@ -85,7 +85,7 @@ def scene_words(scene: Scene) -> dict[str, object]:
         "name": scene.name,
         "source": scene.source,
         "note": scene.note,
-        "driver": f"{scene.driver.link}, {describe_law(scene)}",
+        "driver": f"{scene.driver.joint}, {describe_law(scene)}",
         "facts": theory,
     }
 
@@ -155,10 +155,11 @@ class _DrawnScene:
         }
 
     def _axis(self, parts: Parts) -> dict[str, object]:
-        """The crank angle [deg], from its first turn on, and the part of the period [%]."""
+        """Where the driver is [deg or m], angles from the first turn on, and the part of the period
+        [%]."""
         part = (parts.time_s - parts.time_s[0]) / self.scene.driver.law.period_s
         return {
-            "angle": [round(float(a), 3) for a in np.degrees(first_turn(parts.driver_rad))],
+            "angle": [round(float(a), 6) for a in told_places(self.scene, parts.driver_rad)],
             "part": [round(100.0 * float(p), 3) for p in part],
         }
 

@@ -61,7 +61,7 @@ def _names(sheet: GraphSheet) -> list[str]:
     of, parts = sheet.drawn.span, sheet.drawn.parts
     if of.over == "time":
         return [str(k) for k in range(parts + 1)]
-    return [f"{each:.4g}" for each in np.round(of.driver_deg(of.divisions(parts)), 2) + 0.0]
+    return [f"{each:.4g}" for each in np.round(of.driver_at(of.divisions(parts)), 2) + 0.0]
 
 
 def _every(sheet: GraphSheet) -> int:

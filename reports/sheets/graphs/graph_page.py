@@ -63,7 +63,7 @@ def _title(drawn: DrawnGraphs) -> str:
     of = drawn.span
     span = "a period" if not of.scene.is_free else f"{of.end - of.start:g} s"
     if of.analogues:
-        span = f"the angle of {of.scene.driver.link}"
+        span = f"the angle of {of.scene.driver.joint}"
     title = f"{of.scene.name}: {of.quantity.name} over {span}, {drawn.parts} parts, by {drawn.by}"
     if of.scene.elastic:
         title += ", links taken as rigid"
@@ -125,7 +125,9 @@ def _write_legend(axes: Axes, sheet: GraphSheet) -> None:
 def _along(sheet: GraphSheet) -> str:
     of = sheet.drawn.span
     part = (of.end - of.start) / sheet.drawn.parts
-    name, unit = ("time", "s") if of.over == "time" else (f"angle of {of.scene.driver.link}", "deg")
+    name, unit = (
+        ("time", "s") if of.over == "time" else (f"angle of {of.scene.driver.joint}", "deg")
+    )
     since = f" from {of.start:.6g} s on" if of.start and not of.analogues else ""
     return (
         f"along: {name}{since}, {readable(of.shown * sheet.scale_x)} {unit} per mm; a part is "

@@ -16,6 +16,7 @@ import numpy as np
 
 from analytic.kinematics import solve_driven
 from models.array import Array
+from models.driver_shown import driver_shown
 from models.errors import CrankcheckError, few
 from models.laws import ConstantSpeed, Oscillating
 from models.motion import Motion, Order
@@ -84,13 +85,14 @@ class GraphSpan:
         size_of_rate = max(float(np.abs(rate).max()), least * size)
         return size, size_of_rate, max(float(np.abs(second).max()), least * size_of_rate)
 
-    def driver_deg(self, x: Array) -> Array:
-        """The driver's angle at places [deg]."""
+    def driver_at(self, x: Array) -> Array:
+        """Where the driver is at places [deg or m]."""
         if self.analogues:
             return np.degrees(x)
         if self.scene.is_free:
-            return np.degrees(self.motion_at(x).links[self.scene.driver.link].theta)
-        return np.degrees(self.scene.driver.law.at(x)[0])
+            return driver_shown(self.scene, self.motion_at(x))
+        place = self.scene.driver.law.at(x)[0]
+        return place if self.scene.driver.slider is not None else np.degrees(place)
 
     def moved(self, start: float) -> GraphSpan:
         """One as long that starts elsewhere."""
@@ -118,6 +120,11 @@ def _driven(scene: Scene, name: str, over: Over, duration_s: float | None) -> Gr
             f"{scene.driver.law.period_s:.6g} s; leave it out"
         )
     law = scene.driver.law
+    if over == "angle" and scene.driver.slider is not None:
+        raise CrankcheckError(
+            f"--over angle: the driver of {scene.name} is {scene.driver.joint}, which has no "
+            "angle; use --over time"
+        )
     truth = Truth(scene, bound=False)
     quantity = quantity_of(truth.at(np.zeros(1)), name)
     if over == "angle" and not isinstance(law, ConstantSpeed):

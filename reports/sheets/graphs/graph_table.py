@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from models.array import Array
+from models.driver_shown import driver_unit
 from reports.figures.style import INK, QUIET, TINY, width_in
 from reports.sheets.canvas import line, text
 from reports.sheets.graphs.graph_drawing import READ, DrawnGraphs
@@ -25,7 +26,11 @@ def table_cells(drawn: DrawnGraphs) -> list[list[str]]:
     unit = drawn.span.units[order]
     columns = [
         ["", "no.", *(f"{each:g}" for each in numbers(drawn, graph.x))],
-        [f"{drawn.span.scene.driver.link}", "deg", *degrees(drawn, graph.x)],
+        [
+            drawn.span.scene.driver.name,
+            driver_unit(drawn.span.scene),
+            *driver_column(drawn, graph.x),
+        ],
         [drawn.span.symbols[order], unit, *written(graph.y, drawn.sizes[order])],
     ]
     if drawn.logged is not None:
@@ -40,9 +45,10 @@ def numbers(drawn: DrawnGraphs, x: Array) -> Array:
     return np.round(2.0 * drawn.parts * (x - drawn.span.start) / length) / 2.0
 
 
-def degrees(drawn: DrawnGraphs, x: Array) -> list[str]:
-    """The driver's angle at places."""
-    return [f"{each + 0.0:.2f}" for each in np.round(drawn.span.driver_deg(x), 2)]
+def driver_column(drawn: DrawnGraphs, x: Array) -> list[str]:
+    """Where the driver is at places."""
+    digits = 2 if driver_unit(drawn.span.scene) == "deg" else 5
+    return [f"{each + 0.0:.{digits}f}" for each in np.round(drawn.span.driver_at(x), digits)]
 
 
 def written(values: Array, size: float) -> list[str]:

@@ -7,12 +7,13 @@ from rich.console import Console
 
 from analytic.drawings.graphical import ORDERS, ThreeGraphs
 from models.array import Array
+from models.driver_shown import driver_unit
 from models.errors import harmless
 from models.motion import Order
 from reports.output.columns import plain_table
 from reports.output.numbers import listed
 from reports.sheets.graphs.graph_drawing import READ, DrawnGraphs
-from reports.sheets.graphs.graph_table import degrees, numbers, written
+from reports.sheets.graphs.graph_table import driver_column, numbers, written
 
 NOTHING = 1e-9
 """What is off by a smaller share is rounding."""
@@ -71,9 +72,9 @@ def show_graphs(console: Console, drawn: DrawnGraphs) -> None:
     """Print the table: what is read at each division, and what is drawn from it."""
     of = drawn.span
     table = plain_table(gap=2)
-    heads = ["no.", f"{of.scene.driver.link} deg"]
+    heads = ["no.", f"{of.scene.driver.name} {driver_unit(of.scene)}"]
     places = _places(drawn)
-    columns = [[f"{each:g}" for each in numbers(drawn, places)], degrees(drawn, places)]
+    columns = [[f"{each:g}" for each in numbers(drawn, places)], driver_column(drawn, places)]
     for order in ORDERS:
         heads.append(f"{of.symbols[order]} {of.units[order]}")
         columns.append(_cells(drawn, drawn.reference, order, places))

@@ -115,6 +115,6 @@ def test_a_trace_of_nothing_or_of_another_scene_is_not_drawn() -> None:
 
 def test_the_crank_starts_in_its_first_turn() -> None:
     scene = load_scene("fourbar-lecture-1")
-    angles = np.asarray(drawing(scene, instants(scene, turns=3.0))["crank_deg"])
+    angles = np.asarray(drawing(scene, instants(scene, turns=3.0))["told"]["at"])
     assert angles[0] == pytest.approx(90.0)
     assert angles[-1] == pytest.approx(450.0)
