@@ -110,7 +110,12 @@ def _compared(log: OwnLog) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
     if log.time_s.size <= MANY:
         return None, moving
     channels = [reading.channel for reading in (*log.readings, *log.copies)]
-    named = {scene.driver.link, *(c.of for c in channels), *(c.relative_to for c in channels)}
+    named = {
+        scene.driver.link,
+        scene.driver.base,
+        *(c.of for c in channels),
+        *(c.relative_to for c in channels),
+    }
     links = tuple(name for name in scene.links if name in named)
     return links, tuple(name for name in moving if name in named)
 

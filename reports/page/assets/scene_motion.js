@@ -1,18 +1,18 @@
 "use strict";
-// A scene as the closed form has it, in motion, with the driving torque where it was asked for.
+// A scene as the closed form has it, in motion, with what drives it where it was asked for.
 
 (() => {
   const own = crankcheck.embedded("motion");
-  const torque = own.torque && crankcheck.unpacked(own.torque)[0];
+  const effort = own.effort && crankcheck.unpacked(own.effort.series)[0];
   const told = document.getElementById("motion-torque");
 
   const stage = crankcheck.stage("motion", {
     overlays: () => [],
     drawn: (mechanism, position) => {
-      if (!torque) return;
-      const here = mechanism.between(torque, position);
-      told.textContent = Number.isFinite(here) ? `Driving torque here: ${Number(here.toPrecision(3))} N m.`
-        : "The driving torque is not determined here.";
+      if (!effort) return;
+      const here = mechanism.between(effort, position);
+      told.textContent = Number.isFinite(here) ? `Driving ${own.effort.name} here: ${Number(here.toPrecision(3))} ${own.effort.unit}.`
+        : `The driving ${own.effort.name} is not determined here.`;
     },
   });
   stage.set(own.drawing);

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 
-from models.laws import Oscillating
+from models.driver_shown import driver_axis
+from reports.drawing.moving import goes_round
 from reports.drawing.packed import packed, singles
 from reports.output.numbers import count, readable
 from reports.own_log.judged import JudgedLog
@@ -23,14 +24,15 @@ def build(judged: JudgedLog, drawn: Sequence[DrawnChannel], has_places: bool) ->
     """The section; the first channel is the worst."""
     axes: dict[str, int] = {}
     channels = [_embedded(judged, curve, axes) for curve in drawn]
-    turning = not isinstance(judged.beside.scene.driver.law, Oscillating)
+    scene = judged.beside.scene
+    turning, axis = goes_round(scene), driver_axis(scene)
     return Section(
         anchor="channels",
         title="Channel by channel",
         template="log_channels.html",
         words={
             "options": [_option(curve) for curve in drawn],
-            "against": "crank angle" if turning else "part of the period",
+            "against": axis.rpartition(" [")[0] if turning else "part of the period",
             "is_thinned": any(curve.near is not None for curve in drawn),
             "has_places": has_places,
             "truth": judged.truth_name,
@@ -39,7 +41,7 @@ def build(judged: JudgedLog, drawn: Sequence[DrawnChannel], has_places: bool) ->
             "channels": channels,
             "truth": judged.truth_name,
             "axes": [json.loads(axis) for axis in axes],
-            "phase": "crank angle [deg]" if turning else "part of the period [%]",
+            "phase": axis if turning else "part of the period [%]",
             "round": 360 if turning else 100,
         },
         scripts=("legend.js", "charts.js", "channels.js"),

@@ -10,8 +10,10 @@ from typing import TypedDict
 import numpy as np
 
 from models.array import Array
-from models.laws import Oscillating
+from models.driver_course import driver_course
+from models.driver_shown import driver_shown
 from models.motion import Motion
+from reports.drawing.moving import goes_round
 from reports.logs.channel import Reading
 from reports.logs.units import UNITS
 from reports.own_log.judged import JudgedLog
@@ -100,10 +102,10 @@ def curves(judged: JudgedLog, room: int) -> list[DrawnChannel]:
 
 def turn_s(judged: JudgedLog) -> float:
     """How long the driver takes for a turn [s], or for its period where it swings."""
-    law = judged.beside.scene.driver.law
-    if isinstance(law, Oscillating):
-        return law.period_s
-    angle = judged.beside.reference.links[judged.scene.driver.link].theta
+    scene = judged.beside.scene
+    if not goes_round(scene):
+        return scene.driver.law.period_s
+    angle = driver_course(scene, judged.beside.reference)[0]
     turned = abs(float(angle[-1] - angle[0]))
     time_s = judged.log.time_s
     return math.tau * float(time_s[-1] - time_s[0]) / turned if turned > 0.0 else math.inf
@@ -223,9 +225,9 @@ def _limit(row: LogRow, unit: float) -> float | None:
 def _phase(judged: JudgedLog, truth: Motion, rows: Rows) -> Array:
     """Where the driver is at some rows: its angle within a turn [deg], or, where it swings, the
     part of its period [%]."""
-    law = judged.beside.scene.driver.law
-    if isinstance(law, Oscillating):
+    scene = judged.beside.scene
+    if not goes_round(scene):
         since = truth.time_s[rows] - judged.log.time_s[0]
-        return np.asarray(100.0 * np.mod(since / law.period_s, 1.0))
-    angle = np.degrees(truth.links[judged.scene.driver.link].theta[rows])
+        return np.asarray(100.0 * np.mod(since / scene.driver.law.period_s, 1.0))
+    angle = driver_shown(scene, truth)[rows]
     return np.asarray(np.mod(angle + AT_ZERO, 360.0))

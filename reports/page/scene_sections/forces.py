@@ -22,7 +22,7 @@ CAPTIONS: Mapping[str, str] = {
     "reactions": "How large the reactions are; normal forces of guides with their sign.",
     "reactions-polar": "The tip of each reaction over a turn, drawn from the cross.",
     "efficiency": "What of the drive's power goes on to loads and masses.",
-    "reduced": "The machine as one flywheel on the driver's shaft.",
+    "reduced": "The machine as one mass that moves with the driver.",
     "forces": "The mechanism where its reactions are largest.",
 }
 """What stands under a figure; one that is not here has its name."""

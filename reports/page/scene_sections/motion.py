@@ -31,12 +31,15 @@ def build(scene: Scene, *, with_forces: bool) -> Section:
             "has_arrows": "forces" in drawn and bool(drawn["forces"]["arrows"]),  # type: ignore[index]  # as embedded
             "with_forces": with_forces,
         },
-        embedded={"drawing": drawn, "torque": _torque(turn)},
+        embedded={"drawing": drawn, "effort": _effort(scene, turn)},
         scripts=("arrows.js", "mechanism.js", "stage.js", "scene_motion.js"),
         styles=("forces.css",),
     )
 
 
-def _torque(turn: Motion) -> dict[str, object] | None:
-    """The driving torque at the instants of the drawing."""
-    return None if turn.forces is None else packed(np.atleast_2d(turn.forces.torque))
+def _effort(scene: Scene, turn: Motion) -> dict[str, object] | None:
+    """What drives at the instants of the drawing: a torque, or a force."""
+    if turn.forces is None:
+        return None
+    series = packed(np.atleast_2d(turn.forces.torque))
+    return {"name": scene.driver.effort, "unit": scene.driver.effort_unit, "series": series}

@@ -156,7 +156,7 @@ def test_the_log_is_shown_against_the_crank_angle_turn_on_turn(opened: Opened) -
     assert 0.0 <= min(known) < 1.5
     assert 358.5 < max(known) <= 360.0
     assert found["x"].count(None) == 2
-    assert layout(opened.page)["x"] == "crank angle [deg]"
+    assert layout(opened.page)["x"] == "angle of crank [deg]"
 
 
 def test_a_line_is_switched_off_and_on(opened: Opened) -> None:
