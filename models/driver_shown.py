@@ -6,6 +6,7 @@ import numpy as np
 
 from models.array import Array
 from models.driver_course import driver_course
+from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import Scene
 
@@ -32,4 +33,5 @@ def driver_stands(scene: Scene, motion: Motion, index: int) -> str:
     value = float(driver_shown(scene, motion)[index])
     if scene.driver.slider is not None:
         return f"{scene.driver.joint} at {value:.3g} m"
-    return f"{scene.driver.joint} at {value % 360.0:.0f} deg"
+    turns = not isinstance(scene.driver.law, Oscillating)
+    return f"{scene.driver.joint} at {value % 360.0 if turns else value:.0f} deg"

@@ -137,7 +137,7 @@ def test_a_workbook_holds_a_name_that_a_workbook_can_not_hold(
     ringing = replace(fourbar, source="bell \x07")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("reports.cli.commands.solve.load_scene", lambda _: ringing)
-        run_solve(SolveRequest(fourbar.name, None, None, None, path), Console())
+        run_solve(SolveRequest(fourbar.name, output=path), Console())
     assert "bell \ufffd" in pd.read_excel(path, sheet_name="source")["value"].tolist()
 
 
@@ -267,7 +267,7 @@ MISTAKES = {
     "angle of no digits": (["solve", "tangent", "--at-deg", "1e300"], ["1e+300", "up to 1e+06"]),
     "angle and turns": (
         ["solve", "tangent", "--at-deg", "0", "--turns", "1"],
-        ["--at-deg with --turns", "one of them"],
+        ["--at-deg 0 with --turns", "one of them"],
     ),
     "no turns": (["solve", "tangent", "--turns", "0"], ["--turns 0", "above 0"]),
     "no steps": (["solve", "tangent", "--steps-per-turn", "0"], ["--steps-per-turn 0"]),

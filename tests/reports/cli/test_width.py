@@ -83,7 +83,7 @@ def test_what_there_is_no_room_for_is_left_out_whole(
 @pytest.mark.parametrize("width", [60, 80, 100])
 def test_a_motion_fits_as_well(width: int) -> None:
     stream = io.StringIO()
-    request = SolveRequest("sixbar-watt", None, None, None, None)
+    request = SolveRequest("sixbar-watt")
     run_solve(request, Console(file=stream, width=width))
     lines = stream.getvalue().splitlines()
     assert max(len(line.rstrip()) for line in lines) <= width

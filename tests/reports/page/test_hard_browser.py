@@ -346,7 +346,7 @@ def test_a_run_and_a_truth_with_missing_samples_are_drawn_as_far_as_they_go(
     open_page: Open, hard_matrix: Matrix, tmp_path: Path
 ) -> None:
     picture = copy.deepcopy(hard_matrix.pictures[0])
-    samples = len(np.asarray(picture.drawing["crank_deg"]))
+    samples = len(np.asarray(picture.drawing["told"]["at"]))
     rows = np.full((4, samples), 1e-3)
     rows[:, samples // 2 :] = np.nan
     exact = np.ones((4, samples)) * np.linspace(0.0, 0.1, samples)

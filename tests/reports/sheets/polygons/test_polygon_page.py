@@ -33,7 +33,7 @@ def test_the_page_holds_the_polygons_of_each_instant() -> None:
     placed = placed_at_angle(load_scene("slotted-lever"), 50.0)
     own = embedded(polygon_page(placed))
     at = own["home"]
-    assert own["drawing"]["crank_deg"][at] == pytest.approx(50.0)
+    assert own["drawing"]["told"]["at"][at] == pytest.approx(50.0)
     drawn = draw_polygons(placed.scene, placed.driver)
     for embedded_one, polygon in zip(
         own["polygons"], (drawn.velocity, drawn.acceleration), strict=True
@@ -54,8 +54,8 @@ def test_of_a_link_that_does_not_turn_the_page_has_rates_of_exactly_0() -> None:
 def test_a_speed_of_ones_own_is_that_of_the_whole_turn() -> None:
     placed = placed_at_angle(load_scene("fourbar-swing"), 90.0, 3.0)
     own = embedded(polygon_page(placed, steady=True))
-    assert own["drawing"]["crank_deg"][-1] - own["drawing"]["crank_deg"][0] == pytest.approx(360.0)
-    assert len(own["drawing"]["crank_deg"]) == INSTANTS
+    assert own["drawing"]["told"]["at"][-1] - own["drawing"]["told"]["at"][0] == pytest.approx(360.0)
+    assert len(own["drawing"]["told"]["at"]) == INSTANTS
 
 
 def test_a_driver_that_goes_through_no_turn_is_refused() -> None:
