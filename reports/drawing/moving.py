@@ -14,6 +14,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from models.array import Array
+from models.driver_course import driver_course
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene
@@ -54,7 +55,6 @@ def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[st
     ``truth`` takes the place of the driven reference, where something else is true.
     """
     motion = true_motion(scene, time_s) if truth is None else truth
-    driver = motion.links[scene.driver.link].theta
     points = {name: motion.points[name].position for name in moving_points(scene)}
     links = drawn_links(scene)
     places = np.concatenate([point.position for point in motion.points.values()])
@@ -68,8 +68,8 @@ def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[st
         "guides": links,
         "sliders": [_slider(scene, name, motion) for name in scene.sliders],
         "box": [*places.min(axis=0), *places.max(axis=0)],
-        "turning": not isinstance(scene.driver.law, Oscillating),
-        "crank_deg": np.degrees(first_turn(driver)),
+        "turning": scene.driver.slider is None and not isinstance(scene.driver.law, Oscillating),
+        **_driver(scene, motion),
         "places": packed(_rows(points.values(), len(time_s))),
         "angles": packed(_stacked([motion.links[name].theta for name in links], len(time_s))),
     }
@@ -114,6 +114,14 @@ def _slider(scene: Scene, name: str, motion: Motion) -> dict[str, object]:
         "reach": [float(travel.min()), float(travel.max())],
         "along": packed(travel),
     }
+
+
+def _driver(scene: Scene, motion: Motion) -> dict[str, object]:
+    """Where the driver stands: its angle, or the displacement of the slider that is driven."""
+    place = driver_course(scene, motion)[0]
+    if scene.driver.slider is not None:
+        return {"driver_mm": 1e3 * place}
+    return {"crank_deg": np.degrees(first_turn(place))}
 
 
 def first_turn(angle_rad: Array) -> Array:

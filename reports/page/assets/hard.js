@@ -28,9 +28,9 @@
     return found;
   }
 
-  /** How long a picture lasts, by the turns of its crank. */
+  /** How long a picture lasts, by the turns of its crank; of a slider as of one. */
   function lasts() {
-    const degrees = picture.shape.crank_deg;
+    const degrees = picture.shape.crank_deg ?? [0, 360];
     const turned = degrees.slice(1).reduce((sum, each, i) => sum + Math.abs(each - degrees[i]), 0);
     return ROUND_MS * Math.min(Math.max(turned / 360, 0.7), 2.5);
   }
@@ -72,11 +72,11 @@
     const known = own.cases[run.case];
     const steps = run.steps ? ` × ${run.steps} steps` : "";
     const at = run.at_s === null ? "" : `${Number(run.at_s.toPrecision(4))} s`;
-    const crank = run.at_deg === null ? "" : `, crank at ${run.at_deg.toFixed(1)}°`;
+    const crank = run.at_driver === null ? "" : `, ${run.at_driver}`;
     return [
       [`worst error of ${known?.error_of ?? "place"}`, `${short(run.error)} (held below ${short(known?.within ?? null)})`],
       ["widest gap of a pin", short(run.gap)],
-      ...(run.drive === null ? [] : [["error of the crank", short(run.drive)]]), // nothing drives it
+      ...(run.drive === null ? [] : [["error of the driver", short(run.drive)]]), // nothing drives it
       ["distance from singular, 0 to 1", run.sine >= 0.01 ? run.sine.toFixed(2) : short(run.sine)],
       ["happens at", at ? at + crank : "–"],
       ["step", run.dt_s === null ? "–" : `${short(run.dt_s, 3)} s${steps}`],

@@ -36,7 +36,7 @@ crankcheck.mechanism = (() => {
   }
 
   /**
-   * Draw into an SVG element. Gives `samples`, `degrees(position)`, and
+   * Draw into an SVG element. Gives `samples`, `degrees(position)` of the driver (of a slider mm), and
    * `show(position, overlays, factor)`, which draws overlays `{rows, paint, trail, only, width}` and
    * tells whether any of them was cut off: at `reach` times the size of the drawing. With a `trail`
    * the way that its points have come is drawn; `only` names the `links` that are drawn, the
@@ -45,7 +45,8 @@ crankcheck.mechanism = (() => {
    */
   return (element, drawing, reach = FARTHEST) => {
     const scene = read(drawing);
-    const samples = scene.crank_deg.length;
+    const driven = scene.crank_deg ?? scene.driver_mm;
+    const samples = driven.length;
     const names = [...Object.keys(scene.ground), ...scene.points];
     element.classList.toggle("crowded", names.length > CROWD);
     const layers = ["paths", "ground", "guides", "reference", "overlays", "pins", "forces"].map((name) => svg("g", { class: name }));
@@ -233,7 +234,7 @@ crankcheck.mechanism = (() => {
     still();
     return {
       samples, show, farthest, worst, refit: still, size: scene.size,
-      degrees: (position) => between(scene.crank_deg, position), between,
+      degrees: (position) => between(driven, position), between,
     };
   };
 })();

@@ -29,8 +29,12 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
     return (drawing.turning ? ((rounded % 360) + 360) % 360 : rounded).toFixed(0);
   };
 
-  /** Where the drawing stands, as it is shown and as it is said: a crank's angle, or a time. */
+  /** Where the drawing stands, as it is shown and as it is said: a crank's angle, a slider's place, or a time. */
   function place(at) {
+    if (drawing.driver_mm) {
+      const away = mechanism.degrees(at).toFixed(1);
+      return [`${away} mm`, `${drawing.driver} at ${away} millimetres`];
+    }
     if (drawing.until_s === undefined) return [`${degrees(at)}°`, `crank at ${degrees(at)} degrees`];
     const seconds = ((at / (mechanism.samples - 1)) * drawing.until_s).toPrecision(3);
     return [`${seconds} s`, `at ${seconds} seconds`];
