@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from analytic.kinematics import reach, solve
 from models.errors import ReachError
-from models.hard import triad_platform
+from models.hard import slider_crank_by_piston, slotted_lever, triad_platform
+from models.laws import Oscillating
+from models.scene import Driver, Scene
+from reports.stability.case import Trial
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.catalogue.change_points import TRIAD_CRANK_M
 from reports.stability.grading import graded
@@ -68,3 +72,30 @@ def test_a_lost_run_of_a_driven_slider_is_told_in_metres_and_drawn() -> None:
     assert (place > 200.0).all()
     assert (place < 400.0).all()
     assert "crank_deg" not in drawn.drawing
+
+
+def in_a_moving_guide() -> Scene:
+    """A crank that is driven by a block in a lever, as by a cylinder."""
+    scene = slotted_lever("lever-by-block", 0.1, 0.2, source="x")
+    law = Oscillating(centre_rad=0.22, amplitude_rad=0.05, frequency_rad_s=10.0)
+    return replace(scene, driver=Driver("block B", law, base="lever", slider="B"))
+
+
+def along_a_slope() -> Scene:
+    """A slider-crank that is driven by its piston along a line that is neither x nor y."""
+    scene = slider_crank_by_piston("piston-on-slope", 0.1, 0.3, source="x", amplitude_m=0.09)
+    return replace(scene, sliders={"C": replace(scene.sliders["C"], direction_rad=0.3)})
+
+
+@pytest.mark.parametrize(
+    ("engine", "scene"), [("pymunk", in_a_moving_guide()), ("exudyn", along_a_slope())]
+)
+def test_an_engine_that_cannot_do_a_driver_is_a_row_with_its_reason(
+    engine: str, scene: Scene
+) -> None:
+    case = replace(CATALOGUE["piston-near-limit"], trial=lambda _: Trial(scene))
+    found, drawn = graded(case, engine, "tuned", 1.0, draw=True)
+    assert found.outcome == "unsupported"
+    assert "drive" in found.reason
+    assert drawn is None
+    assert graded(case, "mujoco", "tuned", 1.0, draw=False)[0].outcome == "ok"
