@@ -93,7 +93,7 @@ CASES = (
         name="coupler-near-limit",
         title="Four-bar driven at the pin of crank and coupler, ever nearer to a limit position",
         source="limit position from the triangle of the links in line",
-        truth="closed form; at the limit A, C and D are in line, and C could go to either side",
+        truth="two assemblies; at the limit A, C and D are in line, and C could go to either side",
         trial=_coupler,
     ),
 )
