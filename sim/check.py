@@ -169,8 +169,9 @@ def _state(scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive) 
     slack = (delay * rate) ** 2 * peak
     if drive != "free":
         crank = start_speed(scene.driver.law, state.time_s, dt_s, facts.velocity_shift)
-        own = wanted[scene.driver.link].omega
-        if not scene.driver.is_crank:
+        if scene.driver.is_crank:
+            own = wanted[scene.driver.link].omega
+        else:  # a block without mass has no frame
             own = float(scene.driver.law.at(np.array([state.time_s + delay]))[1][0])
         slack += abs(crank - own) / scene.driver_arm_m
     # Rounding scales with the longest length or coordinate [m].

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from reports.selftest.all_faults import FAULTS
+from reports.stability.catalogue import CATALOGUE
 from tests.worlds.command import PYTHON
 from tests.worlds.documents import blocks, commands, follows, ran, same, threads, words
 
@@ -69,6 +70,11 @@ def test_the_readme_counts_all_faults_that_are_planted() -> None:
     assert f"plants {of['free']} faults of dynamics" in " ".join(README.split())
     assert f"`selftest --elastic` plants {of['elastic']} faults" in " ".join(README.split())
     assert f"in them, and {of['beam']} in beams" in " ".join(README.split())
+
+
+def test_the_readme_counts_the_hard_cases_that_run_where_none_is_named() -> None:
+    driven = sum(not case.free and not case.elastic for case in CATALOGUE.values())
+    assert f"The whole catalogue, {driven} families" in README
 
 
 def test_what_uses_a_file_comes_after_what_writes_it() -> None:

@@ -5,14 +5,18 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import TypeGuard
 
 import numpy as np
 
 from analytic.kinematics import solve
+from analytic.structure.groups import Group, Part, Triad
 from analytic.structure.mobility import analyse
 from models.array import Mask
 from models.errors import CrankcheckError
 from models.motion import LinkMotion, Motion
+from models.names import MOST_ASSEMBLIES
+from models.scene import Scene
 from reports.compare.beside import Beside
 from reports.compare.errors import Departure
 
@@ -56,18 +60,20 @@ def departure(beside: Beside) -> Departure | None:
 def _elsewhere(beside: Beside, far: Mask) -> bool:
     """Whether the mechanism stands in another assembly at one of the samples ``far``.
 
-    Assemblies are the choices of their dyads, in solving order. What cannot be had at all of the
+    Assemblies are the choices of their groups, in solving order: two of a dyad, up to
+    six of a triad, which are those that it has at the start. What cannot be had at all of the
     samples is passed over: a run that went over to it is off its place all the same. So are those
     which share their first choices with one that is ruled out by the links of these alone.
     """
     scene, times = beside.scene, beside.motion.time_s
-    dyads = [group for group in analyse(scene).groups if group.assemblies == 2][:MOST_CHOICES]
-    keys = [dyad.branch_key for dyad in dyads]
+    groups = [part for part in analyse(scene).order if _is_choice(part)][:MOST_CHOICES]
+    keys = [group.branch_key for group in groups]
+    _, *others = itertools.product(*(_choices(scene, group) for group in groups))
     ruled_out: set[tuple[int, ...]] = set()
-    for signs in itertools.product((1, -1), repeat=len(keys)):
-        if -1 not in signs or any(signs[:n] in ruled_out for n in range(1, len(signs) + 1)):
+    for chosen in others:
+        if any(chosen[:n] in ruled_out for n in range(1, len(chosen) + 1)):
             continue
-        branch = {k: s * scene.branch.get(k, 1) for k, s in zip(keys, signs, strict=True)}
+        branch = dict(zip(keys, chosen, strict=True))
         other = replace(scene, branch={**scene.branch, **branch})
         try:
             motion = solve(other, times, points=(), sliders=(), bound=False)
@@ -75,17 +81,30 @@ def _elsewhere(beside: Beside, far: Mask) -> bool:
             continue
         there = far.copy()
         rest = dict(motion.links)
-        for n, dyad in enumerate(dyads, start=1):
-            own = {name: rest.pop(name) for name in dyad.bodies if name in rest}
-            stay(there, beside.motion, own)
+        for n, group in enumerate(groups, start=1):
+            placed = {name: rest.pop(name) for name in group.bodies if name in rest}
+            stay(there, beside.motion, placed)
             if not there.any():
-                ruled_out.add(signs[:n])
+                ruled_out.add(chosen[:n])
                 break
         else:
             stay(there, beside.motion, rest)
             if there.any():
                 return True
     return False
+
+
+def _is_choice(part: Part) -> TypeGuard[Group | Triad]:
+    """Whether a part has more than one assembly."""
+    return isinstance(part, Triad) or (isinstance(part, Group) and part.assemblies > 1)
+
+
+def _choices(scene: Scene, group: Group | Triad) -> tuple[int, ...]:
+    """What the branch of a group may be, first that of the scene."""
+    own = scene.branch.get(group.branch_key, 1)
+    if isinstance(group, Group):
+        return own, -own
+    return own, *(number for number in range(1, MOST_ASSEMBLIES + 1) if number != own)
 
 
 def stay(there: Mask, logged: Motion, links: Mapping[str, LinkMotion]) -> None:

@@ -142,4 +142,5 @@ class Case(CaseFacts):
     def facts(self) -> CaseFacts:
         """What a reader needs."""
         own = {each.name: getattr(self, each.name) for each in fields(CaseFacts)}
-        return CaseFacts(**own | {"error_of": ERRORS[self.judge]})
+        unit = self.trial(self.values[0]).scene.driver.unit
+        return CaseFacts(**own | {"error_of": ERRORS[self.judge], "driver_unit": unit})

@@ -30,7 +30,8 @@ class ErrorSeries:
     ``crank`` is its logged angle [rad]. ``settled`` is the first sample that counts, and
     ``incomplete`` what the log lacks of what was commanded.
     ``limited`` says that ``place`` is the crank's, against a command that ends at a limit, and
-    ``worst_of_place`` what the largest error of place is one of.
+    ``worst_of_place`` what the largest error of place is one of. ``driver_unit`` is m where a
+    slider is driven: ``driver_rad`` and ``crank`` are its displacements [m] then.
     """
 
     status: str
@@ -48,11 +49,22 @@ class ErrorSeries:
     incomplete: str = ""
     limited: bool = False
     worst_of_place: str = "a place"
+    driver_unit: str = "rad"
 
     @property
     def turn(self) -> Array:
         """How many periods have gone by."""
         return np.asarray((self.time_s - self.time_s[0]) / self.period_s)
+
+    @property
+    def slides(self) -> bool:
+        """Whether a slider is driven."""
+        return self.driver_unit == "m"
+
+    @property
+    def driver(self) -> str:
+        """What is driven, in words."""
+        return "the slider" if self.slides else "the crank"
 
     @property
     def driven(self) -> bool:
@@ -106,6 +118,7 @@ def error_series(scene: Scene, run: Run, settled_turns: float = 0.0) -> ErrorSer
         settled=settled,
         departure=left,
         sine=nearest(scene, beside.reference),
+        driver_unit=scene.driver.unit,
         incomplete=lacking(scene, run),
     )
 

@@ -129,15 +129,18 @@ def _locked(errors: ErrorSeries, within: float) -> Reason | None:
         return None
     if errors.limited and errors.worst(errors.place)[0] > within:
         return None  # it stands, and somewhere else than at its limit
-    behind = math.degrees(float(errors.drive[-1]))
-    return f"the crank stands, {behind:.3g} deg behind", errors.first(errors.drive, within)
+    behind = float(errors.drive[-1])
+    far = (
+        f"{behind:.2g} of the longest link" if errors.slides else f"{math.degrees(behind):.3g} deg"
+    )
+    return f"{errors.driver} stands, {far} behind", errors.first(errors.drive, within)
 
 
 def _silently_open(errors: ErrorSeries, within: float) -> Reason | None:
     gap, _ = errors.worst(errors.gap)
     if gap <= within or errors.worst(errors.drive)[0] > within:
         return None
-    unshown = ", and the crank does not show it" if errors.driven else ""
+    unshown = f", and {errors.driver} does not show it" if errors.driven else ""
     reason = f"a joint is open by {gap:.2g} of the longest link{unshown}"
     return reason, errors.first(errors.gap, within)
 
@@ -155,7 +158,7 @@ def _drifts(errors: ErrorSeries, within: float) -> Reason | None:
 def _degraded(errors: ErrorSeries, within: float) -> Reason | None:
     for what, series in (
         (errors.worst_of_place, errors.place),
-        ("the crank", errors.drive),
+        (errors.driver, errors.drive),
         ("a joint", errors.gap),
     ):
         worst, at = errors.worst(series)

@@ -56,7 +56,7 @@ class CaseFacts:
     ``values`` are those of the parameter, from easy to hard; ``labels`` says them in a few
     characters, as `label` does if not given. ``good`` are the outcomes of an engine that holds;
     ``within`` is the class: the error, as a pure number, that counts as held; ``error_of`` says
-    what that is an error of.
+    what that is an error of; ``driver_unit`` is rad, or m where a slider is driven.
     """
 
     name: str
@@ -72,6 +72,7 @@ class CaseFacts:
     good: tuple[Outcome, ...]
     within: float
     error_of: str = PLACE
+    driver_unit: str = "rad"
 
     def __post_init__(self) -> None:
         if not self.labels:
@@ -87,9 +88,10 @@ class Graded:
     ``error`` is the worst error of place, ``gap`` the widest open pin, ``drive`` the error of the
     crank: pure numbers (rad, or lengths over the longest link), NaN where there is none. ``sine``
     is how far the scene stays from its nearest singular position (1 best, 0 singular). Where the
-    outcome has a place, ``at_s`` [s] and ``at_driver_rad`` [rad] say it. ``grid`` is False for
-    the values that a bisection looked at. ``force`` is the worst error of forces, a share of the
-    largest of their kind, NaN where none were asked for; it is shown, and does not grade.
+    outcome has a place, ``at_s`` [s] and ``at_driver_rad`` [rad, or m of a slider] say
+    it. ``grid`` is False for the values that a bisection looked at. ``force`` is the worst error of
+    forces, a share of the largest of their kind, NaN where none were asked for; it is shown, and
+    does not grade.
     """
 
     case: str

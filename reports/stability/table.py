@@ -133,17 +133,18 @@ def _legend(matrix: Matrix) -> str:
 
 def show_run(console: Console, case: CaseFacts, run: Graded) -> None:
     """Print one run in full."""
-    good = run.outcome in case.good
+    good, slides = run.outcome in case.good, case.driver_unit == "m"
     head = f"{case.name}, {case.parameter} {run.label} {case.unit}".rstrip()
     console.print(Text(f"{head}, {run.engine}, {run.profile}", "bold"))
     console.print(Text(f"  {run.outcome}", "green" if good else "bold red"), Text(run.reason))
     if not math.isnan(run.at_s):
-        degrees = math.degrees(run.at_driver_rad)
-        console.print(f"  at t = {run.at_s:.6g} s, driver {degrees:.4g} deg", highlight=False)
+        place = run.at_driver_rad
+        driver = f"{place:.4g} m" if slides else f"{math.degrees(place):.4g} deg"
+        console.print(f"  at t = {run.at_s:.6g} s, driver {driver}", highlight=False)
     for name, number in (
         (f"error of {case.error_of}", run.error),
         ("widest open joint, over the longest link", run.gap),
-        ("error of the crank, rad", run.drive),
+        (f"error of the {'slider, over the longest link' if slides else 'crank, rad'}", run.drive),
         ("error of forces, over the largest", run.force),
         ("distance of the scene from a singular position, 0 to 1", run.sine),
     ):

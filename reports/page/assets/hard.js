@@ -72,13 +72,13 @@
     const known = own.cases[run.case];
     const steps = run.steps ? ` × ${run.steps} steps` : "";
     const at = run.at_s === null ? "" : `${Number(run.at_s.toPrecision(4))} s`;
-    const crank = run.at_deg === null ? "" : `, crank at ${run.at_deg.toFixed(1)}°`;
+    const driver = run.at_driver === null ? "" : `, ${run.at_driver}`;
     return [
       [`worst error of ${known?.error_of ?? "place"}`, `${short(run.error)} (held below ${short(known?.within ?? null)})`],
       ["widest gap of a pin", short(run.gap)],
-      ...(run.drive === null ? [] : [["error of the crank", short(run.drive)]]), // nothing drives it
+      ...(run.drive === null ? [] : [["error of the driver", short(run.drive)]]), // nothing drives it
       ["distance from singular, 0 to 1", run.sine >= 0.01 ? run.sine.toFixed(2) : short(run.sine)],
-      ["happens at", at ? at + crank : "–"],
+      ["happens at", at ? at + driver : "–"],
       ["step", run.dt_s === null ? "–" : `${short(run.dt_s, 3)} s${steps}`],
       ["took", run.wall_s === null ? "–" : crankcheck.duration(run.wall_s)],
     ];

@@ -145,6 +145,15 @@ def _case(case: CaseFacts) -> dict[str, object]:
     }
 
 
+def _driver(case: CaseFacts | None, place: float | None) -> str | None:
+    """Where the driver stands, in words; None where it has no place."""
+    if place is None or math.isnan(place):
+        return None
+    if case is not None and case.driver_unit == "m":
+        return f"slider at {1e3 * place:.1f} mm"
+    return f"crank at {math.degrees(place):.1f}\N{DEGREE SIGN}"
+
+
 def _run(case: CaseFacts | None, run: Graded) -> dict[str, object]:
     """What the scripts need of a run."""
     return {
@@ -154,6 +163,6 @@ def _run(case: CaseFacts | None, run: Graded) -> dict[str, object]:
         "kind": kind(run.outcome),
         "shade": shade(run.error),
         "held": case is not None and run.outcome in case.good,
-        "at_deg": None if run.at_driver_rad is None else math.degrees(run.at_driver_rad),
+        "at_driver": _driver(case, run.at_driver_rad),
         "command": command(run),
     }

@@ -154,7 +154,7 @@ def test_a_run_without_any_number_is_shown(hard_matrix: Matrix) -> None:
     for numbers in (lost, dict.fromkeys(lost)):
         found = carried(stability_page(one_case(hard_matrix, **numbers)))["runs"][0]
         assert {found[name] for name in lost} == {None}
-        assert found["at_deg"] is None
+        assert found["at_driver"] is None
 
 
 def test_a_value_that_is_no_number_is_found_again(hard_matrix: Matrix) -> None:
