@@ -70,15 +70,16 @@ class Prepared:
         look = CellSolver(self.scene, self.steps, self.passages)
         return Turns.of(look, self.start, self.period)
 
+    @cached_property
+    def followed(self) -> tuple[FollowedStep, ...]:
+        """The groups of class III, each followed along the driver."""
+        return tuple(step for step in self.steps if isinstance(step, FollowedStep))
+
     @property
     def period(self) -> float:
         """The driver angle [rad] after which the positions repeat."""
         periods = [passage.period for passage in self.passages.values()]
-        periods += [
-            step.period(self.passages) or math.tau
-            for step in self.steps
-            if isinstance(step, FollowedStep)
-        ]
+        periods += [step.period(self.passages) or math.tau for step in self.followed]
         return max(periods, default=math.tau)
 
     def stretched(self, theta: Array) -> Chunk:
@@ -102,9 +103,8 @@ class Prepared:
     def _passed(self, low: float, high: float) -> tuple[Crossing, ...]:
         """The change points that a driver passes between two angles [rad]."""
         crossings = passed(self.passages, low, high)
-        for step in self.steps:
-            if isinstance(step, FollowedStep):
-                crossings += step.passed(self.passages, low, high)
+        for step in self.followed:
+            crossings += step.passed(self.passages, low, high)
         return crossings
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none

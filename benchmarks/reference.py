@@ -3,7 +3,8 @@
 Angle, rate and acceleration of coupler and rocker at 1e5 crank positions, in this process, both
 taking turns in rounds of a few calls, each
 round warmed up by one. Prints nanoseconds a position, the ratio, an A/A pair that shows the noise,
-and the memory peak over the arrays returned. Exits with 1 where a ratio asked for is missed.
+what a triad takes, which is followed along its crank, beside a six-bar of two dyads, and the memory
+peak over the arrays returned. Exits with 1 where a ratio asked for is missed.
 """
 
 from __future__ import annotations
@@ -52,11 +53,18 @@ def competitor() -> Callable[[], object]:
 
 def reference(*, bound: bool) -> Callable[[], object]:
     """The reference on fourbar-lecture-1, the same angles."""
-    scene = load_scene("fourbar-lecture-1")
+    return _solving("fourbar-lecture-1", ("coupler", "rocker"), bound=bound)
+
+
+def whole(name: str, *, bound: bool) -> Callable[[], object]:
+    """The reference on all links of a scene with a crank at 10 rad/s, over as many turns."""
+    return _solving(name, None, bound=bound)
+
+
+def _solving(name: str, links: tuple[str, ...] | None, *, bound: bool) -> Callable[[], object]:
+    scene = load_scene(name)
     time_s = np.linspace(0.0, 10.0, POSITIONS)
-    return lambda: solve(
-        scene, time_s, links=("coupler", "rocker"), points=(), sliders=(), bound=bound
-    )
+    return lambda: solve(scene, time_s, links=links, points=(), sliders=(), bound=bound)
 
 
 def nanoseconds(calls: dict[str, Callable[[], object]]) -> dict[str, list[float]]:
@@ -93,10 +101,15 @@ def main() -> int:
             "crankcheck again (A/A)": reference(bound=False),
             "crankcheck with error bounds": reference(bound=True),
             "pylinkage step_fast_with_kinematics": competitor(),
+            "six-bar of two dyads": whole("sixbar-watt", bound=False),
+            "six-bar with error bounds": whole("sixbar-watt", bound=True),
+            "triad (triad-platform)": whole("triad-platform", bound=False),
+            "triad with error bounds": whole("triad-platform", bound=True),
         }
     )
     ours = times["crankcheck"]
-    print(f"{POSITIONS} crank positions of a four-bar: angle, rate, acceleration of two links\n")
+    print(f"{POSITIONS} crank positions: angle, rate, acceleration of two links of a four-bar, and")
+    print("of all links of the others\n")
     print(f"{'ns a position':38}{'min':>8}{'median':>8}   ratio of minima, medians")
     for name, found in times.items():
         ratios = f"{min(found) / min(ours):.2f}, {np.median(found) / np.median(ours):.2f}"

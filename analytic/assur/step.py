@@ -20,7 +20,7 @@ from analytic.dyads.chunk import Chunk, Passage
 from analytic.dyads.driven import driver_scale, told
 from analytic.dyads.parts import Closure, OpenError
 from analytic.dyads.plane import STEADY, AngleError, BodyKinematics, Vec
-from analytic.dyads.steps import Step
+from analytic.dyads.steps import FollowedStep, Step
 from analytic.structure.groups import Group
 from models.array import Array, Mask
 from models.errors import CrankcheckError, ReachError, StructureError
@@ -52,7 +52,7 @@ class Before:
         return chunk
 
 
-class AssurStep:
+class AssurStep(FollowedStep):
     """The central link of a group on its legs, followed from its assembly at time 0."""
 
     def __init__(self, mounting: Mounting, before: Sequence[Step]) -> None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Protocol, runtime_checkable
+from typing import Protocol
 
 import numpy as np
 
@@ -41,20 +42,27 @@ class Step(Protocol):
         ...
 
 
-@runtime_checkable
-class FollowedStep(Step, Protocol):
+class FollowedStep(ABC):
     """A step of a group that has no closed form: its assembly is followed along the driver."""
 
+    key: str
+
+    @abstractmethod
+    def advance(self, chunk: Chunk) -> None: ...
+
+    @abstractmethod
     def period(self, passages: Mapping[str, Passage]) -> float | None:
         """The driver angle after which the assembly comes back [rad]; None where it ends."""
         ...
 
+    @abstractmethod
     def passed(
         self, passages: Mapping[str, Passage], low: float, high: float
     ) -> tuple[Crossing, ...]:
         """The change points of the group, each once, that a driver passes between two angles."""
         ...
 
+    @abstractmethod
     def end_in_words(self, passages: Mapping[str, Passage], theta: float) -> str:
         """What ends it beside a driver angle [rad]."""
         ...
