@@ -54,7 +54,9 @@ def test_of_a_link_that_does_not_turn_the_page_has_rates_of_exactly_0() -> None:
 def test_a_speed_of_ones_own_is_that_of_the_whole_turn() -> None:
     placed = placed_at_angle(load_scene("fourbar-swing"), 90.0, 3.0)
     own = embedded(polygon_page(placed, steady=True))
-    assert own["drawing"]["told"]["at"][-1] - own["drawing"]["told"]["at"][0] == pytest.approx(360.0)
+    assert own["drawing"]["told"]["at"][-1] - own["drawing"]["told"]["at"][0] == pytest.approx(
+        360.0
+    )
     assert len(own["drawing"]["told"]["at"]) == INSTANTS
 
 
