@@ -1,4 +1,4 @@
-"""The branch of any mechanism, whatever drives it, against those of the same one driven elsewhere."""
+"""The branch of any mechanism, whatever drives it, against the same one driven elsewhere."""
 
 from __future__ import annotations
 
