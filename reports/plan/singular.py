@@ -90,11 +90,9 @@ def singular_note(scene: Scene, motion: Motion) -> str:
     """Which samples of a reference are singular, for the reader of a table; "" where none is."""
     theta = driver_course(scene, motion)[0]
     places = [
-        f"{angle:.6g} deg ({key})"
+        f"{place_in_words(float(place), scene.driver.unit)} ({key})"
         for key, sine in motion.conditioning.items()
-        for angle in np.degrees(
-            theta[(np.abs(sine) < SINGULAR) & ~_is_passed(motion.crossings, key, theta)]
-        )
+        for place in theta[(np.abs(sine) < SINGULAR) & ~_is_passed(motion.crossings, key, theta)]
     ]
     if not places:
         return ""
