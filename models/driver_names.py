@@ -31,14 +31,34 @@ def faults_of_driver(
         have = f"use one of {few(map(cut, sliders), LISTED)}" if sliders else "the scene has none"
         yield f"driver.slider: found {cut(slider)}; {have}"
     if isinstance(pin, str):
-        yield from _of_pin(pin, driver.get("links"), points, ground)
+        yield from _of_pin(pin, driver.get("links"), points, _blocks(sliders), ground)
+
+
+def _blocks(sliders: Mapping[str, Any]) -> dict[str, str]:
+    """The points of blocks, and the sliders whose they are, as far as the raw tables tell."""
+    return {
+        str(table.get("point", name)): name
+        for name, table in sliders.items()
+        if isinstance(table, Mapping) and "link" not in table
+    }
 
 
 def _of_pin(
-    pin: str, named: object, points: Mapping[str, set[str]], ground: set[str]
+    pin: str,
+    named: object,
+    points: Mapping[str, set[str]],
+    blocks: Mapping[str, str],
+    ground: set[str],
 ) -> Iterator[str]:
     """A pin that is none, or does not join the links that are named."""
     joined = [GROUND] * (pin in ground) + [name for name, own in points.items() if pin in own]
+    if len(joined) == 1 and pin in blocks:
+        yield (
+            f"driver.pin: found {cut(pin)}, by which {joined[0]} turns against the block of slider "
+            f"{cut(blocks[pin])}; drive that slider, slider = {cut(blocks[pin])!r}, or a pin of "
+            "two links"
+        )
+        return
     if len(joined) < 2:
         what = f"it is a point of {joined[0]} alone" if joined else "no body has such a point"
         yield f"driver.pin: found {cut(pin)}, and {what}; name a point that two bodies share"

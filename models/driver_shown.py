@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from models.array import Array
@@ -9,6 +11,11 @@ from models.driver_course import driver_course
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import Scene
+
+
+def place_in_words(place: float, unit: str, degrees: str = ".6g") -> str:
+    """A driver's coordinate [rad or m] as it is told, by its ``unit``; angles formatted so."""
+    return f"{place:.6g} m" if unit == "m" else f"{math.degrees(place):{degrees}} deg"
 
 
 def driver_unit(scene: Scene) -> str:

@@ -114,7 +114,7 @@ class ConstantSpeed(_ToSpeed):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.speed_rad_s == 0.0:
-            raise ValueError("speed_rad_s is 0: a driver at rest drives nothing")
+            raise ValueError("its speed is 0: a driver at rest drives nothing")
 
     def angle(self, time_s: Array) -> Array:
         """The angle alone [rad]."""

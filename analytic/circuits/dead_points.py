@@ -20,7 +20,7 @@ from analytic.circuits.rotatability import Rotation
 from analytic.prepared import prepared
 from analytic.structure.mobility import analyse
 from models.errors import StructureError
-from models.scene import GROUND
+from models.scene import GROUND, Scene
 
 IN_LINE = 1e-5
 """Sine of an angle between links that are in line: a limit is found to a root of rounding."""
@@ -42,7 +42,7 @@ def dead_points(circuits: Circuits, rotations: Sequence[Rotation]) -> list[DeadP
     found = []
     for end in (arc.low, arc.high):
         if end is not None:
-            where = _at_limit(circuits, end.dyad, end.angle_rad)
+            where = at_limit(scene, end.dyad)
             found.append(DeadPoint(scene.driver.link, end.angle_rad, where))
     limits = {point.driver_rad for point in found}
     for one in rotations:
@@ -58,16 +58,21 @@ def dead_points(circuits: Circuits, rotations: Sequence[Rotation]) -> list[DeadP
     return found
 
 
-def _at_limit(circuits: Circuits, dyad: str, theta: float) -> str:
-    """What is in line where the two assemblies of a dyad meet."""
-    group = next(g for g in analyse(circuits.signed.scene).groups if g.branch_key == dyad)
+def at_limit(scene: Scene, key: str) -> str:
+    """What is in line where two assemblies of a group meet, by the group's branch."""
+    structure = analyse(scene)
+    for triad in structure.triads:
+        if triad.branch_key == key:
+            legs = ", ".join(leg.body for leg in triad.legs)
+            return f"the lines of {legs} through one point, or parallel"
+    group = next(g for g in structure.groups if g.branch_key == key)
     if group.kind == "RRR":
         return f"{group.first} and {group.second} in line"
     if group.kind == "RRP":
         return f"{group.first} square to the line of {group.outer2}"
     if group.kind == "RPR":
         return f"line of {group.inner} square to the line from its pin to the guide's"
-    raise StructureError(f"{circuits.signed.scene.name}: {group.kind} has no limit at {theta:g}")
+    raise StructureError(f"{scene.name}: {group.kind} has no limit position")
 
 
 def _in_line(circuits: Circuits, theta: float) -> str:

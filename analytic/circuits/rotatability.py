@@ -16,7 +16,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.circuits.arcs import Arc
-from analytic.circuits.circuits import Circuits
 from analytic.prepared import prepared
 from models.array import Array
 from models.errors import CrankcheckError
@@ -74,17 +73,16 @@ def neighbours(scene: Scene) -> list[tuple[str, str]]:
     return list(pairs)
 
 
-def rotations(circuits: Circuits) -> list[Rotation]:
-    """How every link turns against the ground and against its neighbours, over the branch that
-    the scene is on.
+def rotations(scene: Scene, arc: Arc) -> list[Rotation]:
+    """How every link turns against the ground and against its neighbours, over a branch of its own:
+    that which the scene is on.
 
     Raises
     ------
     CrankcheckError
         A link can not be followed, as its angle runs through infinity or a singular position.
     """
-    scene = circuits.signed.scene
-    follow = _Follower.of(circuits)
+    follow = _Follower.of(scene, arc)
     return [follow.rotation(link, against) for link, against in neighbours(scene)]
 
 
@@ -92,21 +90,20 @@ def rotations(circuits: Circuits) -> list[Rotation]:
 class _Follower:
     """Angles of links over a branch at driver angles ``theta``, continuous along it."""
 
-    circuits: Circuits
+    scene: Scene
     arc: Arc
     theta: Array
     angles: Mapping[str, Array]
     period: float
 
     @staticmethod
-    def of(circuits: Circuits) -> _Follower:
-        scene, (_, arc) = circuits.signed.scene, circuits.own
+    def of(scene: Scene, arc: Arc) -> _Follower:
         period = prepared(scene).period if arc.low is None else math.tau
         theta = arc.angles(LOOKS + 1)
         if arc.low is None:
             theta = np.linspace(-math.pi, period - math.pi, LOOKS * round(period / math.tau) + 1)
         angles = {GROUND: np.zeros_like(theta)}
-        for name, angle in _plain(circuits, theta).items():
+        for name, angle in _plain(scene, theta).items():
             angles[name] = np.unwrap(angle)
             if np.max(np.abs(np.diff(angles[name])), initial=0.0) > 0.5 * math.pi:
                 raise CrankcheckError(
@@ -114,7 +111,7 @@ class _Follower:
                     "angle within an eighth of a degree of the driver: it passes a singular "
                     "position as good as; change a length"
                 )
-        return _Follower(circuits, arc, theta, angles, period)
+        return _Follower(scene, arc, theta, angles, period)
 
     def rotation(self, link: str, against: str) -> Rotation:
         relative = self.angles[link] - self.angles[against]
@@ -132,10 +129,11 @@ class _Follower:
     def _certain(self, link: str, against: str, seen: int) -> int:
         """The turns as they are counted with certainty; those of links that keep an angle to the
         driver or to the ground are told by it alone."""
-        gains = prepared(self.circuits.signed.scene).turns.gains
+        gains = prepared(self.scene).turns.gains
         cycle = self.period / math.tau
-        driver = self.circuits.signed.scene.driver.link
-        own = {GROUND: 0.0, driver: cycle, **gains}
+        own = {GROUND: 0.0, **gains}
+        if self.scene.driver.is_crank:
+            own[self.scene.driver.link] = cycle
         if link not in own or against not in own:
             return seen
         return round(own[link] - own[against])
@@ -150,7 +148,7 @@ class _Follower:
         high = float(self.theta[min(best + 1, len(self.theta) - 1)])
         for _ in range(ZOOMS):
             looks = np.linspace(low, high, FINER)
-            plain = _plain(self.circuits, looks)
+            plain = _plain(self.scene, looks)
             angle = plain[link] - plain.get(against, np.zeros(FINER))
             angle = angle + math.tau * np.round((value - angle) / math.tau)
             k = int(np.argmax(sense * angle))
@@ -160,11 +158,11 @@ class _Follower:
         return value, math.remainder(at, math.tau)
 
 
-def _plain(circuits: Circuits, theta: Array) -> dict[str, Array]:
+def _plain(scene: Scene, theta: Array) -> dict[str, Array]:
     """The angles of all links but for whole turns, by the motion with its change points."""
-    chunk = prepared(circuits.signed.scene).stretched(theta)
+    chunk = prepared(scene).stretched(theta)
     found = {}
-    for name in circuits.signed.scene.links:
+    for name in scene.links:
         body = chunk.bodies[name]
         angle = np.arctan2(body.turn.y, body.turn.x) if body.theta is None else body.theta
         found[name] = np.array(np.broadcast_to(angle, theta.shape), dtype=np.float64)

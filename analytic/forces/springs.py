@@ -18,6 +18,7 @@ from analytic.forces.balance import PrismaticPair
 from analytic.forces.bounded import Bounded, BoundedVec
 from analytic.forces.free_body import FreeBody
 from analytic.kinematics import counted_angle, unit_chunk
+from analytic.prepared import prepared
 from models.array import Array
 from models.joints import block_name, local_point
 from models.scene import GROUND, KEPT, Same, Scene
@@ -144,8 +145,7 @@ def _angle(chunk: Chunk, body: str) -> Array:
 @lru_cache(maxsize=4 * KEPT)
 def _turns_at_start(same: Same, spring: PinSpring) -> float:
     """The whole turns [rad] that bring the angle between the bodies near its free one at time 0."""
-    start = same.scene.driver.law.at(np.zeros(1))[0]
-    chunk = unit_chunk(same.scene, start, bound=False)
+    chunk = unit_chunk(same.scene, np.array([prepared(same.scene).start]), bound=False)
     one, other = (_angle(chunk, name) for name in spring.bodies)
     return whole_turns(spring, float((other - one)[0]))
 

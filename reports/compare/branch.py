@@ -54,7 +54,8 @@ def departure(beside: Beside) -> Departure | None:
     if not left or not _elsewhere(beside, far):
         return None
     index, link = min(left)
-    return Departure(link, float(beside.motion.time_s[index]), float(driver_rad[index]))
+    time_s, driver = float(beside.motion.time_s[index]), float(driver_rad[index])
+    return Departure(link, time_s, driver, beside.scene.driver.unit)
 
 
 def _elsewhere(beside: Beside, far: Mask) -> bool:

@@ -22,16 +22,17 @@ from reports.quantities.quantity import Source
 @dataclass(frozen=True)
 class Instants:
     """The samples of a series: time [s], commanded driver angle [rad], and whether they are in the
-    window of a change point, each (T,); and how many may be the start."""
+    window of a change point, each (T,); how many may be the start; what the driver is told in."""
 
     time_s: Array
     driver_rad: Array
     passed: Mask
     settling: int
+    driver_unit: str = "rad"
 
     def __getitem__(self, part: slice | Mask) -> Instants:
         time_s, driver_rad, passed = self.time_s[part], self.driver_rad[part], self.passed[part]
-        return Instants(time_s, driver_rad, passed, self.settling)
+        return Instants(time_s, driver_rad, passed, self.settling, self.driver_unit)
 
     @property
     def first(self) -> int:
@@ -56,7 +57,7 @@ def instants_of(beside: Beside, time_s: Array, reference: Motion) -> Instants:
     """The samples of a run at instants of its own, or of its forces."""
     driver_rad = beside.driver_at(time_s, reference)
     passed = near(reference.crossings, driver_rad, WINDOW_RAD)
-    return Instants(time_s, driver_rad, passed, beside.settling)
+    return Instants(time_s, driver_rad, passed, beside.settling, beside.scene.driver.unit)
 
 
 def whole_row(
@@ -86,6 +87,7 @@ def _numbers(
         driver_at_maximum_rad=float(at.driver_rad[measured.index]),
         bound=float(np.max(bound, initial=0.0)),
         samples=int(error.shape[0]),
+        driver_unit=at.driver_unit,
     )
 
 

@@ -25,7 +25,7 @@ class Error:
     near a change point of kind ``passage`` (`reports.compare.change_points`). Of free motion they
     are all over the sensitivity, and those of kind ``raw`` are not. Those of kind ``chain`` are of
     the exact chain of segments, without an engine. ``bound`` is the largest error
-    of the reference itself [unit].
+    of the reference itself [unit]. ``driver_at_maximum_rad`` is in ``driver_unit``: m of a slider.
     """
 
     quantity: str
@@ -42,6 +42,7 @@ class Error:
     driver_at_maximum_rad: float
     bound: float
     samples: int
+    driver_unit: str = "rad"
 
     @property
     def pure(self) -> float:
@@ -65,11 +66,13 @@ class Error:
 
 @dataclass(frozen=True)
 class Departure:
-    """Where a run went over to the other assembly: link, time [s] and commanded driver angle."""
+    """Where a run went over to the other assembly: link, time [s] and commanded place of the
+    driver, in ``driver_unit``."""
 
     link: str
     time_s: float
     driver_rad: float
+    driver_unit: str = "rad"
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from rich.console import Console
 
+from models.driver_shown import driver_unit
 from models.scene import Scene
 from reports.compare.errors import Error, ErrorKind, Errors, largest
 from reports.describe.held_to import held_to
@@ -27,7 +28,7 @@ def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> 
     table = plain_table(f"{scene.name}: {source}")
     for head in ("quantity", "", "worst body"):
         table.add_column(head, no_wrap=True)
-    for head in ("largest\nerror", "of its\nscale", "at t\ns", "driver\ndeg"):
+    for head in ("largest\nerror", "of its\nscale", "at t\ns", f"driver\n{driver_unit(scene)}"):
         table.add_column(head, justify="right", no_wrap=True)
     for worst in worst_rows(errors):
         table.add_row(
@@ -37,13 +38,18 @@ def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> 
             f"{short(worst.maximum)} {worst.unit}",
             f"{short(worst.pure)} {QUANTITIES[worst.quantity].of(worst.body_kind).share}",
             f"{worst.time_of_maximum_s:.4g}",
-            f"{math.degrees(worst.driver_at_maximum_rad):.1f}",
+            _driver(worst),
         )
     console.print(table, "")
     said = held_to(free=errors.free is not None, elastic=errors.elastic)
     console.print(said, style="dim", highlight=False)
     for note in errors.notes:
         console.print(note, style="yellow", highlight=False, markup=False)
+
+
+def _driver(error: Error) -> str:
+    place = error.driver_at_maximum_rad
+    return f"{place:.4g}" if error.driver_unit == "m" else f"{math.degrees(place):.1f}"
 
 
 def worst_rows(errors: Errors) -> list[Error]:

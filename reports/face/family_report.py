@@ -35,5 +35,5 @@ def _title(scene: Scene, curves: FamilyCurves) -> str:
 
 def _notes(scene: Scene, curves: FamilyCurves) -> list[str]:
     """Where the curves come from."""
-    speed = "" if curves.name == "omega" else f"; {scene.driver.link} {describe_law(scene)}"
+    speed = "" if curves.name == "omega" else f"; {scene.driver.joint} {describe_law(scene)}"
     return [f"crankcheck {crankcheck_version()}, closed form{speed}."]

@@ -27,7 +27,7 @@ def show_free(console: Console, free: FreeMotion, motion: Motion) -> None:
         tables = [*free_tables(free, shown, console.width), *tables]
     for table in tables:
         console.print(table, "")
-    notes = [*free_notes(free, float(np.max(motion.time_s))), continued_note(motion)]
+    notes = [*free_notes(free, float(np.max(motion.time_s))), continued_note(scene, motion)]
     for note in filter(None, notes):
         console.print(note, style="yellow", highlight=False, markup=False)
 

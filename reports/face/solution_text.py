@@ -108,6 +108,6 @@ def show_notes(console: Console, scene: Scene, motion: Motion) -> None:
     is not determined."""
     told = driver_place(scene, motion) is not None
     singular = singular_note(scene, motion) if told else ""
-    notes = (continued_note(motion), singular, *force_notes(scene, motion))
+    notes = (continued_note(scene, motion), singular, *force_notes(scene, motion))
     for note in filter(None, notes):
         console.print(note, style="yellow", highlight=False, markup=False)

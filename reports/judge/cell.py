@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
+from models.driver_shown import place_in_words
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Scene
@@ -254,8 +255,9 @@ class _Runs:
 
 def left_words(departure: Departure) -> str:
     """A departure in words."""
+    at = place_in_words(departure.driver_rad, departure.driver_unit, ".1f")
     return (
-        f"{departure.link} left its branch at driver {math.degrees(departure.driver_rad):.1f} deg, "
+        f"{departure.link} left its branch at driver {at}, "
         f"t = {departure.time_s:.4g} s, and moves on in the other assembly of the closed loop"
     )
 

@@ -144,7 +144,7 @@ def read_here(request: ModelRequest) -> Account:
         dt_s=dt_s,
         steps=steps,
         open_m=own.open_m(),
-        notes=[*found.notes, *_passed(motion, request)],
+        notes=[*found.notes, *_passed(scene, motion, request)],
         disturbances=[*met, *own.disturbances],
         profiles=list(own.engine(proposals[0].advised).profiles),
         proposals=proposals,
@@ -175,9 +175,9 @@ def _counted(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float,
     return counted(scene, given_s, request.steps_per_turn, request.turns)
 
 
-def _passed(motion: Motion, request: ModelRequest) -> list[str]:
+def _passed(scene: Scene, motion: Motion, request: ModelRequest) -> list[str]:
     """The change points that a run goes through."""
-    note = continued_note(motion)
+    note = continued_note(scene, motion)
     return [f"joint {request.joint}: {note}"] if note else []
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from analytic.kinematics import repeats_after, solve, solve_driven
 from models.array import Array, Mask
 from models.driver_course import driver_course
+from models.driver_shown import driver_unit, place_in_words
 from models.errors import CrankcheckError, few
 from models.motion import Crossing, Motion
 from models.scene import Scene
@@ -60,10 +61,11 @@ def refuse_singular(scene: Scene, duration_s: float) -> None:
         width *= 2.0 / (FINER - 1)
     for key, place, sine in zip(dyad, places, smallest, strict=True):
         if sine < SINGULAR and not _is_passed(motion.crossings, key, np.array([place])).any():
+            at = place_in_words(float(place), scene.driver.unit)
             raise CrankcheckError(
-                f"{scene.name}: at driver {math.degrees(float(place)):.6g} deg the dyad of {key} "
-                "is singular: the motion is not determined there, and no engine can be held to "
-                "it; choose lengths, or a range of the driver, away from it"
+                f"{scene.name}: at driver {at} the dyad of {key} is singular: the motion is not "
+                "determined there, and no engine can be held to it; choose lengths, or a "
+                "range of the driver, away from it"
             )
 
 
@@ -73,23 +75,24 @@ def passage_note(scene: Scene, duration_s: float) -> str:
     crossings = solve(scene, time_s, links=(), points=(), sliders=(), bound=False).crossings
     if not crossings:
         return ""
-    return f"{scene.name}: passes {_places(crossings)}; the reference continues the smooth branch"
+    passes = _places(scene, crossings)
+    return f"{scene.name}: passes {passes}; the reference continues the smooth branch"
 
 
-def continued_note(motion: Motion) -> str:
+def continued_note(scene: Scene, motion: Motion) -> str:
     """The change points on the way of a reference from its start; "" where there is none."""
-    return f"continued smoothly through {_places(motion.crossings)}" if motion.crossings else ""
+    if not motion.crossings:
+        return ""
+    return f"continued smoothly through {_places(scene, motion.crossings)}"
 
 
 def singular_note(scene: Scene, motion: Motion) -> str:
     """Which samples of a reference are singular, for the reader of a table; "" where none is."""
     theta = driver_course(scene, motion)[0]
     places = [
-        f"{angle:.6g} deg ({key})"
+        f"{place_in_words(float(place), scene.driver.unit)} ({key})"
         for key, sine in motion.conditioning.items()
-        for angle in np.degrees(
-            theta[(np.abs(sine) < SINGULAR) & ~_is_passed(motion.crossings, key, theta)]
-        )
+        for place in theta[(np.abs(sine) < SINGULAR) & ~_is_passed(motion.crossings, key, theta)]
     ]
     if not places:
         return ""
@@ -114,14 +117,15 @@ def _is_passed(crossings: Iterable[Crossing], key: str, theta: Array) -> Mask:
     return near((crossing for crossing in crossings if crossing.dyad == key), theta, SAME_RAD)
 
 
-def _places(crossings: Iterable[Crossing]) -> str:
+def _places(scene: Scene, crossings: Iterable[Crossing]) -> str:
     """Change points by dyad, in words."""
     angles: dict[str, list[str]] = {}
+    unit = driver_unit(scene)
+    by = 1.0 if unit == "m" else math.degrees(1.0)
     for crossing in crossings:
-        degrees = f"{math.degrees(crossing.driver_rad):.6g}"
-        angles.setdefault(crossing.dyad, []).append(degrees)
+        angles.setdefault(crossing.dyad, []).append(f"{crossing.driver_rad * by:.6g}")
     words = [
-        f"the change point{'s' * (len(each) > 1)} of {key} at driver {', '.join(each)} deg"
+        f"the change point{'s' * (len(each) > 1)} of {key} at driver {', '.join(each)} {unit}"
         for key, each in angles.items()
     ]
     return " and ".join(words)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.kinematics import driven_chunk, repeats_after, solve
+from analytic.structure.cranked import refuse_other_than_cranked
 from models.array import Array
 from models.errors import CrankcheckError, ReachError, suggestion
 from models.laws import ConstantSpeed
@@ -38,8 +39,10 @@ class SceneFamily:
 def scene_family(scene: Scene, name: str, values: Sequence[float], time_s: Array) -> SceneFamily:
     """The members over the instants of the ``scene``; where they differ in speed each has its own.
 
-    Raises CrankcheckError for what the scene has not, and for a member that can not be assembled.
+    Raises CrankcheckError for a driver that is no crank, for what the scene has not, and for a
+    member that can not be assembled.
     """
+    refuse_other_than_cranked(scene, "--family")
     check_values(name, values)
     turns = time_s / scene.driver.law.period_s
     motions = []

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from models.array import Array
@@ -55,9 +57,7 @@ class _Reactions:
             self._pin(closure.point, giver, taker, self._joint_forces.at_loop(k))
         sliders = {name: self._sliders[name] for name in self._scene.sliders}
         friction = self._friction()
-        pivot = self._scene.driver_pivot
-        if pivot in friction:  # the hinge is given the drive's torque and the friction
-            self._torque = self._torque - friction[pivot]
+        self._torque = self._torque - self._of_driven_joint(friction)
         time_s = self._poses.time_s
         return Forces(time_s, self._pins, sliders, self._torque, friction=friction)
 
@@ -72,6 +72,16 @@ class _Reactions:
                     sign = self._sense(limb, one.joint) if freedom.kind == "hinge" else 1.0
                     found[one.joint] = sign * self._joint_forces.of_friction(k)
         return found
+
+    def _of_driven_joint(self, friction: Mapping[str, Array]) -> Array | float:
+        """What rubs in the driven joint, on the driver: it is given that and the drive together."""
+        driver, pivot = self._scene.driver, self._scene.driver_pivot
+        if driver.slider is not None:
+            return friction.get(driver.slider, 0.0)
+        if pivot not in friction or pivot in self._scene.sliders:
+            return 0.0
+        on_second = driver.link == joined_at(self._scene)[pivot][1]
+        return friction[pivot] if on_second else -friction[pivot]
 
     def _sense(self, limb: Limb, point: str) -> float:
         """1 where the limb turns with the second body of a pin, -1 where with the first."""

@@ -156,7 +156,7 @@ FAULTS = {
         'link = ["crank", "rocker"]',
         "a scene has one driver, one link",
     ),
-    "driver at rest": ("speed_rad_s = 10.0", "speed_rad_s = 0.0", "driver: speed_rad_s is 0"),
+    "driver at rest": ("speed_rad_s = 10.0", "speed_rad_s = 0.0", "driver: its speed is 0"),
     "unknown law": (
         "[driver]",
         '[driver]\nlaw = "jerky"',

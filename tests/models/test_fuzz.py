@@ -131,9 +131,10 @@ def try_elastic(bench: Bench, number: int, count: int, commands: tuple[str, ...]
 TRY = {"made": try_made, "free": try_free, "elastic": try_elastic, "changed": try_changed}
 
 
-LEAST_RUN = {"made": 0.15, "changed": 0.2, "free": 0.1, "elastic": 0.1}
-"""The share of files that run. Some 18 to 25 of 100 free ones do, and 20 and more made ones: which
-are made depends on what hypothesis finds in the code as well, and not on the seed alone."""
+LEAST_RUN = {"made": 0.15, "changed": 0.2, "free": 0.05, "elastic": 0.05}
+"""The share of files that run. Some 18 to 25 of 100 free ones do, at times 4 of 40, and 20 and more
+made ones: which are made depends on what hypothesis finds in the code as well, and not on the seed
+alone."""
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -10,11 +10,15 @@ from typing import Any
 from rich.console import Console
 
 from analytic.circuits.circuits import Circuits, Position, circuits_of
-from analytic.circuits.dead_points import dead_points
-from analytic.circuits.rotatability import rotations
+from analytic.circuits.dead_points import at_limit, dead_points
+from analytic.circuits.own_arc import own_arc
+from analytic.circuits.rotatability import Rotation, rotations
 from analytic.circuits.transmission import Extreme, transmissions
+from analytic.dyads.driven import driver_scale
 from analytic.mechanism.grashof_of_scene import grashof_of
-from models.errors import CrankcheckError, shown
+from analytic.structure.mobility import analyse
+from models.driver_shown import driver_unit
+from models.errors import CrankcheckError, StructureError, harmless, shown
 from models.files import load_scene
 from models.scene import Scene
 from reports.cli.structures import RotatabilityRequest
@@ -26,14 +30,25 @@ Row = Mapping[str, object]
 def run_rotatability(request: RotatabilityRequest, console: Console) -> int:
     """Show it; the exit code. Raises CrankcheckError for what can not be asked."""
     scene = load_scene(request.scene)
-    circuits = circuits_of(scene)
+    try:
+        circuits = circuits_of(scene)
+    except StructureError as error:
+        analyse(scene)  # which says what is no mechanism at all
+        if request.position:
+            raise
+        document = _of_own_branch(scene, str(error))
+        if request.json:
+            _print_json(console, document)
+        else:
+            _show_own_branch(console, document)
+        return 0
     positions = [_position(circuits, text) for text in request.position]
     defect = circuits.defect(positions) if positions else "none"
     document = _document(scene, circuits)
     if positions:
         document["defect"] = defect
     if request.json:
-        console.print(json.dumps(document, indent=1), highlight=False, markup=False, soft_wrap=True)
+        _print_json(console, document)
     else:
         _show(console, document)
     return int(defect != "none")
@@ -60,24 +75,14 @@ def _position(circuits: Circuits, text: str) -> Position:
 
 def _document(scene: Scene, circuits: Circuits) -> dict[str, object]:
     """All of it, angles in degrees, as JSON has it."""
-    turning = rotations(circuits)
+    turning = rotations(scene, circuits.own[1])
     dyads, merit = transmissions(circuits)
     grashof, (number, own) = grashof_of(scene), circuits.own
     return {
         "scene": scene.name,
         "type": None if grashof is None else grashof.name,
         "margin_m": None if grashof is None else grashof.margin_m,
-        "rotations": [
-            {
-                "link": one.link,
-                "against": one.against,
-                "does": one.word,
-                "turns": one.turns,
-                "driver_turns": None if own.low is not None else one.period_rad / math.tau,
-                **_swing(one.turns, one.low_rad, one.high_rad),
-            }
-            for one in turning
-        ],
+        "rotations": [rotation_row(one, is_limited=own.low is not None) for one in turning],
         "dyads": list(circuits.signed.dyads),
         "change_points": circuits.change_points,
         "circuit": number + 1,
@@ -116,12 +121,60 @@ def _document(scene: Scene, circuits: Circuits) -> dict[str, object]:
     }
 
 
-def _swing(turns: int, low_rad: float, high_rad: float) -> Row:
-    """The swing of a link that does not turn fully."""
-    if turns:
-        return {"from_deg": None, "to_deg": None, "swing_deg": None}
-    low, high = math.degrees(low_rad), math.degrees(high_rad)
-    return {"from_deg": low, "to_deg": high, "swing_deg": high - low}
+def _of_own_branch(scene: Scene, why: str) -> dict[str, object]:
+    """What is told of a mechanism whose circuits are not found: the branch that it is on."""
+    arc = own_arc(scene)
+    scale = driver_scale(scene) if scene.driver.slider is not None else math.degrees(1.0)
+    return {
+        "scene": scene.name,
+        "why_no_circuits": why,
+        "driver": scene.driver.joint,
+        "unit": driver_unit(scene),
+        "ends": [
+            {"at": end.angle_rad * scale, "where": at_limit(scene, end.dyad)}
+            for end in (arc.low, arc.high)
+            if end is not None
+        ],
+        "rotations": [
+            rotation_row(r, is_limited=arc.low is not None) for r in rotations(scene, arc)
+        ],
+    }
+
+
+def _show_own_branch(console: Console, document: Mapping[str, Any]) -> None:
+    """The same in words and a table."""
+
+    def say(text: str) -> None:
+        console.print(harmless(text), highlight=False, markup=False)
+
+    say(f"{document['scene']}: the branch that it is on alone")
+    show_rows(console, document["rotations"], TABLES["rotations"].split())
+    say("")
+    for end in document["ends"]:
+        say(f"{document['driver']} ends at {end['at']:.6g} {document['unit']}: {end['where']}")
+    if not document["ends"]:
+        say(f"{document['driver']} turns fully")
+    say(document["why_no_circuits"])
+
+
+def _print_json(console: Console, document: Mapping[str, object]) -> None:
+    console.print(json.dumps(document, indent=1), highlight=False, markup=False, soft_wrap=True)
+
+
+def rotation_row(one: Rotation, *, is_limited: bool) -> Row:
+    """What a link does over a branch; the swing is that of one which does not turn fully."""
+    low, high = (math.degrees(each) for each in (one.low_rad, one.high_rad))
+    swings = one.turns == 0
+    return {
+        "link": one.link,
+        "against": one.against,
+        "does": one.word,
+        "turns": one.turns,
+        "driver_turns": None if is_limited else one.period_rad / math.tau,
+        "from_deg": low if swings else None,
+        "to_deg": high if swings else None,
+        "swing_deg": high - low if swings else None,
+    }
 
 
 def _extreme(name: str, extreme: Extreme | None) -> Row:
@@ -159,7 +212,7 @@ def _show(console: Console, document: Mapping[str, Any]) -> None:
         elif name != "rotations":
             say(f"\n{name.replace('_', ' ')}" + ("" if document[name] else ": none"))
         if document[name]:
-            _table(console, document[name], columns.split())
+            show_rows(console, document[name], columns.split())
     say(f"\nindex of merit {document['merit']:.6g} at {document['merit_at_deg']:.6g} deg")
     if "defect" in document:
         found = document["defect"]
@@ -167,7 +220,7 @@ def _show(console: Console, document: Mapping[str, Any]) -> None:
         say(f"positions: {told}")
 
 
-def _table(console: Console, rows: Sequence[Row], columns: Sequence[str]) -> None:
+def show_rows(console: Console, rows: Sequence[Row], columns: Sequence[str]) -> None:
     table = plain_table(gap=2)
     for column in columns:
         table.add_column(column.replace("_", " "), overflow="fold")

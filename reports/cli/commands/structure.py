@@ -130,7 +130,9 @@ def _show_assemblies(console: Console, every: list[Assembled], at: str) -> None:
         table.add_column(f"{name} deg", justify="right")
     for one in every:
         angles = (math.degrees(math.remainder(one.placement.angles[n], math.tau)) for n in links)
-        table.add_row("*" if one.is_own else "", one.words, *(f"{a:.6g}" for a in angles))
+        table.add_row(
+            "*" if one.is_own else "", one.words, *(f"{round(a, 9) + 0.0:.6g}" for a in angles)
+        )
     console.print(table)
 
 

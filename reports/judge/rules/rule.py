@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
+from models.driver_shown import place_in_words
 from reports.compare.errors import Error, Errors
 from reports.judge.three_steps import Convergence
 from reports.judge.tolerance import Limit
@@ -83,6 +83,8 @@ class Rule(Protocol):
 
 def measure(error: Error) -> str:
     """The size of an error in its unit, and over its scale where that is another number."""
+    if error.quantity == "drive" and error.driver_unit == "m":
+        return f"{error.pure:.3g} L"
     size = f"{error.maximum:.3g} {error.unit}"
     return size if error.unit == "rad" else f"{size} = {error.pure:.3g} {share(error)}"
 
@@ -94,8 +96,8 @@ def share(error: Error) -> str:
 
 def place(error: Error) -> str:
     """An error in words: body, size, and where it is largest."""
-    degrees = math.degrees(error.driver_at_maximum_rad)
+    driver = place_in_words(error.driver_at_maximum_rad, error.driver_unit, ".1f")
     return (
         f"{error.body_kind} {error.body}: {measure(error)} at t = {error.time_of_maximum_s:.4g} s, "
-        f"driver {degrees:.1f} deg"
+        f"driver {driver}"
     )

@@ -37,7 +37,9 @@ def build(free: FreeMotion, figures: Mapping[str, bytes]) -> Section:
         template="scene_free.html",
         words={
             "scene": scene_words(free.scene),
-            "notes": [*filter(None, (*free_notes(free, free.until_s), continued_note(motion)))],
+            "notes": [
+                *filter(None, (*free_notes(free, free.until_s), continued_note(free.scene, motion)))
+            ],
             "figures": [
                 (name, CAPTIONS.get(name, name), base64.b64encode(svg).decode("ascii"))
                 for name, svg in figures.items()

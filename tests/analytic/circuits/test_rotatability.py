@@ -17,7 +17,7 @@ from models.files import load_scene
 def test_a_crank_rocker_swings_and_transmits_as_its_closed_form_says() -> None:
     scene = load_scene("fourbar-lecture-1")
     bar, circuits = FourBar.of(scene), circuits_of(scene)
-    turning = {(one.link, one.against): one for one in rotations(circuits)}
+    turning = {(one.link, one.against): one for one in rotations(scene, circuits.own[1])}
     assert turning["crank", "ground"].turns == 1
     assert turning["coupler", "crank"].turns == -1
     assert turning["rocker", "ground"].swing_rad == pytest.approx(bar.rocker_swing_rad, rel=1e-12)
@@ -34,7 +34,7 @@ def test_a_crank_rocker_swings_and_transmits_as_its_closed_form_says() -> None:
 def test_a_driver_that_swings_is_dead_where_its_dyad_is_in_line() -> None:
     scene = load_scene("fourbar-double-rocker")
     circuits = circuits_of(scene)
-    turning = rotations(circuits)
+    turning = rotations(scene, circuits.own[1])
     assert all(one.turns == 0 for one in turning)
     low, high = FourBar.of(scene).driver_range_rad
     found = [p for p in dead_points(circuits, turning) if p.input == "driver"]
@@ -51,5 +51,7 @@ def test_pressure_angle_of_an_offset_slider_crank_is_its_closed_form() -> None:
 
 @pytest.mark.parametrize(("name", "turns"), [("whitworth", 1), ("slotted-lever", 0)])
 def test_the_guide_turns_in_whitworths_quick_return_alone(name: str, turns: int) -> None:
-    turning = {(one.link, one.against): one for one in rotations(circuits_of(load_scene(name)))}
+    scene = load_scene(name)
+    _, own = circuits_of(scene).own
+    turning = {(one.link, one.against): one for one in rotations(scene, own)}
     assert turning["lever", "ground"].turns == turns

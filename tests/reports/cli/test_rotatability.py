@@ -30,6 +30,17 @@ def test_the_exit_code_tells_a_defect(positions: tuple[str, str], code: int, wor
     assert word in result.output
 
 
+def test_the_branch_of_what_has_no_circuits_is_told_with_its_ends() -> None:
+    told = CliRunner().invoke(app, ["rotatability", "slider-crank-by-piston"])
+    assert told.exit_code == 0
+    assert "slider C ends at 0.2 m: crank and rod in line" in told.output
+    told = CliRunner().invoke(app, ["rotatability", "triad-platform", "--json"])
+    assert json.loads(told.output)["ends"] == []
+    refused = CliRunner().invoke(app, ["rotatability", "triad-platform", "--position", "30"])
+    assert refused.exit_code == 2
+    assert "they are found of class II mechanisms" in " ".join(refused.output.split())
+
+
 @pytest.mark.parametrize("position", ["x", "30:", "30:+-", "nan", "30:1"])
 def test_a_position_that_is_none_is_refused(position: str) -> None:
     line = ["rotatability", "fourbar-lecture-1", "--position", position]

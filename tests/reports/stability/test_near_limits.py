@@ -68,10 +68,11 @@ def test_a_lost_run_of_a_driven_slider_is_told_in_metres_and_drawn() -> None:
     assert found.outcome == "branch-changed"
     assert 0.2 < found.at_driver_rad < 0.4
     assert drawn is not None
-    place = np.asarray(drawn.drawing["driver_mm"])
-    assert (place > 200.0).all()
-    assert (place < 400.0).all()
-    assert "crank_deg" not in drawn.drawing
+    told = drawn.drawing["told"]
+    assert (told["joint"], told["unit"]) == ("slider C", "m")  # type: ignore[index]  # as embedded
+    place = np.asarray(told["at"])  # type: ignore[index]  # as above
+    assert (place > 0.2).all()
+    assert (place < 0.4).all()
 
 
 def in_a_moving_guide() -> Scene:
