@@ -140,8 +140,9 @@ def counted_angle(chunk: Chunk, link: str) -> Array:
 def reach(scene: Scene) -> list[Range]:
     """The driver angles [rad], within a turn, in which the scene can be assembled
     (`analytic.reach`); of a slider that is driven, its displacements [m]."""
-    scale = driver_scale(scene)
-    return [(low * scale, high * scale) for low, high in ranges(prepared(scene).stretched)]
+    scale, ready = driver_scale(scene), prepared(scene)
+    found = ranges(ready.stretched, ready.looked_turns)
+    return [(low * scale, high * scale) for low, high in found]
 
 
 def _driver_of(scene: Scene, time_s: Array, *, bound: bool) -> Callable[[slice], Driven]:

@@ -29,6 +29,7 @@ from analytic.turns.count import Counter, Turns
 from models.array import Array
 from models.errors import ReachError
 from models.motion import Crossing, Motion
+from models.names import MOST_ASSEMBLIES
 from models.scene import KEPT, Same, Scene
 
 CHUNK = 12288
@@ -74,6 +75,12 @@ class Prepared:
     def followed(self) -> tuple[FollowedStep, ...]:
         """The groups of class III, each followed along the driver."""
         return tuple(step for step in self.steps if isinstance(step, FollowedStep))
+
+    @property
+    def looked_turns(self) -> int:
+        """Turns of the driver over which its range is looked for (`analytic.reach.ranges`): what is
+        followed is back after as many as it has assemblies, or ends."""
+        return MOST_ASSEMBLIES if self.followed and self.scene.driver.slider is None else 1
 
     @property
     def period(self) -> float:
@@ -136,10 +143,10 @@ class Prepared:
             ends = step.end_in_words(self.passages, float(theta[index]))
             return (
                 f"{scene.name}: {scene.driver.joint} at {told(scene, theta[index])}: {ends}. "
-                f"{describe_reach(scene, self.stretched)}"
+                f"{describe_reach(scene, self.stretched, self.looked_turns)}"
             )
         return (
             f"{scene.name}: {scene.driver.joint} at {told(scene, theta[index])}: the loop "
             f"cannot close at {step.key}, it is open by {float(np.ravel(short_m)[index]):.3g} m. "
-            f"{describe_reach(scene, self.stretched)}"
+            f"{describe_reach(scene, self.stretched, self.looked_turns)}"
         )

@@ -33,12 +33,16 @@ def shortage(stretched: Stretched, theta: Array) -> Array:
     return short
 
 
-def ranges(stretched: Stretched) -> list[Range]:
+def ranges(stretched: Stretched, turns: int = 1) -> list[Range]:
     """The reachable driver angles within a turn, as (from, to) [rad] in increasing order.
 
     [(-pi, pi)] where the driver turns fully; [] where the mechanism cannot be assembled at all.
-    A range may run beyond pi where it holds that angle.
+    A range may run beyond pi where it holds that angle. What is followed along the driver may go
+    on for more than a turn and end all the same: it is looked at over so many ``turns`` both ways,
+    and told as it is where it is not alike in each.
     """
+    if turns > 1 and (found := _over_turns(stretched, turns)) is not None:
+        return found
     grid = np.linspace(-math.pi, math.pi, SCAN + 1)
     closes = shortage(stretched, grid) <= 0.0
     if closes.all():
@@ -54,6 +58,19 @@ def ranges(stretched: Stretched) -> list[Range]:
     return list(zip(opens, ends, strict=True))
 
 
+def _over_turns(stretched: Stretched, turns: int) -> list[Range] | None:
+    """The ranges over several turns both ways; None where each turn is like the next."""
+    grid = np.linspace(-turns * math.tau, turns * math.tau, 2 * turns * SCAN + 1)
+    closes = shortage(stretched, grid) <= 0.0
+    unlike = np.count_nonzero(closes[SCAN:] != closes[:-SCAN])
+    if unlike <= 2 * turns:  # looks beside an end, by rounding
+        return None
+    edges = np.flatnonzero(closes[1:] != closes[:-1])
+    borders = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges]).tolist()
+    ends = [float(grid[0])] * bool(closes[0]) + borders + [float(grid[-1])] * bool(closes[-1])
+    return list(zip(ends[::2], ends[1::2], strict=True))
+
+
 def _bisect(stretched: Stretched, low: Array, high: Array, closes_low: Mask) -> Array:
     """The angles at which closing begins or ends, each on the side that closes."""
     for _ in range(60):
@@ -63,9 +80,9 @@ def _bisect(stretched: Stretched, low: Array, high: Array, closes_low: Mask) -> 
     return np.where(closes_low, low, high)
 
 
-def describe_reach(scene: Scene, stretched: Stretched) -> str:
-    """The reachable range in words, for a message."""
-    reachable, driver = ranges(stretched), scene.driver
+def describe_reach(scene: Scene, stretched: Stretched, turns: int = 1) -> str:
+    """The reachable range in words, for a message; ``turns`` as of `ranges`."""
+    reachable, driver = ranges(stretched, turns), scene.driver
     if not reachable:
         grid = np.linspace(-math.pi, math.pi, SCAN + 1)
         short = shortage(stretched, grid)
@@ -78,6 +95,6 @@ def describe_reach(scene: Scene, stretched: Stretched) -> str:
     slides, scale = driver.slider is not None, driver_scale(scene)
     unit, by = ("m", scale) if slides else ("deg", math.degrees(1.0))
     spans = " and ".join(f"{a * by:.6g} to {b * by:.6g} {unit}" for a, b in reachable)
-    return (
-        f"{driver.joint} can stand at {spans}{'' if slides else ' (and whole turns from there)'}."
-    )
+    more_than_one = any(high - low > math.tau for low, high in reachable)
+    from_there = "" if slides or more_than_one else " (and whole turns from there)"
+    return f"{driver.joint} can stand at {spans}{from_there}."

@@ -32,7 +32,7 @@ def own_arc(scene: Scene) -> Arc:
 def _end(ready: Prepared, way: float) -> End | None:
     """The first driver angle from the start on, one way, beyond which it is open; None where there
     is none within a period."""
-    most = ready.period
+    most = max(ready.period, ready.looked_turns * math.tau)
     theta = ready.start + way * np.linspace(0.0, most, LOOKS * round(most / math.tau) + 1)
     opens = np.flatnonzero(shortage(ready.stretched, theta) > 0.0)
     if not opens.size:

@@ -33,12 +33,13 @@ class Arc:
         """The arc on which the driver stands at an angle. Raises CrankcheckError where the
         mechanism cannot be assembled there, or its way ends at infinity."""
         ready = prepared(scene)
-        span = _range_about(ranges(ready.stretched), driver_rad)
+        spans = ranges(ready.stretched, ready.looked_turns)
+        span = _range_about(spans, driver_rad)
         if span is None:
             ready.chunk(np.array([driver_rad]), 0.0, 0.0, None)  # says where it is open
             raise CrankcheckError(f"{scene.name}: no range of its driver holds {driver_rad:g} rad")
         low, high = span
-        if high - low >= math.tau:
+        if spans == [(-math.pi, math.pi)] or (ready.looked_turns == 1 and high - low >= math.tau):
             return Arc(scene, None)
         return Arc(scene, (_limit(scene, span, -1), _limit(scene, span, 1)))
 

@@ -13,13 +13,12 @@ from analytic.drawings.placed_mechanism import DriverState, PlacedMechanism
 from analytic.structure.mobility import Structure
 from models.errors import CrankcheckError, ReachError, StructureError
 from models.laws import ConstantSpeed
+from models.names import MOST_ASSEMBLIES
 from models.rigid import with_rigid_links
 from models.scene import Scene
 
 MOST_CHOICES = 1024
 """Combinations of branches that are tried."""
-MOST_OF_A_TRIAD = 6
-"""Assemblies that a class III group of order 3 has at most."""
 SAME = 1e-6
 """Points that are nearer than this share of the longest length are the same."""
 
@@ -58,7 +57,7 @@ def all_assemblies(scene: Scene, structure: Structure, coordinate: float) -> lis
     keys = [group.branch_key for group in structure.groups if group.assemblies == 2]
     numbers = [(1, -1)] * len(keys)
     triads = [triad.branch_key for triad in structure.triads]
-    choices = [*numbers, *[range(1, MOST_OF_A_TRIAD + 1)] * len(triads)]
+    choices = [*numbers, *[range(1, MOST_ASSEMBLIES + 1)] * len(triads)]
     many = math.prod(map(len, choices))
     if many > MOST_CHOICES:
         raise CrankcheckError(

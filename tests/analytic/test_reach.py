@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from analytic.circuits.own_arc import own_arc
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.mechanism.fourbar import FourBar
 from models.errors import ReachError
@@ -201,3 +203,21 @@ def test_parallelogram_does_not_raise_at_its_change_points() -> None:
         scene, np.array([0.0, math.pi, -math.pi, math.tau]), np.ones(4), np.zeros(4)
     )
     assert np.isfinite(motion.links["rocker"].theta).all()
+
+
+def test_a_triad_that_goes_on_for_more_than_a_turn_and_ends_is_told_with_both_ends() -> None:
+    scene = load_scene("triad-slider")
+    plate = scene.links["plate"]
+    plate = replace(plate, points=dict(plate.points) | {"E": (0.5, 0.0)})
+    scene = replace(scene, links=dict(scene.links) | {"plate": plate}, branch={"plate": 2})
+    ((low, high),) = reach(scene)
+    assert math.degrees(high - low) == pytest.approx(365.09, abs=0.01)
+    ends = "crank can stand at -315.094 to 49.9984 deg."
+    with pytest.raises(ReachError, match=re.escape(ends)):
+        solve(scene, np.linspace(0.0, 0.1, 50))
+    arc = own_arc(scene)
+    assert arc.range_rad == pytest.approx((low, high), abs=1e-9)
+
+
+def test_a_triad_that_turns_fully_stands_at_every_angle() -> None:
+    assert reach(load_scene("triad-platform")) == [(-math.pi, math.pi)]
