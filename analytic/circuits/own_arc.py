@@ -21,8 +21,10 @@ HALVINGS = 60
 
 
 def own_arc(scene: Scene) -> Arc:
-    """The driver's angles about its start [rad]; of a slider its place over the driver's scale."""
+    """The driver's angles about its start [rad]; of a slider its place over the driver's scale.
+    Raises ReachError where the scene can not be assembled at its start."""
     ready = prepared(scene)
+    ready.chunk(np.array([ready.start]), 0.0, 0.0, None)
     low, high = (_end(ready, way) for way in (-1.0, 1.0))
     if low is None or high is None:
         return Arc(())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -10,6 +11,7 @@ from analytic.circuits.circuits import circuits_of
 from analytic.circuits.own_arc import own_arc
 from analytic.circuits.rotatability import Rotation, rotations
 from analytic.dyads.driven import driver_scale
+from models.errors import ReachError
 from models.files import load_scene
 
 
@@ -24,6 +26,13 @@ def test_a_piston_stops_where_crank_and_rod_are_in_line() -> None:
     ends = [end.angle_rad * driver_scale(scene) for end in (arc.low, arc.high) if end is not None]
     assert ends == pytest.approx([0.2, 0.4], rel=1e-12)
     assert turning(scene.name)["rod", "ground"].low_rad == pytest.approx(-math.asin(1.0 / 3.0))
+
+
+def test_a_start_that_is_none_is_refused_with_where_it_can_stand() -> None:
+    scene = load_scene("slider-crank-by-piston")
+    elsewhere = replace(scene.driver, law=replace(scene.driver.law, centre_rad=0.0))  # type: ignore[call-arg]  # of a law that swings
+    with pytest.raises(ReachError, match="slider C can stand at -0.4 to -0.2 m and 0.2 to 0.4 m"):
+        own_arc(replace(scene, driver=elsewhere))
 
 
 def test_a_four_bar_does_the_same_whichever_joint_drives() -> None:
