@@ -31,7 +31,7 @@ def test_a_piston_stops_where_crank_and_rod_are_in_line() -> None:
 def test_a_start_that_is_none_is_refused_with_where_it_can_stand() -> None:
     scene = load_scene("slider-crank-by-piston")
     elsewhere = replace(scene.driver, law=replace(scene.driver.law, centre_rad=0.0))  # type: ignore[call-arg]  # of a law that swings
-    with pytest.raises(ReachError, match="slider C can stand at -0.4 to -0.2 m and 0.2 to 0.4 m"):
+    with pytest.raises(ReachError, match=r"can stand at -0\.4 to -0\.2 m and"):
         own_arc(replace(scene, driver=elsewhere))
 
 
