@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.kinematics import solve
+from analytic.structure.groups import Group, Triad
 from analytic.structure.mobility import Structure, analyse
 from models.errors import ReachError, StructureError
 from models.motion import Motion
@@ -41,6 +42,24 @@ def in_assembly(scene: Scene, motion: Motion) -> Scene | None:
         if max(apart) <= SAME * scene.longest_m:
             return held
     return None
+
+
+def chosen_groups(structure: Structure) -> list[Group | Triad]:
+    """The groups that have more than one assembly, in solving order."""
+    return [
+        part
+        for part in structure.order
+        if isinstance(part, Triad) or (isinstance(part, Group) and part.assemblies > 1)
+    ]
+
+
+def choices(scene: Scene, group: Group | Triad) -> tuple[int, ...]:
+    """What the branch of a group may be, first that of the scene; of class III also numbers that
+    there may not be."""
+    own = scene.branch.get(group.branch_key, 1)
+    if isinstance(group, Group):
+        return own, -own
+    return own, *(number for number in range(1, MOST_ASSEMBLIES + 1) if number != own)
 
 
 def branches(structure: Structure) -> Iterator[dict[str, int]]:

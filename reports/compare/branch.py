@@ -5,18 +5,15 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TypeGuard
 
 import numpy as np
 
+from analytic.in_assembly import choices, chosen_groups
 from analytic.kinematics import solve
-from analytic.structure.groups import Group, Part, Triad
 from analytic.structure.mobility import analyse
 from models.array import Mask
 from models.errors import CrankcheckError
 from models.motion import LinkMotion, Motion
-from models.names import MOST_ASSEMBLIES
-from models.scene import Scene
 from reports.compare.beside import Beside
 from reports.compare.errors import Departure
 
@@ -67,9 +64,9 @@ def _elsewhere(beside: Beside, far: Mask) -> bool:
     which share their first choices with one that is ruled out by the links of these alone.
     """
     scene, times = beside.scene, beside.motion.time_s
-    groups = [part for part in analyse(scene).order if _is_choice(part)][:MOST_CHOICES]
+    groups = chosen_groups(analyse(scene))[:MOST_CHOICES]
     keys = [group.branch_key for group in groups]
-    _, *others = itertools.product(*(_choices(scene, group) for group in groups))
+    _, *others = itertools.product(*(choices(scene, group) for group in groups))
     ruled_out: set[tuple[int, ...]] = set()
     for chosen in others:
         if any(chosen[:n] in ruled_out for n in range(1, len(chosen) + 1)):
@@ -93,19 +90,6 @@ def _elsewhere(beside: Beside, far: Mask) -> bool:
             if there.any():
                 return True
     return False
-
-
-def _is_choice(part: Part) -> TypeGuard[Group | Triad]:
-    """Whether a part has more than one assembly."""
-    return isinstance(part, Triad) or (isinstance(part, Group) and part.assemblies > 1)
-
-
-def _choices(scene: Scene, group: Group | Triad) -> tuple[int, ...]:
-    """What the branch of a group may be, first that of the scene."""
-    own = scene.branch.get(group.branch_key, 1)
-    if isinstance(group, Group):
-        return own, -own
-    return own, *(number for number in range(1, MOST_ASSEMBLIES + 1) if number != own)
 
 
 def stay(there: Mask, logged: Motion, links: Mapping[str, LinkMotion]) -> None:

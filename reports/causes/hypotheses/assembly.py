@@ -9,7 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.structure.groups import Group
+from analytic.in_assembly import choices, chosen_groups
+from analytic.structure.groups import Group, Triad
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account
@@ -24,28 +25,29 @@ MOST_CHOICES = 6
 def assembly(inquiry: Inquiry) -> Iterator[Account]:
     """Each other assembly that the log may be of."""
     scene = inquiry.world.scene
-    dyads = [group for group in analyse(scene).groups if group.assemblies == 2][:MOST_CHOICES]
-    for count in range(1, len(dyads) + 1):
-        for chosen in itertools.combinations(dyads, count):
-            keys = [dyad.branch_key for dyad in chosen]
-            branch = {key: -scene.branch.get(key, 1) for key in keys}
-            other = replace(scene, branch={**scene.branch, **branch})
-            world = replace(inquiry.world, scene=other)
-            yield from _told(inquiry, world, chosen, branch)
+    groups = chosen_groups(analyse(scene))[:MOST_CHOICES]
+    for count in range(1, len(groups) + 1):
+        for chosen in itertools.combinations(groups, count):
+            for numbers in itertools.product(*(choices(scene, group)[1:] for group in chosen)):
+                keys = (group.branch_key for group in chosen)
+                branch = dict(zip(keys, numbers, strict=True))
+                other = replace(scene, branch={**scene.branch, **branch})
+                yield from _told(inquiry, replace(inquiry.world, scene=other), chosen, branch)
 
 
 def _told(
-    inquiry: Inquiry, world: World, dyads: Sequence[Group], branch: Mapping[str, int]
+    inquiry: Inquiry, world: World, groups: Sequence[Group | Triad], branch: Mapping[str, int]
 ) -> Iterator[Account]:
     """The accounts of an assembly: of the whole log, or of all that comes after an instant."""
     links = inquiry.world.scene.links
-    names = listed([name for dyad in dyads for name in dyad.bodies if name in links])
+    names = listed([name for group in groups for name in group.bodies if name in links])
+    which = "another" if any(isinstance(group, Triad) for group in groups) else "the other"
     entries = listed([f"{key} = {sign:+d}" for key, sign in branch.items()])
     phrase = (
-        f"the log is of the other assembly at {listed(list(branch))} ({names}): "
+        f"the log is of {which} assembly at {listed(list(branch))} ({names}): "
         f"{entries.replace('+', '')} under [branch] of the scene"
     )
-    cost = CAUSE + CHOICE * (len(dyads) - 1)
+    cost = CAUSE + CHOICE * (len(groups) - 1)
     told = inquiry.account_of_world("branch", cost, world, phrase)
     if told is not None:
         yield told

@@ -1,0 +1,86 @@
+"""Commands on mechanisms that a slider drives, or the pin of two moving links."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from reports.cli import app
+
+PISTON, COUPLER = "slider-crank-by-piston", "fourbar-by-coupler"
+SHOWN = {
+    "a position": (
+        ["solve", PISTON, "--at-m", "0.35", "--forces"],
+        ["force power drive on N W slider C -3.7271082 -2.7891124", "C 0.35000000 0.74833148"],
+    ),
+    "the largest forces": (
+        ["solve", PISTON, "--forces"],
+        ["driving force 15.4", "slider C at"],
+    ),
+    "a graph": (["graph", PISTON, "--of", "rod"], ["no. C m phi rad", "12 0.30000"]),
+    "a graph over a pin": (["graph", COUPLER, "--of", "rocker"], ["no. coupler deg"]),
+}
+REFUSED = {
+    "an angle of a slider": (
+        ["solve", PISTON, "--at-deg", "30"],
+        "give its displacement by --at-m",
+    ),
+    "a place of a crank": (["solve", "tangent", "--at-m", "1"], "give its angle by --at-deg"),
+    "both": (["solve", PISTON, "--at-m", "0.3", "--at-deg", "1"], "one place; give one"),
+    "no such place": (["solve", PISTON, "--at-m", "0.45"], "goes from 0.21 to 0.39 m"),
+    "a sense of turning": (
+        ["solve", PISTON, "--at-m", "0.3", "--clockwise"],
+        "slider C does not turn",
+    ),
+    "a polygon": (["polygon", PISTON], "a vector polygon takes a driver that is a link"),
+    "centres": (["centres", COUPLER], "this scene's is pin B of crank and coupler"),
+    "centres of a triad": (["centres", "triad-platform"], "a group of class III about plate"),
+    "a cycle": (["cycle", COUPLER], "a cycle of speed takes a driver that is a link"),
+    "a flywheel": (["flywheel", COUPLER, "--delta", "0.1"], "takes a driver that is a link"),
+    "a family": (["solve", PISTON, "--family", "crank=0.1,0.11", "-o", "a.html"], "--family takes"),
+    "an angle over a slider": (
+        ["graph", PISTON, "--of", "rod", "--over", "angle"],
+        "slider C, which has no angle; use --over time",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", SHOWN)
+def test_the_driver_is_told_in_its_own_words_and_units(what: str) -> None:
+    line, said = SHOWN[what]
+    told = CliRunner().invoke(app, line)
+    assert told.exit_code == 0, told.output
+    words = " ".join(told.output.split())
+    assert [text for text in said if text not in words] == []
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_what_only_a_crank_has_is_refused_with_what_drives(what: str) -> None:
+    line, said = REFUSED[what]
+    told = CliRunner().invoke(app, line)
+    assert told.exit_code == 2, told.output
+    assert said in " ".join(told.output.split())
+
+
+@pytest.mark.parametrize("scene", [PISTON, COUPLER])
+def test_positions_are_numbered_along_what_is_driven(scene: str, tmp_path: Path) -> None:
+    sheet = tmp_path / "sheet.svg"
+    told = CliRunner().invoke(app, ["positions", scene, "-o", str(sheet)])
+    assert told.exit_code == 0, told.output
+    assert f"12 positions of {scene}" in told.output
+    assert "locus-B" in sheet.read_text(encoding="utf-8")
+
+
+def test_what_a_slider_drives_is_drawn_with_its_forces_and_logged_in_newtons(
+    tmp_path: Path,
+) -> None:
+    runner = CliRunner()
+    drawn = tmp_path / "motion.png"
+    assert runner.invoke(app, ["view", PISTON, "--forces", "-o", str(drawn)]).exit_code == 0
+    log = tmp_path / "log.csv"
+    assert runner.invoke(app, ["solve", PISTON, "--forces", "-o", str(log)]).exit_code == 0
+    heads = log.read_text(encoding="utf-8").partition("\n")[0].split(",")
+    assert "drive_force_n" in heads
+    assert "torque_n_m" not in heads
