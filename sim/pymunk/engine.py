@@ -16,7 +16,9 @@ from models.scene import Point, Scene
 from sim import drive as drives
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
 from sim.pymunk.acting import Acting
+from sim.pymunk.arcs import Arcs
 from sim.pymunk.body_rows import FIELDS, WIDTH, finite, pose, rows_of
+from sim.pymunk.chain_springs import chain_springs
 from sim.pymunk.convergence import iterations
 from sim.pymunk.driven_joint import DrivenJoint, driven_joint
 from sim.pymunk.reactions import BEFORE, Reactions
@@ -27,6 +29,7 @@ from sim.pymunk.settings import (
     exact_lines,
     held_iterations,
     in_seconds,
+    paths_are_arcs,
     springs_as_forces,
 )
 from sim.pymunk.space import SpaceModel, build
@@ -72,6 +75,9 @@ class PymunkSession:
         self._memory = np.empty(0)
         self._rows = rows_of(self._model)
         self._acting = Acting(scene, self._model, state, dt_s, drive)
+        rigid = not chain_springs(scene)
+        bent = rigid and paths_are_arcs(settings, drive)
+        self._arcs = Arcs(self._space.constraints, dt_s) if bent else None
 
     def facts(self) -> Facts:
         """The space as pymunk holds it now; what cannot move or turn freely has no mass to hold."""
@@ -122,7 +128,8 @@ class PymunkSession:
     def record_forces(self, steps: int, every: int) -> Log:
         """As `record`, with the forces of each logged step; the first sample has none."""
         at = self._done + every * np.arange(steps // every + 1, dtype=np.float64)
-        reactions = Reactions(self._scene, self._model, self._rows, self._dt)
+        bent = self._arcs is not None
+        reactions = Reactions(self._scene, self._model, self._rows, self._dt, bent=bent)
         began = time.perf_counter()
         self._make_room(2 * len(at))
         self._log()
@@ -158,7 +165,7 @@ class PymunkSession:
 
     def _advance(self, steps: int, every: int) -> None:
         """Step; log after every ``every``-th step, or never if it is 0."""
-        if self._acting:
+        if self._acting or self._arcs is not None:
             self._each(steps, every)
         elif self._coasts:
             self._coast(steps, every)
@@ -217,6 +224,8 @@ class PymunkSession:
                 turn(*turns[k])
             if acting is not None:
                 acting.apply(k)
+            if self._arcs is not None:
+                self._arcs.bend()
             logged = every > 0 and (k + 1) % every == 0
             if logged and reactions is not None:
                 pymunk.batch.get_space_bodies(space, BEFORE, self._buffer)

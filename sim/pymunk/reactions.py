@@ -42,13 +42,22 @@ SAME = 1e-6
 """Difference between the impulse of a joint over a step and what momentum says, over the largest
 force (for moments, times the longest link), that counts as none. On the shipped scenes it is 2e-12
 at most, with either profile and every drive; rounding of velocities grows with the steps in a turn,
-and near dead points."""
+and near dead points. Where anchors are bent for arcs, arms are off by half the square of a turn."""
 
 
 class Reactions:
     """The forces in the joints of a space, from what is read of it at each logged step."""
 
-    def __init__(self, scene: Scene, model: SpaceModel, rows: Mapping[str, int], dt_s: float):
+    def __init__(
+        self,
+        scene: Scene,
+        model: SpaceModel,
+        rows: Mapping[str, int],
+        dt_s: float,
+        *,
+        bent: bool = False,
+    ):
+        self._bent = bent
         self._scene, self._model, self._rows, self._dt = scene, model, rows, dt_s
         joints = (*model.hinges.values(), *model.lines.values(), *model.gears.values())
         self._constraints = [one for one in (*joints, model.motor) if one is not None]
@@ -96,7 +105,8 @@ class Reactions:
         forces = forces.each_series(_with_start).stretch(slice(0, len(time_s)))
         if not len(ends) or pushes.spare:
             return replace(forces, time_s=time_s)
-        against = tuple(self._contradictions(pushes, ends))
+        turn = float(np.nanmax(np.abs(after[:, :, 5]))) * self._dt if self._bent else 0.0
+        against = tuple(self._contradictions(pushes, ends, SAME + turn**2))
         return replace(forces, time_s=time_s, contradictions=against)
 
     def _couples(self, before: Array, after: Array) -> dict[str, Array]:
@@ -157,8 +167,8 @@ class Reactions:
         moment = inertia * alpha[:, 0] + np.sum(across * force, axis=1)
         return np.column_stack([force, moment])
 
-    def _contradictions(self, pushes: JointPushes, time_s: Array) -> Iterator[str]:
-        """Joints whose impulse is not what momentum says of them."""
+    def _contradictions(self, pushes: JointPushes, time_s: Array, same: float) -> Iterator[str]:
+        """Joints whose impulse is not what momentum says of them, to that share of the largest."""
         held = [hinge for hinge, joint in self._model.hinges.items() if joint is not None]
         found = {
             f"pin {each.point} of {each.first} and {each.other}": np.hypot(*pushes.hinges[each].T)
@@ -174,7 +184,7 @@ class Reactions:
             largest = size * self._scene.longest_m if name in moments else size
             off = np.nan_to_num(np.abs(own - one))
             worst = int(np.argmax(off))
-            if off[worst] > SAME * largest:
+            if off[worst] > same * largest:
                 yield (
                     f"at {time_s[worst]:.6g} s pymunk's impulse on the {name} is "
                     f"{own[worst]:.6g} over the step, and {one[worst]:.6g} by the momentum of "

@@ -34,6 +34,7 @@ OTHER: dict[str, SettingValue] = {
     "servo_integrator": "implicit",
     "lines": "exact",
     "springs": "forces",
+    "free_paths": "arcs",
     "jacobian": "each-step",
     "adaptive_step": "disable",
     "linear_solver": "EigenDense",
