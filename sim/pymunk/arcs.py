@@ -31,13 +31,17 @@ class Arcs:
 
     def __init__(self, constraints: Iterable[pymunk.Constraint], dt_s: float) -> None:
         self._dt = dt_s
-        self._pins: list[tuple[pymunk.PivotJoint, Point, Point]] = [
-            (each, (each.anchor_a.x, each.anchor_a.y), (each.anchor_b.x, each.anchor_b.y))
-            for each in constraints
-            if isinstance(each, pymunk.PivotJoint)
+        self._pins = [
+            _anchored(each) for each in constraints if isinstance(each, pymunk.PivotJoint)
         ]
         bodies = dict.fromkeys(body for pin, _, _ in self._pins for body in (pin.a, pin.b))
         self._before = {body: body.angular_velocity for body in bodies}
+
+    def move(self, joint: pymunk.PivotJoint, by: Point) -> None:
+        """Move the anchor of a joint on its second body [m]."""
+        for k, (pin, a, b) in enumerate(self._pins):
+            if pin is joint:
+                self._pins[k] = pin, a, (b[0] + by[0], b[1] + by[1])
 
     def bend(self) -> None:
         """Set the anchors for the next step."""
@@ -52,3 +56,9 @@ class Arcs:
             first, second = shares[pin.a], shares[pin.b]
             pin.anchor_a = (a[0] * first, a[1] * first)
             pin.anchor_b = (b[0] * second, b[1] * second)
+
+
+def _anchored(pin: pymunk.PivotJoint) -> tuple[pymunk.PivotJoint, Point, Point]:
+    """A pin with its anchors as they are."""
+    a, b = pin.anchor_a, pin.anchor_b
+    return pin, (a.x, a.y), (b.x, b.y)

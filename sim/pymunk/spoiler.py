@@ -39,6 +39,9 @@ class PymunkSpoiler:
         """The anchor on the second body moves."""
         joint = _closing(_model(session))
         joint.anchor_b = (joint.anchor_b[0] + by_m, joint.anchor_b[1])
+        arcs = cast(PymunkSession, session)._arcs
+        if arcs is not None and isinstance(joint, pymunk.PivotJoint):
+            arcs.move(joint, (by_m, 0.0))
 
     def pull(self, session: Session, gravity_m_s2: float) -> None:
         """Down is -y."""
