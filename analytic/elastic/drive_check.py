@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from analytic.kinematics import solve
+from analytic.structure.cranked import refuse_other_than_cranked
 from models.errors import CrankcheckError
 from models.scene import Scene
 
@@ -20,13 +21,14 @@ def check_drive(scene: Scene, until_s: float) -> None:
     Raises
     ------
     CrankcheckError
-        No elastic link; a change point on the way, where a bent link takes the other branch as
-        well; a speed of the driver that jumps, which is a blow.
+        No elastic link; a driver other than a crank; a change point on the way, where a bent link
+        takes the other branch as well; a speed of the driver that jumps, which is a blow.
     """
     if not scene.elastic:
         raise CrankcheckError(
             f"{scene.name}: no link of it is elastic; give one a table [elastic.LINK]"
         )
+    refuse_other_than_cranked(scene, "the motion of elastic links")
     for crossing in solve(scene, np.array([0.0, until_s])).crossings:
         raise CrankcheckError(
             f"{scene.name}: with its driver at {math.degrees(crossing.driver_rad):.6g} deg the "

@@ -58,8 +58,12 @@ def test_what_oscillates_has_a_periodic_motion() -> None:
         (following(SpeedChange(1.5, 3.0, 6.0, 0.1, 0.0)), r"jumps from 3 to 6 rad/s.*rise_s"),
         (load_scene("fourbar-lecture-1"), r"no link of it is elastic"),
         (replace(fourbar(), ground={"A": (0.0, 0.0), "D": (1.35, 0.0)}), "through a change point"),
+        (
+            replace(load_scene("fourbar-by-coupler"), elastic=fourbar().elastic),
+            "takes a driver that is a link pinned to the ground.*pin B of crank and coupler",
+        ),
     ],
-    ids=["jump", "rigid", "change point"],
+    ids=["jump", "rigid", "change point", "inner driver"],
 )
 def test_what_is_not_followed_is_named(scene: Scene, says: str) -> None:
     with pytest.raises(CrankcheckError, match=says):
