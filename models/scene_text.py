@@ -22,7 +22,7 @@ def scene_text(scene: Scene, flywheels: Mapping[str, float] | None = None) -> st
     which are in degrees there. ``flywheels`` [kg m^2] are put on links beside their own inertia.
     Raises CrankcheckError for a law of another kind."""
     lines = [
-        f"{name} = {_value(value)}"
+        f"{name} = {toml_value(value)}"
         for name, value in (
             ("name", scene.name),
             ("source", scene.source),
@@ -31,7 +31,11 @@ def scene_text(scene: Scene, flywheels: Mapping[str, float] | None = None) -> st
         )
     ]
     for head, table in _tables(scene, flywheels or {}):
-        lines += ["", f"[{head}]", *(f"{key} = {_value(value)}" for key, value in table.items())]
+        lines += [
+            "",
+            f"[{head}]",
+            *(f"{key} = {toml_value(value)}" for key, value in table.items()),
+        ]
     return "\n".join(lines) + "\n"
 
 
@@ -122,14 +126,14 @@ def _slider(slider: Slider) -> Table:
     return {**table, "mass_kg": slider.mass_kg, "inertia_kg_m2": slider.inertia_kg_m2}
 
 
-def _value(value: object) -> str:
+def toml_value(value: object) -> str:
     """A value in TOML."""
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, Mapping):
-        return f"{{ {', '.join(f'{key} = {_value(each)}' for key, each in value.items())} }}"
+        return f"{{ {', '.join(f'{key} = {toml_value(each)}' for key, each in value.items())} }}"
     if isinstance(value, Sequence):
-        return f"[{', '.join(map(_value, value))}]"
+        return f"[{', '.join(map(toml_value, value))}]"
     return repr(int(value) if isinstance(value, Integral) else float(value))  # type: ignore[arg-type]

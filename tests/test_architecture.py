@@ -42,7 +42,7 @@ FLOORS: Mapping[str, str] = {
         workers output
     """,
     "analytic": """
-        elastic drawings
+        elastic drawings synthesis
         free regulation
         circuits mechanism forces in_assembly
         nearness kinematics

@@ -1,0 +1,28 @@
+"""A mechanism that a synthesis proposes: its scene, what is asked of it, and how it was found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from analytic.synthesis.asked import PrecisionPosition
+from analytic.synthesis.construction import Step
+from models.draft import Draft
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """What a construction gives: the tables of a scene without its law, the link that drives, the
+    precision positions with the driver's angles [rad] in the order they are asked for.
+
+    ``chosen`` are the numbers that the task left open, in words and SI units; ``steps`` draw how
+    the rest was found. ``doubt`` is what a task gave up where it could not be met as asked.
+    ``full`` is whether the driver has to turn fully, and be examined over a whole turn.
+    """
+
+    draft: Draft
+    driver: str
+    positions: tuple[PrecisionPosition, ...]
+    chosen: Mapping[str, str] = field(default_factory=dict)
+    steps: tuple[Step, ...] = ()
+    doubt: str = ""

@@ -1,0 +1,233 @@
+"""What is wrong with a proposed mechanism, and how good it is: by the reference, not by the
+equations that it was found with.
+
+A mechanism that fits all positions may still not do the task: where they lie on two circuits it has
+to be taken apart between them, where they lie on two branches its driver can not lead from one to
+the other, and where they are met in another order it does another task.
+
+Source: lecture "Tong hop co cau" (synthesis), branch and order defect; T. R. Chase and J. A. Mirth,
+Journal of Mechanical Design 115 (1993), circuits and branches.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.circuits.arcs import Arc
+from analytic.circuits.circuits import Circuits, Defect, Position, circuits_of
+from analytic.kinematics import solve_driven
+from analytic.mechanism.grashof_of_scene import grashof_of
+from analytic.synthesis.asked import PrecisionPosition, names_of
+from analytic.synthesis.design import Proposal
+from models.array import Array
+from models.draft import SPEED_RAD_S
+from models.errors import CrankcheckError, ReachError
+from models.laws import ConstantSpeed, Law, Oscillating
+from models.motion import Motion
+from models.scene import Scene
+from models.scene_text import Table
+
+LOOKS = 361
+"""Looks at the driver's way, for transmission and size."""
+UNMET = 1e-6
+"""Of the size, or rad: further off, a position is not met. It is a hundred times what a position
+near a limit of a dyad may lose, and far below any tolerance of a workshop."""
+MARGIN = math.radians(5.0)
+"""By what a driver that can not turn fully swings beyond the outermost positions, where it can."""
+KEEP = 0.5
+"""Of the way from an outermost position to the end of a branch, it keeps clear of."""
+
+
+@dataclass(frozen=True)
+class Examined:
+    """A proposal with its scene, in which the driver leads from the first position on as far as it
+    can, and what the reference says of it.
+
+    ``positions`` have the driver's angles [rad] as the scene's law goes through them, whole turns
+    counted. ``least_sine`` is the least sine of a transmission angle, or what stands for it in
+    other dyads, over the way of the driver; ``extent_m`` the larger side of the box that all named
+    points stay in. ``off`` is how far the reference is from each position (angles in rad, lengths
+    over the size).
+    """
+
+    proposal: Proposal
+    scene: Scene
+    text: str
+    positions: tuple[PrecisionPosition, ...]
+    defect: Defect
+    turns_fully: bool
+    grashof: str
+    least_sine: float
+    extent_m: float
+    off: tuple[float, ...]
+
+    @property
+    def least_transmission_rad(self) -> float:
+        """The angle of `least_sine` [rad]."""
+        return math.asin(min(self.least_sine, 1.0))
+
+    @property
+    def defects(self) -> list[str]:
+        """What keeps it from the task, in words; empty of a mechanism that does it."""
+        worst = max(self.off)
+        unmet = [f"misses a position by {worst:.3g}"] * (not worst <= UNMET)
+        return [f"{self.defect} defect"] * (self.defect != "none") + unmet
+
+
+def ranked(every: Sequence[Examined]) -> list[Examined]:
+    """Those without a defect first, each by its transmission angle, the smaller mechanism first
+    where these are equal."""
+    return sorted(
+        every, key=lambda one: (bool(one.defects), -round(one.least_sine, 9), one.extent_m)
+    )
+
+
+def examine(proposal: Proposal) -> Examined:
+    """Assemble a proposal in its first position and look at the way of its driver.
+
+    Raises
+    ------
+    CrankcheckError
+        Lengths that make no mechanism, or one that can not be assembled in its first position.
+    """
+    first = proposal.positions[0].driver_rad
+    scene = proposal.draft.driven(_turning(proposal.driver, first, SPEED_RAD_S)).scene
+    circuits = circuits_of(scene)
+    places = [_place_of(circuits, each) for each in proposal.positions]
+    _, arc = circuits.place(places[0])
+    branch = dict(zip(circuits.signed.dyads, places[0].signs, strict=True))
+    defect = circuits.defect(places)
+    on_arc = [arc.signs == p.signs and arc.holds(p.driver_rad, MARGIN / 100) for p in places]
+    angles = _unwrapped(arc, [position.driver_rad for position in proposal.positions])
+    own = [angle for angle, on in zip(angles, on_arc, strict=True) if on]
+    driver = _driver(proposal.driver, arc, own)
+    draft = proposal.draft.driven(driver).with_branch(branch)
+    scene = draft.scene
+    positions = tuple(
+        replace(each, driver_rad=angle)
+        for each, angle in zip(proposal.positions, angles, strict=True)
+    )
+    way = _way(scene.driver.law)
+    motion = _motion(scene, way, positions=None)
+    sine = min((float(np.min(np.abs(s))) for s in motion.conditioning.values()), default=1.0)
+    off = tuple(
+        _off(scene, each) if on else _off(_at(circuits, place), each)
+        for each, place, on in zip(positions, places, on_arc, strict=True)
+    )
+    kind = grashof_of(scene)
+    return Examined(
+        proposal,
+        scene,
+        draft.text,
+        positions,
+        defect,
+        arc.low is None,
+        kind.name if kind is not None else "",
+        sine,
+        _extent(motion),
+        off,
+    )
+
+
+def _turning(link: str, start_rad: float, speed_rad_s: float) -> Table:
+    return {"link": link, "speed_rad_s": speed_rad_s, "start_deg": math.degrees(start_rad)}
+
+
+def _place_of(circuits: Circuits, position: PrecisionPosition) -> Position:
+    """The assembly in which a position is met, of all that there are at the driver's angle."""
+    best, chosen = math.inf, circuits.signed.signs
+    for signs in itertools.product((1, -1), repeat=len(circuits.signed.dyads)):
+        off = _off(_at(circuits, Position(position.driver_rad, signs)), position)
+        if off < best:
+            best, chosen = off, signs
+    if best == math.inf:
+        at = math.degrees(position.driver_rad)
+        raise CrankcheckError(f"it can not be assembled with its driver at {at:.6g} deg")
+    return Position(position.driver_rad, chosen)
+
+
+def _at(circuits: Circuits, place: Position) -> Scene:
+    """The scene that starts at a position."""
+    scene = circuits.signed.with_signs(place.signs)
+    law = ConstantSpeed(place.driver_rad, SPEED_RAD_S)
+    return replace(scene, driver=replace(scene.driver, law=law))
+
+
+def _off(scene: Scene, position: PrecisionPosition) -> float:
+    """How far a scene is from a position; inf where it is not assembled there."""
+    try:
+        motion = _motion(scene, np.array([position.driver_rad]), [position])
+    except ReachError:
+        return math.inf
+    return float(position.off(motion, scene.longest_m)[0])
+
+
+def _motion(scene: Scene, angles: Array, positions: Sequence[PrecisionPosition] | None) -> Motion:
+    """The scene at angles of the driver: of all points, or of what is asked in positions."""
+    if positions is None:
+        return solve_driven(
+            scene, angles, np.ones(1), np.zeros(1), links=(), sliders=(), bound=False
+        )
+    links, points, sliders = names_of(positions)
+    return solve_driven(
+        scene,
+        angles,
+        np.ones(1),
+        np.zeros(1),
+        links=links,
+        points=points,
+        sliders=sliders,
+        bound=False,
+    )
+
+
+def _unwrapped(arc: Arc, angles: Sequence[float]) -> list[float]:
+    """The driver's angles [rad] on one way through them: within the arc; of a driver that turns
+    fully each within a turn of the one before, in the sense that takes fewer turns."""
+    if arc.low is not None:
+        low, high = arc.range_rad
+        middle = 0.5 * (low + high)
+        return [middle + math.remainder(angle - middle, math.tau) for angle in angles]
+    ahead = [(b - a) % math.tau for a, b in itertools.pairwise(angles)]
+    behind = [(a - b) % math.tau for a, b in itertools.pairwise(angles)]
+    sense, ways = (1.0, ahead) if sum(ahead) <= sum(behind) else (-1.0, behind)
+    return [angles[0] + sense * way for way in itertools.accumulate(ways, initial=0.0)]
+
+
+def _driver(link: str, arc: Arc, angles: Sequence[float]) -> Table:
+    """The table of a driver that goes through angles [rad] of its branch: at constant speed from
+    the first on, or to and fro."""
+    if arc.low is None:
+        back = len(angles) > 1 and angles[-1] < angles[0]
+        return _turning(link, angles[0], -SPEED_RAD_S if back else SPEED_RAD_S)
+    low, high = arc.range_rad
+    least, most = min(angles), max(angles)
+    least -= min(MARGIN, KEEP * max(least - low, 0.0))
+    most += min(MARGIN, KEEP * max(high - most, 0.0))
+    return {
+        "link": link,
+        "law": "oscillating",
+        "centre_deg": math.degrees(0.5 * (least + most)),
+        "amplitude_deg": math.degrees(0.5 * (most - least)),
+        "frequency_rad_s": SPEED_RAD_S,
+    }
+
+
+def _way(law: Law) -> Array:
+    """Angles of the driver [rad] over its whole way."""
+    if isinstance(law, Oscillating):
+        swing = abs(law.amplitude_rad)
+        return np.linspace(law.centre_rad - swing, law.centre_rad + swing, LOOKS)
+    start = float(law.at(np.zeros(1))[0][0])
+    return np.linspace(start, start + math.tau, LOOKS)
+
+
+def _extent(motion: Motion) -> float:
+    """The larger side of the box that all points stay in [m]."""
+    every = np.concatenate([point.position for point in motion.points.values()])
+    return float(np.max(np.ptp(every, axis=0)))
