@@ -9,8 +9,8 @@ e_j w + d_j, and with its centre m
 
 for j = 2, 3 ...: three such equations leave a curve, four leave at most four pairs.
 
-Source: A. S. Hall, Kinematics and Linkage Design, chapter 5 (circle and centre points); G. N. Sandor
-and A. G. Erdman, Advanced Mechanism Design, volume 2, chapter 3 (the compatibility linkage).
+Source: A. S. Hall, Kinematics and Linkage Design, chapter 5 (circle and centre points); G. N.
+Sandor and A. G. Erdman, Advanced Mechanism Design, volume 2, chapter 3 (compatibility linkage).
 """
 
 from __future__ import annotations
