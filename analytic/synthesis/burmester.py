@@ -15,13 +15,12 @@ Sandor and A. G. Erdman, Advanced Mechanism Design, volume 2, chapter 3 (compati
 
 from __future__ import annotations
 
-import cmath
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from flint import acb, acb_mat, acb_poly, arb, ctx
 
+from analytic.synthesis.guided_body import Dyad
 from analytic.synthesis.pose import Pose
 from models.array import Array
 from models.errors import CrankcheckError
@@ -29,24 +28,11 @@ from models.errors import CrankcheckError
 BITS = 300
 """Of the arithmetic in which the quartic's roots are told apart, real from complex."""
 MOST_BITS = 5000
+SHARP = 1e-40
+"""How well roots are asked for, over their size: far beyond floats, so that what is worked out from
+them is exact to rounding."""
 SWEEP = 720
 """Turns of the compatibility linkage's first link that the curves are drawn by."""
-
-
-@dataclass(frozen=True)
-class Dyad:
-    """A crank: its fixed pivot [m], its moving pivot in the body's own frame [m]."""
-
-    fixed: complex
-    moving: complex
-
-    def radius(self, poses: Sequence[Pose]) -> float:
-        """The distance of its pivots [m]."""
-        return abs(poses[0].at(self.moving) - self.fixed)
-
-    def turns(self, poses: Sequence[Pose]) -> list[float]:
-        """Its angle in each position [rad]."""
-        return [cmath.phase(pose.at(self.moving) - self.fixed) for pose in poses]
 
 
 def five_positions(poses: Sequence[Pose]) -> list[Dyad]:
@@ -81,7 +67,7 @@ def _real_dyads(poses: Sequence[Pose]) -> list[Dyad] | None:
     if quartic.degree() < 1:
         return None
     try:
-        roots = quartic.roots()
+        roots = quartic.roots(tol=SHARP)
     except ValueError:
         return None
     places = [tuple(each(root) / over(root) for each in numerators) for root in roots]

@@ -1,0 +1,54 @@
+"""The solutions of a task: what every proposal is worth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from analytic.synthesis.coupler import coupler_proposals
+from analytic.synthesis.design import Proposal
+from analytic.synthesis.examine import Examined, examine, ranked
+from models.errors import CrankcheckError
+from models.tasks.coupler import CouplerTask, TaskTable
+
+
+@dataclass(frozen=True)
+class Solutions:
+    """Every proposal examined, the best first; ``looked`` is how many were looked at to choose
+    them, and ``refused`` says of those that are no mechanism why."""
+
+    task: TaskTable
+    examined: tuple[Examined, ...]
+    looked: int
+    refused: tuple[str, ...]
+
+    @property
+    def sound(self) -> list[Examined]:
+        """Those without a defect."""
+        return [one for one in self.examined if not one.defects]
+
+
+def solutions_of(task: TaskTable) -> Solutions:
+    """Propose and examine. Raises CrankcheckError for a task without any mechanism."""
+    proposals, looked = PROPOSERS[type(task)](task)
+    examined, refused = [], []
+    for proposal in proposals:
+        try:
+            examined.append(examine(proposal))
+        except CrankcheckError as error:
+            refused.append(str(error))
+    if not examined:
+        why = f": {refused[0]}" if refused else ""
+        raise CrankcheckError(f"{task.name}: no mechanism does it{why}")
+    return Solutions(task, tuple(ranked(examined)), looked, tuple(refused))
+
+
+def _coupler(task: TaskTable) -> tuple[list[Proposal], int]:
+    assert isinstance(task, CouplerTask)
+    return coupler_proposals(task)
+
+
+PROPOSERS: Mapping[type[TaskTable], Callable[[TaskTable], tuple[list[Proposal], int]]] = {
+    CouplerTask: _coupler,
+}
+"""By the kind of a task, what proposes mechanisms for it, and how many it looked at."""

@@ -1,0 +1,172 @@
+"""The task of carrying a body through positions, as its coupler."""
+
+from __future__ import annotations
+
+import cmath
+from typing import Annotated, Literal
+
+from pydantic import Field, StringConstraints, model_validator
+
+from models.table_fields import Coordinates, Degrees, Name, Positive, Table, Text
+
+Source = Annotated[Text, StringConstraints(min_length=1)]
+RIGID = 1e-3
+"""By what share of it the distance of two points may differ between positions: exercises round."""
+
+
+class Region(Table):
+    """A rectangle of the ground that fixed pivots are wanted in [m]."""
+
+    from_m: Coordinates
+    to_m: Coordinates
+
+    @model_validator(mode="after")
+    def _is_no_line(self) -> Region:
+        if self.from_m[0] >= self.to_m[0] or self.from_m[1] >= self.to_m[1]:
+            raise ValueError(
+                f"from_m is {list(self.from_m)}, to_m {list(self.to_m)}: give the lower left and "
+                "the upper right corner"
+            )
+        return self
+
+    def holds(self, place: complex) -> bool:
+        """Whether a place is in it."""
+        return (
+            self.from_m[0] <= place.real <= self.to_m[0]
+            and self.from_m[1] <= place.imag <= self.to_m[1]
+        )
+
+
+class TaskTable(Table):
+    """What every task has: its name, where it is from, and what its solutions are wanted to be."""
+
+    name: Name
+    source: Source
+    note: Text = ""
+    tolerance_m: Positive | None = None
+    tolerance_deg: Positive | None = None
+    pivots_in: Region | None = None
+    least_transmission_deg: Degrees | None = None
+
+
+class PoseTable(Table):
+    """A position of a body: of a point with an angle, or of two points by their names."""
+
+    point_m: Coordinates | None = None
+    angle_deg: Degrees | None = None
+    points: dict[Name, Coordinates] = Field(default_factory=dict, max_length=2)
+
+    @model_validator(mode="after")
+    def _is_given_in_one_way(self) -> PoseTable:
+        by_angle = self.point_m is not None and self.angle_deg is not None
+        if by_angle == bool(self.points) or (self.point_m is None) != (self.angle_deg is None):
+            raise ValueError(
+                "a position is given by point_m and angle_deg, or by the places of two points: "
+                "points = { C = [0.1, 0.2], D = [0.3, 0.2] }"
+            )
+        if self.points and len(self.points) != 2:
+            raise ValueError(f"points: found {', '.join(self.points)} alone; name two points")
+        return self
+
+
+class PositionsTask(TaskTable):
+    """A task of positions of a body."""
+
+    positions: list[PoseTable] = Field(min_length=2, max_length=5)
+
+    @model_validator(mode="after")
+    def _is_of_one_rigid_body(self) -> PositionsTask:
+        kinds = {tuple(sorted(one.points)) for one in self.positions}
+        if len(kinds) > 1:
+            told = " and ".join(", ".join(names) or "point_m and angle_deg" for names in kinds)
+            raise ValueError(f"positions: found {told}; give all in the same way, of one body")
+        lengths = [abs(b - a) for a, b in (self._pair(one) for one in self.positions if one.points)]
+        if lengths and lengths[0] == 0.0:
+            raise ValueError("positions: the two points coincide; name two points apart")
+        for number, length in enumerate(lengths, 1):
+            if abs(length - lengths[0]) > RIGID * lengths[0]:
+                one, other = self.names
+                raise ValueError(
+                    f"positions: {one} and {other} are {lengths[0]:g} m apart in position 1 and "
+                    f"{length:g} m in position {number}; a body is rigid"
+                )
+        return self
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The two points that positions are given by, in the order of the first; none of them."""
+        return tuple(self.positions[0].points)
+
+    def _pair(self, position: PoseTable) -> tuple[complex, complex]:
+        one, other = (complex(*position.points[name]) for name in self.names)
+        return one, other
+
+    @property
+    def poses(self) -> list[tuple[complex, float]]:
+        """Place of the reference point [m] and angle [rad] of the body in each position: of two
+        points those of the first, and of the line to the second."""
+        found = []
+        for one in self.positions:
+            if one.points:
+                first, second = self._pair(one)
+                found.append((first, cmath.phase(second - first)))
+            else:
+                assert one.point_m is not None
+                assert one.angle_deg is not None
+                found.append((complex(*one.point_m), cmath.pi * one.angle_deg / 180.0))
+        return found
+
+    @property
+    def own_points(self) -> dict[str, complex]:
+        """The named points in the body's own frame [m]; P of a body that is given by its angle."""
+        if not self.names:
+            return {"P": 0j}
+        first, second = self._pair(self.positions[0])
+        return {self.names[0]: 0j, self.names[1]: complex(abs(second - first))}
+
+
+class CouplerTask(PositionsTask):
+    """A body is to be the coupler of a four-bar, in two to five positions.
+
+    ``moving_m`` are moving pivots, where they are in the first position (of two and three; the two
+    named points where it is silent); ``fixed_m`` the fixed pivots in their place (three positions).
+    Of two positions, ``distances_m`` says how far the fixed pivots lie from the middles, to the
+    left of the way along the bisector. ``driver`` is the side that is driven. ``best`` is how many
+    solutions are listed where there are infinitely many.
+    """
+
+    moving_m: tuple[Coordinates, Coordinates] | None = None
+    fixed_m: tuple[Coordinates, Coordinates] | None = None
+    distances_m: tuple[float, float] | None = None
+    driver: Literal["first", "second", "either"] = "either"
+    driving_dyad: bool = False
+
+    @model_validator(mode="after")
+    def _pivots_fit_the_count(self) -> CouplerTask:
+        count = len(self.positions)
+        if self.fixed_m is not None and self.moving_m is not None:
+            raise ValueError("fixed_m and moving_m: the one follows from the other; give one")
+        if self.fixed_m is not None and count != 3:
+            raise ValueError(
+                f"fixed_m: found with {count} positions; fixed pivots are given for three"
+            )
+        if self.moving_m is not None and count > 3:
+            raise ValueError(
+                f"moving_m: found with {count} positions; of four and five they follow from the "
+                "positions, leave it out"
+            )
+        if self.distances_m is not None and count != 2:
+            raise ValueError(
+                f"distances_m: found with {count} positions; of more than two the centres of the "
+                "circles are the fixed pivots, leave it out"
+            )
+        if self.driving_dyad and count != 2:
+            raise ValueError(
+                f"driving_dyad: found with {count} positions; a dyad leads to and fro between two"
+            )
+        if count < 4 and not self.names and self.moving_m is None and self.fixed_m is None:
+            raise ValueError(
+                "moving_m: missing; two or three positions by their angle need two moving pivots, "
+                "where they are in the first position: moving_m = [[0.1, 0.2], [0.3, 0.2]]"
+            )
+        return self
