@@ -32,7 +32,7 @@ FLOORS: Mapping[str, str] = {
         own_model
         diff tune advise history verify selftest
         sweep stability own_log contract
-        results regulation vibration workbook
+        results regulation vibration workbook synthesis
         store
         plan
         causes

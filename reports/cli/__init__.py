@@ -15,6 +15,7 @@ from reports.cli import (
     graph_sheets,
     regulating,
     structures,
+    synthesising,
     vibrating,
 )
 
@@ -38,5 +39,6 @@ __all__ = [
     "schemes",
     "showing",
     "structures",
+    "synthesising",
     "vibrating",
 ]

@@ -1,0 +1,40 @@
+"""Task files: the shipped ones of each kind, and a user's own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from models.errors import CrankcheckError, suggestion
+from models.shipped_tables import find_table, read_table, shipped_in
+from models.tasks.coupler import CouplerTask, TaskTable
+
+TASKS = Path(__file__).parents[1] / "task_files"
+KINDS: Mapping[str, type[TaskTable]] = {"coupler": CouplerTask}
+"""What can be asked for, and the table of its file."""
+
+
+def shipped_tasks() -> dict[str, list[str]]:
+    """The names of the tasks that come with crankcheck, by kind."""
+    return {kind: list(shipped_in(TASKS / kind)) for kind in KINDS}
+
+
+def find_task(kind: str, name_or_path: str) -> Path:
+    """The file of a task. Raises CrankcheckError for another kind, or where there is none."""
+    if kind not in KINDS:
+        hint = suggestion(kind, KINDS, "there are", 2)
+        raise CrankcheckError(f"kind of synthesis: no {kind!r}; {hint}")
+    return find_table(name_or_path, TASKS / kind, f"{kind} task", "crankcheck synth")
+
+
+def load_task(kind: str, name_or_path: str) -> TaskTable:
+    """A shipped task by name, or one of a file.
+
+    Raises
+    ------
+    CrankcheckError
+        An unknown kind, or nothing there.
+    SceneError
+        A file with faults, all that were found in one message.
+    """
+    return read_table(find_task(kind, name_or_path), KINDS[kind])

@@ -1,0 +1,134 @@
+"""`crankcheck synth`: from what a mechanism must do to its scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from rich.console import Console
+
+from analytic.synthesis.examine import Examined
+from analytic.synthesis.solutions import Solutions, solutions_of
+from models.errors import CrankcheckError
+from models.tasks.coupler import TaskTable
+from models.tasks.files import find_task, load_task, shipped_tasks
+from reports.cli.synthesising import SynthRequest
+from reports.output.columns import plain_table
+from reports.output.frame_file import csv
+from reports.output.numbers import count
+from reports.output.provenance import provenance
+from reports.output.write import check_folder, write
+from reports.plan.chosen import chosen_engines, chosen_profiles
+from reports.synthesis.proof import Met, by_reference, proven
+from reports.synthesis.proof_table import proof_frame, proof_table
+from reports.synthesis.solution_table import solution_frame, solution_table
+from sim.registry import engine
+
+Proofs = Mapping[int, Sequence[Met]]
+FRAME, PROOF = "solutions.csv", "proof.csv"
+
+
+def run_synth(request: SynthRequest, console: Console) -> int:
+    """List, write and prove the solutions. Raises CrankcheckError for what can not be asked."""
+    if request.kind is None or request.task is None:
+        return _list(request.kind, console)
+    path = find_task(request.kind, request.task)
+    if request.output is not None:
+        check_folder(request.output, "-o")
+    task = load_task(request.kind, request.task)
+    engines = chosen_engines(request.engines) if request.prove else []
+    profiles = [name for name, _ in chosen_profiles(request.profiles, engines)]
+    solutions = solutions_of(task)
+    listed = _listed(solutions, request.best)
+    _say(console, f"{task.name}: {task.source}")
+    _say(console, _counted(solutions, listed))
+    console.print("", solution_table(listed, task), sep="\n")
+    proofs = {
+        number: [
+            *by_reference(one, task),
+            *(
+                met
+                for name in engines
+                for profile in profiles
+                for met in proven(one, task, name, profile, request.steps_per_turn)
+            ),
+        ]
+        for number, one in enumerate(listed, 1)
+        if request.prove and not one.defects
+    }
+    if request.prove:
+        facts = provenance({name: engine(name).version() for name in engines})
+        _show_proof(console, proofs, facts, request)
+    if request.output is not None:
+        _write(request.output, path, listed, task, proofs, console)
+    met = all(one.within for every in proofs.values() for one in every)
+    return 0 if solutions.sound and met else 1
+
+
+def _list(kind: str | None, console: Console) -> int:
+    """The kinds with their shipped tasks."""
+    if kind is not None and kind not in shipped_tasks():
+        find_task(kind, "")
+    table = plain_table(gap=2)
+    for head in ("kind", "shipped tasks"):
+        table.add_column(head, overflow="fold")
+    for name, tasks in shipped_tasks().items():
+        if kind in (None, name):
+            table.add_row(name, ", ".join(tasks))
+    console.print(table)
+    return 0
+
+
+def _listed(solutions: Solutions, best: int) -> list[Examined]:
+    """The best, and where none is sound the best of those with a defect."""
+    return list(solutions.examined[:best])
+
+
+def _counted(solutions: Solutions, listed: Sequence[Examined]) -> str:
+    """How many there are, in words."""
+    many, sound = len(solutions.examined), len(solutions.sound)
+    told = f"{count(solutions.looked, 'mechanism')} looked at, {many} examined"
+    told += f", {sound} without a defect"
+    if solutions.refused:
+        told += f"; {len(solutions.refused)} are none ({solutions.refused[0]})"
+    return told + (f"; the best {len(listed)} listed" if len(listed) < many else "")
+
+
+def _show_proof(
+    console: Console, proofs: Proofs, facts: Mapping[str, str], request: SynthRequest
+) -> None:
+    """The proof, and what it was made with."""
+    if not proofs:
+        _say(console, "\nnothing to prove: no solution listed is without a defect")
+        return
+    console.print("", proof_table(proofs), sep="\n")
+    within = all(one.within for every in proofs.values() for one in every)
+    verdict = "PROVEN: every position is met" if within else "NOT PROVEN: a position is missed"
+    _say(console, f"\n{verdict}")
+    _say(console, f"{request.steps_per_turn:g} steps a turn; " + ", ".join(
+        f"{name} {value}" for name, value in facts.items()))  # fmt: skip
+
+
+def _write(
+    folder: Path,
+    task_file: Path,
+    listed: Sequence[Examined],
+    task: TaskTable,
+    proofs: Proofs,
+    console: Console,
+) -> None:
+    """The scenes, the table, the proof."""
+    scenes = {f"solution-{number}.toml": one.text for number, one in enumerate(listed, 1)}
+    texts = {**scenes, FRAME: csv(solution_frame(listed, task))}
+    if proofs:
+        texts[PROOF] = csv(proof_frame(proofs))
+    check_folder(folder, "-o", list(texts))
+    if task_file.resolve().parent == folder.resolve() and task_file.name in texts:
+        raise CrankcheckError(f"-o {folder}: {task_file.name} is the task; choose another folder")
+    for name, text in texts.items():
+        write(folder / name, text)
+    _say(console, f"{folder}: {count(len(scenes), 'scene')}, {FRAME}" + f", {PROOF}" * bool(proofs))
+
+
+def _say(console: Console, words: str) -> None:
+    console.print(words, highlight=False, markup=False)

@@ -1,0 +1,88 @@
+"""The solutions of a synthesis as a table: what each is, and what is wrong with it."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rich.table import Table
+
+from analytic.synthesis.examine import Examined
+from models.tasks.coupler import TaskTable
+from reports.output.columns import plain_table
+
+if TYPE_CHECKING:
+    import pandas as pd  # a third of a second: not for what is only shown
+
+DEFECT_FREE = "none"
+
+
+def remarks(one: Examined, task: TaskTable) -> list[str]:
+    """What a task wished and a mechanism does not have, in words."""
+    told = []
+    least = task.least_transmission_deg
+    if least is not None and math.degrees(one.least_transmission_rad) < least:
+        told.append(f"transmission below {least:g} deg")
+    if task.pivots_in is not None:
+        outside = [
+            name
+            for name, place in one.proposal.draft.ground.items()
+            if not task.pivots_in.holds(place)
+        ]
+        told += [f"{name} outside the region" for name in outside]
+    if one.proposal.doubt:
+        told.append(one.proposal.doubt)
+    return told
+
+
+def solution_table(every: Sequence[Examined], task: TaskTable) -> Table:
+    """A row for each, numbered from 1."""
+    table = plain_table(gap=2)
+    for head in ("", "defect", "driver", "trans. deg", "size m", "type", "chosen, remarks"):
+        table.add_column(head, overflow="fold")
+    for number, one in enumerate(every, 1):
+        table.add_row(
+            str(number),
+            ", ".join(one.defects) or DEFECT_FREE,
+            "turns" if one.turns_fully else "swings",
+            f"{math.degrees(one.least_transmission_rad):.2f}",
+            f"{one.extent_m:.4g}",
+            one.grashof,
+            "; ".join([*_chosen(one), *remarks(one, task)]),
+        )
+    return table
+
+
+def solution_frame(every: Sequence[Examined], task: TaskTable) -> pd.DataFrame:
+    """The same with all digits, and the lengths: a row for each."""
+    import pandas as pd
+
+    rows = []
+    for number, one in enumerate(every, 1):
+        angles = [math.degrees(position.driver_rad) for position in one.positions]
+        row: dict[str, object] = {
+            "solution": number,
+            "defect": ", ".join(one.defects) or DEFECT_FREE,
+            "turns_fully": one.turns_fully,
+            "least_transmission_rad": one.least_transmission_rad,
+            "extent_m": one.extent_m,
+            "type": one.grashof,
+            "chosen": "; ".join(_chosen(one)),
+            "remarks": "; ".join(remarks(one, task)),
+            "largest_miss": max(one.off),
+        }
+        row |= {f"driver_{k}_deg": angle for k, angle in enumerate(angles, 1)}
+        for name, place in one.scene.ground.items():
+            row |= {f"{name}_x_m": place[0], f"{name}_y_m": place[1]}
+        for link in one.scene.links.values():
+            points = list(link.points.items())
+            for (first, p), (second, q) in itertools.pairwise(points):
+                row[f"{link.name}_{first}{second}_m"] = math.dist(p, q)
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _chosen(one: Examined) -> list[str]:
+    return [f"{name} {value}" for name, value in one.proposal.chosen.items()]
