@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from analytic.synthesis.burmester import five_positions, four_positions
 from analytic.synthesis.design import Proposal
+from analytic.synthesis.driving_dyad import swings_little, with_driving_dyad
 from analytic.synthesis.fourbar_draft import PIVOTS, CarriedBody
 from analytic.synthesis.guided_body import (
     Dyad,
@@ -53,6 +54,10 @@ def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
     proposals = [
         proposal for pair, chosen in pairs for proposal in _driven(task, body, pair, chosen)
     ]
+    if task.driving_dyad:
+        proposals = [
+            six for four in proposals if swings_little(four) for six in with_driving_dyad(four)
+        ]
     return proposals, len(proposals)
 
 
@@ -139,6 +144,6 @@ def _driven(
     """The four-bar of a pair, driven at the sides that are asked for."""
     steps = tuple(guiding_steps(body, pair, inverted=task.fixed_m is not None))
     if task.driver != "second":
-        yield body.four_bar(pair, chosen={**chosen, "driven": "first"}, steps=steps)
+        yield body.four_bar(pair, chosen=chosen, steps=steps)
     if task.driver != "first":
-        yield body.four_bar(pair[::-1], chosen={**chosen, "driven": "second"}, steps=steps)
+        yield body.four_bar(pair, driven=1, chosen=chosen, steps=steps)

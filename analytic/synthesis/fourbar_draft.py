@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import cmath
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from analytic.synthesis.asked import AskedAngle, AskedPlace, PrecisionPosition
@@ -31,28 +30,30 @@ class CarriedBody:
     def four_bar(
         self,
         dyads: tuple[Dyad, Dyad],
+        driven: int = 0,
         *,
         chosen: Mapping[str, str] | None = None,
         steps: Sequence[Step] = (),
     ) -> Proposal:
-        """The four-bar whose coupler the body is, held by two dyads: the first is driven."""
-        first, second = dyads
+        """The four-bar whose coupler the body is, held by two dyads, the first of which stands on
+        O2; ``driven`` is which of them (0 or 1)."""
         pins = [self.letter(dyad.moving, which) for which, dyad in enumerate(dyads)]
-        own = {pins[0]: first.moving, pins[1]: second.moving, **self.points}
+        cranks = [
+            bar(pivot, pin, dyad.radius(self.poses))
+            for pivot, pin, dyad in zip(PIVOTS, pins, dyads, strict=True)
+        ]
+        own = {pin: dyad.moving for pin, dyad in zip(pins, dyads, strict=True)}
         draft = Draft(
             self.name,
             self.source,
-            {PIVOTS[0]: first.fixed, PIVOTS[1]: second.fixed},
-            {
-                INPUT: bar(PIVOTS[0], pins[0], first.radius(self.poses)),
-                COUPLER: plate(own),
-                OUTPUT: bar(PIVOTS[1], pins[1], second.radius(self.poses)),
-            },
+            {pivot: dyad.fixed for pivot, dyad in zip(PIVOTS, dyads, strict=True)},
+            {INPUT: cranks[driven], COUPLER: plate(own | dict(self.points)),
+             OUTPUT: cranks[1 - driven]},
             {},
-        )
-        turns = first.turns(self.poses)
-        positions = tuple(map(self.asked, turns, self.poses))
-        return Proposal(draft, INPUT, positions, dict(chosen or {}), tuple(steps))
+        )  # fmt: skip
+        positions = tuple(map(self.asked, dyads[driven].turns(self.poses), self.poses))
+        told = {**(chosen or {}), "driven at": PIVOTS[driven]}
+        return Proposal(draft, INPUT, positions, told, tuple(steps))
 
     def asked(self, driver_rad: float, pose: Pose) -> PrecisionPosition:
         """The body in a pose while the driver has an angle [rad]."""
@@ -64,9 +65,10 @@ class CarriedBody:
         for name, place in self.points.items():
             if place == moving:
                 return name
-        return [letter for letter in PINS if letter not in self.points][which]
+        return letters_beside(self.points, which + 1)[which]
 
 
-def angle_of(from_place: complex, to_place: complex) -> float:
-    """The direction from a place to another [rad]."""
-    return cmath.phase(to_place - from_place)
+def letters_beside(names: Iterable[str], count: int) -> list[str]:
+    """So many letters for pins that are not among the names."""
+    taken = set(names)
+    return [letter for letter in PINS if letter not in taken][:count]

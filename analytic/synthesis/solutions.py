@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from analytic.synthesis.coupler import coupler_proposals
 from analytic.synthesis.design import Proposal
 from analytic.synthesis.examine import Examined, examine, ranked
+from analytic.synthesis.rocker import rocker_proposals
+from analytic.synthesis.strokes import stroke_proposals
 from models.errors import CrankcheckError
-from models.tasks.coupler import CouplerTask, TaskTable
+from models.tasks.coupler import CouplerTask
+from models.tasks.rocker import RockerTask
+from models.tasks.stroke import StrokeTask
+from models.tasks.task import TaskTable
 
 
 @dataclass(frozen=True)
@@ -30,7 +34,7 @@ class Solutions:
 
 def solutions_of(task: TaskTable) -> Solutions:
     """Propose and examine. Raises CrankcheckError for a task without any mechanism."""
-    proposals, looked = PROPOSERS[type(task)](task)
+    proposals, looked = _proposals(task)
     examined, refused = [], []
     for proposal in proposals:
         try:
@@ -43,12 +47,11 @@ def solutions_of(task: TaskTable) -> Solutions:
     return Solutions(task, tuple(ranked(examined)), looked, tuple(refused))
 
 
-def _coupler(task: TaskTable) -> tuple[list[Proposal], int]:
-    assert isinstance(task, CouplerTask)
-    return coupler_proposals(task)
-
-
-PROPOSERS: Mapping[type[TaskTable], Callable[[TaskTable], tuple[list[Proposal], int]]] = {
-    CouplerTask: _coupler,
-}
-"""By the kind of a task, what proposes mechanisms for it, and how many it looked at."""
+def _proposals(task: TaskTable) -> tuple[list[Proposal], int]:
+    """What is proposed for a task, and how many were looked at to choose them."""
+    if isinstance(task, CouplerTask):
+        return coupler_proposals(task)
+    if isinstance(task, RockerTask):
+        return rocker_proposals(task)
+    assert isinstance(task, StrokeTask)
+    return stroke_proposals(task)

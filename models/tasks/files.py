@@ -7,10 +7,17 @@ from pathlib import Path
 
 from models.errors import CrankcheckError, suggestion
 from models.shipped_tables import find_table, read_table, shipped_in
-from models.tasks.coupler import CouplerTask, TaskTable
+from models.tasks.coupler import CouplerTask
+from models.tasks.rocker import RockerTask
+from models.tasks.stroke import StrokeTask
+from models.tasks.task import TaskTable
 
 TASKS = Path(__file__).parents[1] / "task_files"
-KINDS: Mapping[str, type[TaskTable]] = {"coupler": CouplerTask}
+KINDS: Mapping[str, type[TaskTable]] = {
+    "coupler": CouplerTask,
+    "rocker": RockerTask,
+    "stroke": StrokeTask,
+}
 """What can be asked for, and the table of its file."""
 
 

@@ -15,7 +15,7 @@ from models.array import Array
 from models.laws import Law, Oscillating
 from models.motion import Motion
 from models.scene import Scene
-from models.tasks.coupler import TaskTable
+from models.tasks.task import TaskTable
 from sim.run import run
 
 STEPS_PER_TURN = 720.0

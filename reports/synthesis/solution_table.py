@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 
 from analytic.synthesis.examine import Examined
-from models.tasks.coupler import TaskTable
+from models.tasks.task import TaskTable
 from reports.output.columns import plain_table
 
 if TYPE_CHECKING:

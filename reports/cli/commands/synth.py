@@ -10,8 +10,8 @@ from rich.console import Console
 from analytic.synthesis.examine import Examined
 from analytic.synthesis.solutions import Solutions, solutions_of
 from models.errors import CrankcheckError
-from models.tasks.coupler import TaskTable
 from models.tasks.files import find_task, load_task, shipped_tasks
+from models.tasks.task import TaskTable
 from reports.cli.synthesising import SynthRequest
 from reports.output.columns import plain_table
 from reports.output.frame_file import csv

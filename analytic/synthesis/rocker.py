@@ -1,0 +1,157 @@
+"""A crank-rocker for a rocker's swing: by its angle, or between two positions of a body on it."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from analytic.synthesis.asked import Asked, AskedAngle, AskedPlace, PrecisionPosition
+from analytic.synthesis.construction import Circle, Dot, Segment, Step
+from analytic.synthesis.design import Proposal
+from analytic.synthesis.fourbar_draft import letters_beside
+from analytic.synthesis.pose import Pose, bisector, pole, refuse_coinciding, turn_between
+from analytic.synthesis.to_and_fro import ToAndFro, choices
+from models.draft import Draft, bar, plate
+from models.errors import CrankcheckError
+from models.tasks.rocker import RockerTask
+
+O2, O4 = "O2", "O4"
+
+
+@dataclass(frozen=True)
+class Swung:
+    """A rocker in two positions: its pivot, its pin in both, its own angles, the points of it in
+    its own frame (O4 at its origin), how it is drawn."""
+
+    pivot: complex
+    ends: tuple[complex, complex]
+    poses: tuple[Pose, Pose]
+    points: Mapping[str, complex]
+    steps: tuple[Step, ...]
+
+
+def rocker_proposals(task: RockerTask) -> tuple[list[Proposal], int]:
+    """The crank-rockers of a task, and how many there are.
+
+    Raises
+    ------
+    CrankcheckError
+        Positions that coincide, or whose pole is at infinity; a crank's pivot between the ends.
+    """
+    swung = _by_positions(task) if task.positions else _by_angle(task)
+    crank = 0.5 * abs(swung.ends[1] - swung.ends[0])
+    found = [
+        _proposal(task, swung, distance, beyond)
+        for distance in choices(crank, task.distance_m)
+        for beyond in (2, 1)
+    ]
+    return found, len(found)
+
+
+def _by_angle(task: RockerTask) -> Swung:
+    """O4 at the origin, the rocker's ends on either side of the y-axis."""
+    assert task.swing_deg is not None
+    assert task.rocker_m is not None
+    half = math.radians(0.5 * task.swing_deg)
+    angles = (0.5 * math.pi + half, 0.5 * math.pi - half)
+    one, other = (cmath.rect(task.rocker_m, angle) for angle in angles)
+    step = Step(
+        f"the rocker O4 B in its end positions, {task.swing_deg:g} deg apart",
+        (
+            Dot(0j, O4, "given", fixed=True),
+            Segment(0j, one, "given"),
+            Segment(0j, other, "given"),
+            Dot(one, "B1", "given"),
+            Dot(other, "B2", "given"),
+        ),
+    )
+    poses = (Pose(0j, angles[0]), Pose(0j, angles[1]))
+    return Swung(0j, (one, other), poses, {}, (step,))
+
+
+def _by_positions(task: RockerTask) -> Swung:
+    """The rotopole of the two positions is O4; B lies on the line from it to the first point."""
+    first, second = (Pose(point, angle) for point, angle in task.body.poses)
+    own = task.body.own_points
+    size = abs(second.point - first.point) + max(map(abs, own.values()))
+    refuse_coinciding((first, second), size)
+    pivot = pole(first, second)
+    if pivot is None:
+        across = math.degrees(cmath.phase(1j * (second.point - first.point))) % 180.0
+        raise CrankcheckError(
+            f"{task.name}: the body is moved without being turned, so its pole is at infinity, "
+            f"along {across:.4g} deg: no rocker does that; a coupler can (`crankcheck synth "
+            "coupler`)"
+        )
+    letter, place = next(
+        (name, place) for name, place in own.items() if abs(first.at(place) - pivot) > 1e-9 * size
+    )
+    arm = (first.at(place) - pivot) / abs(first.at(place) - pivot)
+    radius = task.rocker_m or abs(first.at(place) - pivot)
+    turn = cmath.exp(1j * turn_between(first, second))
+    ends = (pivot + radius * arm, pivot + radius * arm * turn)
+    # The rocker's own frame: O4 at its origin, B on its x-axis.
+    poses = (Pose(pivot, cmath.phase(arm)), Pose(pivot, cmath.phase(arm * turn)))
+    points = {name: poses[0].back(first.at(each)) for name, each in own.items()}
+    elements = [
+        Segment(bisector(a, b).middle, pivot, beyond=0.15)
+        for a, b in ((first.at(z), second.at(z)) for z in own.values())
+        if a != b
+    ]
+    dots = [
+        Dot(pose.at(each), f"{name}{number}", "given")
+        for number, pose in enumerate((first, second), 1)
+        for name, each in own.items()
+    ]
+    steps = (
+        Step("the body in its two positions", tuple(dots)),
+        Step(
+            f"the bisectors of {' and '.join(f'{n}1{n}2' for n in own)} meet in the rotopole O4",
+            (*elements, Dot(pivot, O4, "result", fixed=True)),
+        ),
+        Step(
+            f"B on the line from O4 to {letter}1, and on the same arc in position 2",
+            (
+                Circle(pivot, radius),
+                Segment(pivot, ends[0]),
+                Segment(pivot, ends[1]),
+                Dot(ends[0], "B1"),
+                Dot(ends[1], "B2"),
+            ),
+        ),
+    )
+    return Swung(pivot, ends, poses, points, steps)
+
+
+def _proposal(task: RockerTask, swung: Swung, distance_m: float, beyond: int) -> Proposal:
+    """The crank-rocker with O2 so far from the chord's middle, beyond B1 or B2."""
+    found = ToAndFro.of(*swung.ends, distance_m, beyond=beyond)
+    crank_pin, rocker_pin = letters_beside(swung.points, 2)
+    radius = abs(swung.ends[0] - swung.pivot)
+    own = {O4: 0j, rocker_pin: complex(radius), **swung.points}
+    draft = Draft(
+        task.name,
+        task.source,
+        {O2: found.pivot, O4: swung.pivot},
+        {
+            "crank": bar(O2, crank_pin, found.crank_m),
+            "coupler": bar(crank_pin, rocker_pin, found.coupler_m),
+            "rocker": plate(own) if swung.points else bar(O4, rocker_pin, radius),
+        },
+        {},
+    )
+    positions = tuple(
+        PrecisionPosition(angle, _asked(swung, pose))
+        for angle, pose in zip(found.angles, swung.poses, strict=True)
+    )
+    steps = (*swung.steps, *found.steps(swung.ends, (O2, crank_pin, rocker_pin)))
+    links = Step("the rocker", (Segment(swung.pivot, swung.ends[0], "result"),))
+    told = {"O2 from the chord's middle": f"{distance_m:.6g} m", "beyond": f"B{beyond}"}
+    return Proposal(draft, "crank", positions, told, (*steps, links))
+
+
+def _asked(swung: Swung, pose: Pose) -> tuple[Asked, ...]:
+    places = (AskedPlace(name, pose.at(place)) for name, place in swung.points.items())
+    return (AskedAngle("rocker", pose.angle), *places)
