@@ -119,6 +119,7 @@ def examine(proposal: Proposal) -> Examined:
         _off(scene, each) if on else _off(_at(circuits, place), each)
         for each, place, on in zip(positions, places, on_arc, strict=True)
     )
+    defect, off = _through_change_points(circuits, scene, positions, defect, off)
     kind = grashof_of(scene)
     return Examined(
         proposal,
@@ -132,6 +133,24 @@ def examine(proposal: Proposal) -> Examined:
         _extent(motion),
         off,
     )
+
+
+def _through_change_points(
+    circuits: Circuits,
+    scene: Scene,
+    positions: Sequence[PrecisionPosition],
+    defect: Defect,
+    off: tuple[float, ...],
+) -> tuple[Defect, tuple[float, ...]]:
+    """Branches that meet in change points are one where the motion goes smoothly on through them:
+    the defect, and how far each position is off, of the reference on its way."""
+    if defect not in ("branch", "circuit") or not circuits.change_points:
+        return defect, off
+    try:
+        own = tuple(_off(scene, each) for each in positions)
+    except CrankcheckError:
+        return defect, off
+    return ("none", own) if max(own) <= UNMET else (defect, off)
 
 
 def _turning(link: str, start_rad: float, speed_rad_s: float) -> Table:

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from analytic.synthesis.coupler import coupler_proposals
 from analytic.synthesis.design import Proposal
 from analytic.synthesis.examine import Examined, examine, ranked
+from analytic.synthesis.quick_return import quick_return_proposals
 from analytic.synthesis.rocker import rocker_proposals
 from analytic.synthesis.strokes import stroke_proposals
 from models.errors import CrankcheckError
 from models.tasks.coupler import CouplerTask
+from models.tasks.quick_return import QuickReturnTask
 from models.tasks.rocker import RockerTask
 from models.tasks.stroke import StrokeTask
 from models.tasks.task import TaskTable
@@ -53,5 +55,7 @@ def _proposals(task: TaskTable) -> tuple[list[Proposal], int]:
         return coupler_proposals(task)
     if isinstance(task, RockerTask):
         return rocker_proposals(task)
+    if isinstance(task, QuickReturnTask):
+        return quick_return_proposals(task)
     assert isinstance(task, StrokeTask)
     return stroke_proposals(task)

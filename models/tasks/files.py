@@ -8,6 +8,7 @@ from pathlib import Path
 from models.errors import CrankcheckError, suggestion
 from models.shipped_tables import find_table, read_table, shipped_in
 from models.tasks.coupler import CouplerTask
+from models.tasks.quick_return import QuickReturnTask
 from models.tasks.rocker import RockerTask
 from models.tasks.stroke import StrokeTask
 from models.tasks.task import TaskTable
@@ -17,6 +18,7 @@ KINDS: Mapping[str, type[TaskTable]] = {
     "coupler": CouplerTask,
     "rocker": RockerTask,
     "stroke": StrokeTask,
+    "quick-return": QuickReturnTask,
 }
 """What can be asked for, and the table of its file."""
 
