@@ -23,13 +23,15 @@ O2, O4 = "O2", "O4"
 @dataclass(frozen=True)
 class Swung:
     """A rocker in two positions: its pivot, its pin in both, its own angles, the points of it in
-    its own frame (O4 at its origin), how it is drawn."""
+    its own frame (O4 at its origin), how it is drawn; ``pin`` is the point that is the pin, if one
+    is."""
 
     pivot: complex
     ends: tuple[complex, complex]
     poses: tuple[Pose, Pose]
     points: Mapping[str, complex]
     steps: tuple[Step, ...]
+    pin: str = ""
 
 
 def rocker_proposals(task: RockerTask) -> tuple[list[Proposal], int]:
@@ -89,12 +91,17 @@ def _by_positions(task: RockerTask) -> Swung:
         (name, place) for name, place in own.items() if abs(first.at(place) - pivot) > 1e-9 * size
     )
     arm = (first.at(place) - pivot) / abs(first.at(place) - pivot)
-    radius = task.rocker_m or abs(first.at(place) - pivot)
+    arm_m = abs(first.at(place) - pivot)
+    radius = task.rocker_m or arm_m
+    is_pin = abs(radius - arm_m) <= 1e-9 * arm_m
+    pin = letter if is_pin else letters_beside(own, 2)[1]
     turn = cmath.exp(1j * turn_between(first, second))
     ends = (pivot + radius * arm, pivot + radius * arm * turn)
     # The rocker's own frame: O4 at its origin, B on its x-axis.
     poses = (Pose(pivot, cmath.phase(arm)), Pose(pivot, cmath.phase(arm * turn)))
     points = {name: poses[0].back(first.at(each)) for name, each in own.items()}
+    if is_pin:
+        points[letter] = complex(radius)
     elements = [
         Segment(bisector(a, b).middle, pivot, beyond=0.15)
         for a, b in ((first.at(z), second.at(z)) for z in own.values())
@@ -112,23 +119,24 @@ def _by_positions(task: RockerTask) -> Swung:
             (*elements, Dot(pivot, O4, "result", fixed=True)),
         ),
         Step(
-            f"B on the line from O4 to {letter}1, and on the same arc in position 2",
+            f"{pin} on the line from O4 to {letter}1, and on the same arc in position 2",
             (
                 Circle(pivot, radius),
                 Segment(pivot, ends[0]),
                 Segment(pivot, ends[1]),
-                Dot(ends[0], "B1"),
-                Dot(ends[1], "B2"),
+                Dot(ends[0], f"{pin}1"),
+                Dot(ends[1], f"{pin}2"),
             ),
         ),
     )
-    return Swung(pivot, ends, poses, points, steps)
+    return Swung(pivot, ends, poses, points, steps, pin if is_pin else "")
 
 
 def _proposal(task: RockerTask, swung: Swung, distance_m: float, beyond: int) -> Proposal:
     """The crank-rocker with O2 so far from the chord's middle, beyond B1 or B2."""
     found = ToAndFro.of(*swung.ends, distance_m, beyond=beyond)
-    crank_pin, rocker_pin = letters_beside(swung.points, 2)
+    crank_pin, free = letters_beside(swung.points, 2)
+    rocker_pin = swung.pin or free
     radius = abs(swung.ends[0] - swung.pivot)
     own = {O4: 0j, rocker_pin: complex(radius), **swung.points}
     draft = Draft(
@@ -148,7 +156,7 @@ def _proposal(task: RockerTask, swung: Swung, distance_m: float, beyond: int) ->
     )
     steps = (*swung.steps, *found.steps(swung.ends, (O2, crank_pin, rocker_pin)))
     links = Step("the rocker", (Segment(swung.pivot, swung.ends[0], "result"),))
-    told = {"O2 from the chord's middle": f"{distance_m:.6g} m", "beyond": f"B{beyond}"}
+    told = {"O2 from the chord's middle": f"{distance_m:.6g} m", "beyond": f"{rocker_pin}{beyond}"}
     return Proposal(draft, "crank", positions, told, (*steps, links))
 
 

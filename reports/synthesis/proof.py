@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from analytic.kinematics import solve
 from analytic.synthesis.asked import Asked, AskedAngle, AskedPlace
 from analytic.synthesis.examine import Examined
+from analytic.synthesis.passing import passing_times
 from models.array import Array
 from models.laws import Law, Oscillating
 from models.motion import Motion
@@ -81,19 +82,6 @@ def by_reference(examined: Examined, task: TaskTable) -> list[Met]:
     at_s = passing_times(examined.scene.driver.law, [p.driver_rad for p in examined.positions])
     motion = solve(examined.scene, at_s, bound=False)
     return list(_met(examined, task, "reference", "", motion, ""))
-
-
-def passing_times(law: Law, angles: Sequence[float]) -> Array:
-    """When a driver has angles [rad], one after the other [s]: in the first turn and those after
-    it, or in the first whole swing from end to end that leads through them in their order."""
-    theta = np.asarray(angles)
-    if isinstance(law, Oscillating):
-        rising = len(angles) < 2 or theta[-1] >= theta[0]
-        phase = np.arcsin(np.clip((theta - law.centre_rad) / law.amplitude_rad, -1.0, 1.0))
-        phase = phase + math.tau if rising else math.pi - phase
-        return np.asarray((phase - law.phase_rad) / law.frequency_rad_s)
-    start, speed, _ = (float(each[0]) for each in law.at(np.zeros(1)))
-    return np.asarray((theta - start) / speed)
 
 
 def _pace(law: Law) -> float:

@@ -1,0 +1,153 @@
+"""Random tasks of every kind, by their number: each has a mechanism."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from models.tasks.coupler import CouplerTask
+from models.tasks.quick_return import QuickReturnTask
+from models.tasks.rocker import RockerTask
+from models.tasks.stroke import StrokeTask
+from models.tasks.task import TaskTable
+
+Draw = np.random.Generator
+HEAD = {"name": "random", "source": "a test"}
+
+
+def _place(draw: Draw, size: float = 1.0) -> list[float]:
+    return [float(x) for x in draw.uniform(-size, size, 2)]
+
+
+def _poses(draw: Draw, count: int) -> list[dict[str, object]]:
+    """A body that goes on, and turns one way by up to 50 degrees at a time."""
+    way = np.cumsum(draw.uniform(0.1, 0.5, (count, 2)) * [1.0, draw.uniform(-1.0, 1.0)], axis=0)
+    turns = np.cumsum(draw.uniform(5.0, 50.0, count)) * draw.choice([-1.0, 1.0])
+    return [
+        {"point_m": [float(x), float(y)], "angle_deg": float(turn)}
+        for (x, y), turn in zip(way, turns, strict=True)
+    ]
+
+
+def two_positions(draw: Draw) -> TaskTable:
+    distances = draw.uniform(0.3, 2.0, 2) * draw.choice([-1.0, 1.0], 2)
+    return CouplerTask(
+        **HEAD,
+        positions=_poses(draw, 2),
+        moving_m=(tuple(_place(draw)), tuple(_place(draw))),
+        distances_m=(float(distances[0]), float(distances[1])),
+    )
+
+
+def three_positions(draw: Draw) -> TaskTable:
+    moving = (tuple(_place(draw)), tuple(_place(draw)))
+    return CouplerTask(**HEAD, positions=_poses(draw, 3), moving_m=moving)
+
+
+def given_pivots(draw: Draw) -> TaskTable:
+    fixed = (tuple(_place(draw)), tuple(_place(draw)))
+    return CouplerTask(**HEAD, positions=_poses(draw, 3), fixed_m=fixed)
+
+
+def four_positions(draw: Draw) -> TaskTable:
+    return CouplerTask(**HEAD, positions=_poses(draw, 4))
+
+
+def five_positions(draw: Draw) -> TaskTable:
+    """Positions of the coupler of a four-bar, so that there are two cranks for them at least."""
+    a, b, c, d = draw.uniform(0.3, 1.5, 4)
+    while not abs(b - c) < abs(a - d) or not a + d < b + c:
+        a, b, c, d = draw.uniform(0.3, 1.5, 4)
+    start, steps = draw.uniform(0.0, math.tau), np.cumsum(draw.uniform(0.2, 0.9, 5))
+    own = complex(*draw.uniform(-0.5, 0.5, 2))
+    poses = []
+    for theta in start + steps:
+        pin = a * np.exp(1j * theta)
+        arm = d - pin
+        cosine = (abs(arm) ** 2 + b**2 - c**2) / (2.0 * abs(arm) * b)
+        along = arm / abs(arm) * np.exp(1j * math.acos(cosine))
+        place = pin + along * own
+        angle = math.degrees(float(np.angle(along)))
+        poses.append({"point_m": [float(place.real), float(place.imag)], "angle_deg": angle})
+    return CouplerTask(**HEAD, positions=poses)
+
+
+def driving_dyad(draw: Draw) -> TaskTable:
+    task = two_positions(draw).model_dump()
+    return CouplerTask(**{**task, "driving_dyad": True})
+
+
+def rocker_by_angle(draw: Draw) -> TaskTable:
+    swing, rocker = float(draw.uniform(10.0, 150.0)), float(draw.uniform(0.05, 1.0))
+    factor = float(draw.uniform(1.2, 5.0))
+    distance = rocker * math.sin(math.radians(0.5 * swing)) * factor
+    return RockerTask(**HEAD, swing_deg=swing, rocker_m=rocker, distance_m=distance)
+
+
+def rocker_by_positions(draw: Draw) -> TaskTable:
+    return RockerTask(**HEAD, positions=_poses(draw, 2))
+
+
+def central(draw: Draw) -> TaskTable:
+    stroke = float(draw.uniform(0.01, 1.0))
+    return StrokeTask(**HEAD, stroke_m=stroke, rod_m=stroke * float(draw.uniform(0.6, 4.0)))
+
+
+def offset(draw: Draw) -> TaskTable:
+    stroke = float(draw.uniform(0.01, 1.0))
+    beside = stroke * float(draw.uniform(0.05, 1.0))
+    rod = (stroke + beside) * float(draw.uniform(1.1, 4.0))
+    return StrokeTask(**HEAD, stroke_m=stroke, form="offset", rod_m=rod, offset_m=beside)
+
+
+def stroke_and_ratio(draw: Draw) -> TaskTable:
+    stroke, ratio = float(draw.uniform(0.01, 1.0)), float(draw.uniform(1.05, 2.5))
+    return StrokeTask(**HEAD, stroke_m=stroke, form="offset", time_ratio=ratio)
+
+
+def slotted_lever(draw: Draw) -> TaskTable:
+    ratio, stroke = float(draw.uniform(1.1, 5.0)), float(draw.uniform(0.05, 1.0))
+    return QuickReturnTask(**HEAD, mechanism="slotted-lever", time_ratio=ratio, stroke_m=stroke)
+
+
+def whitworth(draw: Draw) -> TaskTable:
+    ratio, crank = float(draw.uniform(1.1, 5.0)), float(draw.uniform(0.05, 1.0))
+    return QuickReturnTask(**HEAD, mechanism="whitworth", time_ratio=ratio, crank_m=crank)
+
+
+def crank_rocker(draw: Draw) -> TaskTable:
+    return QuickReturnTask(
+        **HEAD,
+        mechanism="crank-rocker",
+        time_ratio=float(draw.uniform(1.05, 1.5)),
+        rocker_m=float(draw.uniform(0.05, 1.0)),
+        swing_deg=float(draw.uniform(20.0, 90.0)),
+    )
+
+
+TASKS: Mapping[str, Callable[[Draw], TaskTable]] = {
+    each.__name__: each
+    for each in (
+        two_positions,
+        three_positions,
+        given_pivots,
+        four_positions,
+        five_positions,
+        driving_dyad,
+        rocker_by_angle,
+        rocker_by_positions,
+        central,
+        offset,
+        stroke_and_ratio,
+        slotted_lever,
+        whitworth,
+        crank_rocker,
+    )
+}
+
+
+def random_task(kind: str, number: int) -> TaskTable:
+    """The task of a number."""
+    return TASKS[kind](np.random.default_rng([19, list(TASKS).index(kind), number]))
