@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.array import Array
 from models.motion import Motion
@@ -18,6 +19,10 @@ class AskedAngle:
 
     link: str
     angle: float
+
+    def value(self, motion: Motion) -> NDArray[np.complex128]:
+        """Where a motion has it, as a turn exp(i angle), (T,)."""
+        return np.asarray(np.exp(1j * motion.links[self.link].theta))
 
     def off(self, motion: Motion) -> Array:
         """How far a motion is from it [rad], (T,), with its sign."""
@@ -32,6 +37,11 @@ class AskedPlace:
     point: str
     place: complex
 
+    def value(self, motion: Motion) -> NDArray[np.complex128]:
+        """Where a motion has it [m], (T,)."""
+        place = motion.points[self.point].position
+        return np.asarray(place[:, 0] + 1j * place[:, 1])
+
     def off(self, motion: Motion) -> Array:
         """How far a motion is from it [m], (T,)."""
         way = motion.points[self.point].position - (self.place.real, self.place.imag)
@@ -44,6 +54,10 @@ class AskedSlide:
 
     slider: str
     displacement: float
+
+    def value(self, motion: Motion) -> NDArray[np.complex128]:
+        """Where a motion has it [m], (T,)."""
+        return motion.sliders[self.slider].displacement.astype(complex)
 
     def off(self, motion: Motion) -> Array:
         """How far a motion is from it [m], (T,), with its sign."""

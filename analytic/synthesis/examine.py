@@ -25,7 +25,7 @@ from analytic.mechanism.grashof_of_scene import grashof_of
 from analytic.synthesis.asked import PrecisionPosition, names_of
 from analytic.synthesis.design import Proposal
 from models.array import Array
-from models.draft import SPEED_RAD_S
+from models.draft import SPEED_RAD_S, Draft
 from models.errors import CrankcheckError, ReachError
 from models.laws import ConstantSpeed, Law, Oscillating
 from models.motion import Motion
@@ -57,7 +57,7 @@ class Examined:
 
     proposal: Proposal
     scene: Scene
-    text: str
+    draft: Draft
     positions: tuple[PrecisionPosition, ...]
     defect: Defect
     turns_fully: bool
@@ -65,6 +65,11 @@ class Examined:
     least_sine: float
     extent_m: float
     off: tuple[float, ...]
+
+    @property
+    def text(self) -> str:
+        """The file of the scene."""
+        return self.draft.text
 
     @property
     def least_transmission_rad(self) -> float:
@@ -124,7 +129,7 @@ def examine(proposal: Proposal) -> Examined:
     return Examined(
         proposal,
         scene,
-        draft.text,
+        draft,
         positions,
         defect,
         arc.low is None,

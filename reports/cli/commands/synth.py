@@ -8,6 +8,7 @@ from pathlib import Path
 from rich.console import Console
 
 from analytic.synthesis.examine import Examined
+from analytic.synthesis.sensitivity import monte_carlo, sensitivity
 from analytic.synthesis.solutions import Solutions, solutions_of
 from models.errors import CrankcheckError
 from models.tasks.files import find_task, load_task, shipped_tasks
@@ -19,13 +20,16 @@ from reports.output.numbers import count
 from reports.output.provenance import provenance
 from reports.output.write import check_folder, write
 from reports.plan.chosen import chosen_engines, chosen_profiles
-from reports.synthesis.proof import Met, by_reference, proven
+from reports.synthesis.proof import Met, by_reference, limit_of, proven
 from reports.synthesis.proof_table import proof_frame, proof_table
+from reports.synthesis.sensitivity_table import clearance_in_words, sensitivity_table
 from reports.synthesis.solution_table import solution_frame, solution_table
 from sim.registry import engine
 
 Proofs = Mapping[int, Sequence[Met]]
 FRAME, PROOF = "solutions.csv", "proof.csv"
+SAMPLES = 1000
+"""Mechanisms of the Monte Carlo: two seconds."""
 
 
 def run_synth(request: SynthRequest, console: Console) -> int:
@@ -43,6 +47,8 @@ def run_synth(request: SynthRequest, console: Console) -> int:
     _say(console, f"{task.name}: {task.source}")
     _say(console, _counted(solutions, listed))
     console.print("", solution_table(listed, task), sep="\n")
+    if request.vary_m is not None:
+        _show_sensitivity(console, solutions, task, request.vary_m)
     proofs = {
         number: [
             *by_reference(one, task),
@@ -92,6 +98,21 @@ def _counted(solutions: Solutions, listed: Sequence[Examined]) -> str:
     if solutions.refused:
         told += f"; {len(solutions.refused)} are none ({solutions.refused[0]})"
     return told + (f"; the best {len(listed)} listed" if len(listed) < many else "")
+
+
+def _show_sensitivity(
+    console: Console, solutions: Solutions, task: TaskTable, tolerance_m: float
+) -> None:
+    """What tolerances and clearances do to the best solution."""
+    if not solutions.sound:
+        _say(console, "\nno sensitivity: no solution is without a defect")
+        return
+    best = solutions.sound[0]
+    limits = [limit_of(one, best.scene, task) for p in best.positions for one in p.asked]
+    slopes = sensitivity(best)
+    spread = monte_carlo(best, tolerance_m, limits, SAMPLES)
+    console.print("", sensitivity_table(slopes, limits, tolerance_m, spread), sep="\n")
+    _say(console, clearance_in_words(slopes, limits, spread))
 
 
 def _show_proof(
