@@ -184,7 +184,7 @@ def _sheet(
         det = x * a[one] - y * a[lead]
         v = (d[lead] * a[one] - d[one] * a[lead]) / det
         m = (x * d[one] - y * d[lead]) / det
-    w = v + m
+        w = v + m
     good = np.isfinite(w) & np.isfinite(m) & (np.abs(det) > 1e-9)
     pieces: list[list[Dyad]] = [[]]
     for place, centre, is_one in zip(w, m, good, strict=True):

@@ -24,10 +24,12 @@ from models.tasks.coupler import CouplerTask
 DISTANCES = (0.5, 1.0, 2.0)
 """Of two positions, where a task is silent: fixed pivots so far from the middles of the ways, over
 the longest way, on either side."""
-CURVE_DYADS = 120
+CURVE_DYADS = 240
 """So many of Burmester's curves are paired with each other."""
 CHOSEN = 40
 """Pairs of four positions that are examined, the best transmitting in the positions first."""
+FALLEN_BACK = 3
+"""Pairs that are examined where all have a defect."""
 Pair = tuple[Dyad, Dyad]
 
 
@@ -124,9 +126,10 @@ def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
         )
     if curves:
         sound = sound_pairs(body.poses, dyads)
-        chosen = [(dyads[i], dyads[k]) for i, k in sound.pairs[:CHOSEN].tolist()]
+        count = min(CHOSEN, sound.sound) or FALLEN_BACK
+        chosen = [(dyads[i], dyads[k]) for i, k in sound.pairs[:count].tolist()]
         steps = tuple(curve_steps(body, curves))
-        return [body.four_bar(pair, steps=steps) for pair in chosen], sound.looked
+        return [body.four_bar(pair, steps=steps) for pair in chosen], len(sound.pairs)
     pairs = list(itertools.combinations(dyads, 2))
     proposals = [one for pair in pairs for one in _driven(task, body, pair, {})]
     return proposals, len(proposals)

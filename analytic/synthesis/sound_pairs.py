@@ -18,16 +18,16 @@ from models.array import Array
 
 @dataclass(frozen=True)
 class SoundPairs:
-    """Pairs of dyads, driven at the first, (K, 2), the best transmitting first; ``looked`` is how
-    many there were."""
+    """All pairs of dyads, driven at the first, (K, 2): those without a defect first, ``sound`` of
+    them, the best transmitting before others."""
 
     pairs: NDArray[np.intp]
-    looked: int
+    sound: int
 
 
 def sound_pairs(poses: Sequence[Pose], dyads: Sequence[Dyad]) -> SoundPairs:
-    """The pairs whose first crank leads through the poses in order, in one assembly, ordered by the
-    least sine of the transmission angle in the poses."""
+    """The pairs, those first whose first crank leads through the poses in order and in one
+    assembly; each part by the least sine of the transmission angle in the poses."""
     fixed = np.array([dyad.fixed for dyad in dyads])
     own = np.array([dyad.moving for dyad in dyads])
     places = np.array([[pose.at(dyad.moving) for dyad in dyads] for pose in poses])
@@ -44,9 +44,9 @@ def sound_pairs(poses: Sequence[Pose], dyads: Sequence[Dyad]) -> SoundPairs:
     angles = np.angle(crank)
     sound = same_sign & np.where(turns, _in_turn(angles), _in_swing(angles, a, coupler, c, d))
     sound &= np.isfinite(sine).all(axis=0)
-    least = np.where(sound, np.min(sine, axis=0), -1.0)
-    order = np.argsort(-least, kind="stable")[: int(np.count_nonzero(sound))]
-    return SoundPairs(np.stack([i[order], k[order]], axis=1), len(i))
+    least = np.nan_to_num(np.min(sine, axis=0), nan=-1.0) + 2.0 * sound
+    order = np.argsort(-least, kind="stable")
+    return SoundPairs(np.stack([i[order], k[order]], axis=1), int(np.count_nonzero(sound)))
 
 
 def _cross(one: NDArray[np.complex128], other: NDArray[np.complex128]) -> Array:
