@@ -25,6 +25,7 @@ class Draft:
     sliders: Mapping[str, Table] = field(default_factory=dict)
     branch: Mapping[str, int] = field(default_factory=dict)
     note: str = ""
+    loads: Mapping[str, Table] = field(default_factory=dict)
 
     def driven(self, driver: Table) -> Draft:
         """The same with another table of the driver."""
@@ -44,6 +45,8 @@ class Draft:
         heads["driver"] = self.driver
         if self.branch:
             heads["branch"] = self.branch
+        if self.loads:
+            heads["loads"] = self.loads
         lines = [f"name = {toml_value(self.name)}", f"source = {toml_value(self.source)}"]
         lines += [f"note = {toml_value(self.note)}"] * bool(self.note)
         for head, table in heads.items():

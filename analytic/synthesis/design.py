@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from analytic.synthesis.asked import PrecisionPosition
 from analytic.synthesis.construction import Step
-from models.draft import Draft
+from models.draft import SPEED_RAD_S, Draft
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Proposal:
 
     ``chosen`` are the numbers that the task left open, in words and SI units; ``steps`` draw how
     the rest was found. ``doubt`` is what a task gave up where it could not be met as asked.
-    ``full`` is whether the driver has to turn fully, and be examined over a whole turn.
+    ``speed_rad_s`` is the driver's, or the circular frequency of one that swings.
     """
 
     draft: Draft
@@ -26,3 +26,4 @@ class Proposal:
     chosen: Mapping[str, str] = field(default_factory=dict)
     steps: tuple[Step, ...] = ()
     doubt: str = ""
+    speed_rad_s: float = SPEED_RAD_S

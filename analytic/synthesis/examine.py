@@ -20,6 +20,7 @@ import numpy as np
 
 from analytic.circuits.arcs import Arc
 from analytic.circuits.circuits import Circuits, Defect, Position, circuits_of
+from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve_driven
 from analytic.mechanism.grashof_of_scene import grashof_of
 from analytic.synthesis.asked import PrecisionPosition, names_of
@@ -51,7 +52,8 @@ class Examined:
     ``positions`` have the driver's angles [rad] as the scene's law goes through them, whole turns
     counted. ``least_sine`` is the least sine of a transmission angle, or what stands for it in
     other dyads, over the way of the driver; ``extent_m`` the larger side of the box that all named
-    points stay in. ``off`` is how far the reference is from each position (angles in rad, lengths
+    points stay in. ``torque_n_m`` is the largest driving torque under the loads, or None
+    without any; ``off`` how far the reference is from each position (angles in rad, lengths
     over the size).
     """
 
@@ -65,6 +67,7 @@ class Examined:
     least_sine: float
     extent_m: float
     off: tuple[float, ...]
+    torque_n_m: float | None = None
 
     @property
     def text(self) -> str:
@@ -100,8 +103,8 @@ def examine(proposal: Proposal) -> Examined:
     CrankcheckError
         Lengths that make no mechanism, or one that can not be assembled in its first position.
     """
-    first = proposal.positions[0].driver_rad
-    scene = proposal.draft.driven(_turning(proposal.driver, first, SPEED_RAD_S)).scene
+    first, speed = proposal.positions[0].driver_rad, proposal.speed_rad_s
+    scene = proposal.draft.driven(_turning(proposal.driver, first, speed)).scene
     circuits = circuits_of(scene)
     places = [_place_of(circuits, each) for each in proposal.positions]
     _, arc = circuits.place(places[0])
@@ -110,7 +113,7 @@ def examine(proposal: Proposal) -> Examined:
     on_arc = [arc.signs == p.signs and arc.holds(p.driver_rad, MARGIN / 100) for p in places]
     angles = _unwrapped(arc, [position.driver_rad for position in proposal.positions])
     own = [angle for angle, on in zip(angles, on_arc, strict=True) if on]
-    driver = _driver(proposal.driver, arc, own)
+    driver = _driver(proposal.driver, arc, own, speed)
     draft = proposal.draft.driven(driver).with_branch(branch)
     scene = draft.scene
     positions = tuple(
@@ -137,6 +140,7 @@ def examine(proposal: Proposal) -> Examined:
         sine,
         _extent(motion),
         off,
+        _largest_torque(scene) if scene.loads else None,
     )
 
 
@@ -223,12 +227,12 @@ def _unwrapped(arc: Arc, angles: Sequence[float]) -> list[float]:
     return [angles[0] + sense * way for way in itertools.accumulate(ways, initial=0.0)]
 
 
-def _driver(link: str, arc: Arc, angles: Sequence[float]) -> Table:
+def _driver(link: str, arc: Arc, angles: Sequence[float], speed: float) -> Table:
     """The table of a driver that goes through angles [rad] of its branch: at constant speed from
     the first on, or to and fro."""
     if arc.low is None:
         back = len(angles) > 1 and angles[-1] < angles[0]
-        return _turning(link, angles[0], -SPEED_RAD_S if back else SPEED_RAD_S)
+        return _turning(link, angles[0], -speed if back else speed)
     low, high = arc.range_rad
     least, most = min(angles), max(angles)
     least -= min(MARGIN, KEEP * max(least - low, 0.0))
@@ -238,7 +242,7 @@ def _driver(link: str, arc: Arc, angles: Sequence[float]) -> Table:
         "law": "oscillating",
         "centre_deg": math.degrees(0.5 * (least + most)),
         "amplitude_deg": math.degrees(0.5 * (most - least)),
-        "frequency_rad_s": SPEED_RAD_S,
+        "frequency_rad_s": speed,
     }
 
 
@@ -249,6 +253,13 @@ def _way(law: Law) -> Array:
         return np.linspace(law.centre_rad - swing, law.centre_rad + swing, LOOKS)
     start = float(law.at(np.zeros(1))[0][0])
     return np.linspace(start, start + math.tau, LOOKS)
+
+
+def _largest_torque(scene: Scene) -> float:
+    """Of the drive over the way of its law [N m], instants in dead points left out."""
+    time_s = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
+    acting = forces(scene, time_s, bound=False, skip_dead_points=True)
+    return float(np.nanmax(np.abs(acting.torque)))
 
 
 def _extent(motion: Motion) -> float:

@@ -69,7 +69,7 @@ class Sensitivity:
         (P,), the pins free to lie to any side; and which of them sets it."""
         joints: dict[str, list[int]] = {}
         for k, one in enumerate(self.dimensions):
-            if len(self.examined.scene.pins.get(one.point, ())) > 1:
+            if one.point in pinned(self.examined.scene):
                 joints.setdefault(one.point, []).append(k)
         effect = np.zeros(len(self.asked))
         for rows in joints.values():
@@ -135,12 +135,18 @@ def monte_carlo(
     return Spread(largest, within / count, count, lost)
 
 
+def pinned(scene: Scene) -> set[str]:
+    """The points in which two bodies meet, a slider's block one of them."""
+    shared = {name for name, bodies in scene.pins.items() if len(bodies) > 1}
+    return shared | {slider.point for slider in scene.sliders.values()}
+
+
 def is_measured(examined: Examined, one: Dimension) -> bool:
     """Whether a dimension is one of a drawing: of a bar its length, and not where a point lies that
     is asked for and holds nothing."""
     if one.body == "ground":
         return True
-    if len(examined.scene.pins[one.point]) == 1:
+    if one.point not in pinned(examined.scene):
         return False
     link = examined.draft.links[one.body]
     return "bar" not in link or (one.axis == 0 and one.point == list(_points_of(link))[1])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from analytic.synthesis.coupler import coupler_proposals
 from analytic.synthesis.design import Proposal
@@ -39,8 +39,9 @@ def solutions_of(task: TaskTable) -> Solutions:
     proposals, looked = _proposals(task)
     examined, refused = [], []
     for proposal in proposals:
+        draft = replace(proposal.draft, note=task.note, loads=task.loads)
         try:
-            examined.append(examine(proposal))
+            examined.append(examine(replace(proposal, draft=draft, speed_rad_s=task.speed_rad_s)))
         except CrankcheckError as error:
             refused.append(str(error))
     if not examined:

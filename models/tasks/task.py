@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import StringConstraints, model_validator
+from pydantic import Field, StringConstraints, model_validator
 
+from models.draft import SPEED_RAD_S
 from models.table_fields import Coordinates, Degrees, Name, Positive, Table, Text
 
+MOST_LOADS = 20
 Source = Annotated[Text, StringConstraints(min_length=1)]
 
 
@@ -35,7 +37,11 @@ class Region(Table):
 
 
 class TaskTable(Table):
-    """What every task has: its name, where it is from, and what its solutions are wanted to be."""
+    """What every task has: its name, where it is from, and what its solutions are wanted to be.
+
+    ``speed_rad_s`` is that of the driver, or the circular frequency of one that swings; ``loads``
+    are those of the scenes, on links by the names that solutions have.
+    """
 
     name: Name
     source: Source
@@ -44,3 +50,5 @@ class TaskTable(Table):
     tolerance_deg: Positive | None = None
     pivots_in: Region | None = None
     least_transmission_deg: Degrees | None = None
+    speed_rad_s: Positive = SPEED_RAD_S
+    loads: dict[Name, dict[str, object]] = Field(default_factory=dict, max_length=MOST_LOADS)

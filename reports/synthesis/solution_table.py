@@ -72,6 +72,7 @@ def solution_frame(every: Sequence[Examined], task: TaskTable) -> pd.DataFrame:
             "chosen": "; ".join(_chosen(one)),
             "remarks": "; ".join(remarks(one, task)),
             "largest_miss": max(one.off),
+            "largest_torque_n_m": one.torque_n_m,
         }
         row |= {f"driver_{k}_deg": angle for k, angle in enumerate(angles, 1)}
         for name, place in one.scene.ground.items():
@@ -85,4 +86,5 @@ def solution_frame(every: Sequence[Examined], task: TaskTable) -> pd.DataFrame:
 
 
 def _chosen(one: Examined) -> list[str]:
-    return [f"{name} {value}" for name, value in one.proposal.chosen.items()]
+    torque = [] if one.torque_n_m is None else [f"torque up to {one.torque_n_m:.4g} N m"]
+    return [f"{name} {value}" for name, value in one.proposal.chosen.items()] + torque

@@ -36,7 +36,12 @@ def solutions(rows: LegRows, number: int) -> Array:
     Where paths end badly the equations are multiplied by other complex numbers, which leads to the
     same ends by other paths; beside ends that lie close together Newton's method starts anew.
     """
-    equations, draw = system(rows), np.random.default_rng(1)
+    return finite_solutions(system(rows), number)
+
+
+def finite_solutions(equations: Sequence[Equation], number: int) -> Array:
+    """The same of four equations, of degree 1 in the first two unknowns and in the others."""
+    draw = np.random.default_rng(1)
     every = np.zeros((0, 4), complex)
     for attempt in range(8):
         factors = np.exp(1j * draw.uniform(0.0, math.tau, 4)) if attempt else np.ones(4)

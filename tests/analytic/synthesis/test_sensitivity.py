@@ -1,0 +1,74 @@
+"""Tolerances and clearances, against closed forms and against a Monte Carlo."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from analytic.synthesis.examine import Examined
+from analytic.synthesis.sensitivity import is_measured, monte_carlo, sensitivity
+from analytic.synthesis.solutions import solutions_of
+from models.tasks.files import load_task
+from models.tasks.stroke import StrokeTask
+
+
+def central(rod: float = 0.3) -> Examined:
+    task = StrokeTask(name="x", source="a test", stroke_m=0.1, rod_m=rod)
+    return solutions_of(task).examined[0]
+
+
+def test_slopes_of_a_central_slider_crank_are_known() -> None:
+    """At the ends of its stroke s = l +- r: a length goes in whole, the pivot's height not at
+    all."""
+    found = sensitivity(central())
+    slope = {one.words: abs(found.slopes[:, k]) for k, one in enumerate(found.dimensions)}
+    for words, value in {"crank A x": 1.0, "rod B x": 1.0, "ground O2 x": 1.0}.items():
+        assert slope[words] == pytest.approx([value, value], abs=1e-8)
+    assert slope["ground O2 y"] == pytest.approx([0.0, 0.0], abs=1e-6)
+    # The crank's pin moved across it: the rod is in line with the crank, the slider stays.
+    assert slope["crank A y"] == pytest.approx([0.0, 0.0], abs=1e-6)
+    assert found.worst(1e-4) == pytest.approx([3e-4, 3e-4], rel=1e-6)
+    assert found.usual(1e-4) == pytest.approx([math.sqrt(3.0) * 1e-4] * 2, rel=1e-6)
+
+
+def test_the_largest_clearance_is_that_of_all_joints_at_once() -> None:
+    clearance, row = sensitivity(central()).largest_clearance([3e-4, 6e-4])
+    assert clearance == pytest.approx(1e-4, rel=1e-6)  # three pins in line
+    assert row == 0
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [("coupler", "three-positions"), ("coupler", "driving-dyad"), ("quick-return", "whitworth")],
+)
+def test_a_monte_carlo_stays_within_the_worst_case_and_comes_near(kind: str, name: str) -> None:
+    one = solutions_of(load_task(kind, name)).examined[0]
+    found, small = sensitivity(one), 1e-6
+    worst = found.worst(small)
+    spread = monte_carlo(one, small, (0.3 * worst).tolist(), 200)
+    moves = worst > 1e-9
+    assert np.all(spread.largest <= worst * 1.001 + 1e-12)
+    assert np.all(spread.largest[moves] > 0.25 * worst[moves])
+    assert 0.0 < spread.share_within < 1.0
+    assert spread.lost == 0
+
+
+def test_the_same_seed_gives_the_same() -> None:
+    one = central()
+    first, second = (monte_carlo(one, 1e-4, [1e-4, 1e-4], 50) for _ in range(2))
+    assert first.largest.tolist() == second.largest.tolist()
+    other = monte_carlo(one, 1e-4, [1e-4, 1e-4], 50, seed=1)
+    assert other.largest.tolist() != first.largest.tolist()
+
+
+def test_mechanisms_that_can_not_be_assembled_are_counted() -> None:
+    one = solutions_of(load_task("coupler", "three-positions")).examined[0]
+    assert monte_carlo(one, 0.1, [1.0] * 9, 100).lost > 5
+
+
+def test_a_bar_has_one_length() -> None:
+    one = central()
+    measured = [d.words for d in sensitivity(one).dimensions if is_measured(one, d)]
+    assert measured == ["ground O2 x", "ground O2 y", "crank A x", "rod B x"]

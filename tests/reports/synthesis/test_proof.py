@@ -1,0 +1,111 @@
+"""The proof in engines: it sees what is not met, and says of what could not be run why."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve
+from analytic.synthesis.asked import AskedAngle, AskedPlace
+from analytic.synthesis.examine import Examined
+from analytic.synthesis.passing import passing_times
+from analytic.synthesis.solutions import solutions_of
+from models.laws import ConstantSpeed, Oscillating
+from models.tasks.files import load_task, shipped_tasks
+from models.tasks.task import TaskTable
+from reports.synthesis.proof import by_reference, proven
+
+EVERY = [(kind, name) for kind, names in shipped_tasks().items() for name in names]
+
+
+def best(kind: str, name: str) -> tuple[Examined, TaskTable]:
+    task = load_task(kind, name)
+    return solutions_of(task).examined[0], task
+
+
+@pytest.mark.parametrize(("kind", "name"), EVERY)
+def test_shipped_tasks_are_met_by_the_reference_and_the_engines(kind: str, name: str) -> None:
+    one, task = best(kind, name)
+    if one.defects:
+        assert name == "five-positions"
+        return
+    exact = by_reference(one, task)
+    assert max(met.off for met in exact) < 1e-12
+    for engine in ("mujoco", "pymunk"):
+        every = proven(one, task, engine)
+        assert len(every) == len(exact)
+        assert all(met.within for met in every), engine
+        assert max(met.off for met in every) > 1e-13, "an engine is not the reference"
+
+
+def moved(one: Examined, by: float) -> Examined:
+    """The same, asked for places and angles that it does not come to."""
+    positions = tuple(
+        replace(
+            position,
+            asked=tuple(
+                replace(each, place=each.place + by)
+                if isinstance(each, AskedPlace)
+                else replace(each, angle=each.angle + by)
+                if isinstance(each, AskedAngle)
+                else replace(each, displacement=each.displacement + by)
+                for each in position.asked
+            ),
+        )
+        for position in one.positions
+    )
+    return replace(one, positions=positions)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [("coupler", "three-positions"), ("rocker", "by-angle"), ("stroke", "quick-return")],
+)
+def test_what_is_not_met_is_seen(kind: str, name: str) -> None:
+    one, task = best(kind, name)
+    other = moved(one, 0.01)
+    for every in (by_reference(other, task), proven(other, task, "mujoco")):
+        assert not any(met.within for met in every)
+        assert [met.off for met in every] == pytest.approx([0.01] * len(every), rel=0.01)
+
+
+def test_a_driver_a_degree_off_is_seen() -> None:
+    one, task = best("coupler", "three-positions")
+    law = one.scene.driver.law.turned(math.radians(1.0))
+    late = replace(one, scene=replace(one.scene, driver=replace(one.scene.driver, law=law)))
+    positions = tuple(
+        replace(p, driver_rad=p.driver_rad + math.radians(1.0)) for p in one.positions
+    )
+    assert not all(met.within for met in proven(replace(late, positions=positions), task, "mujoco"))
+
+
+def test_a_step_that_is_too_long_is_seen() -> None:
+    one, task = best("coupler", "three-positions")
+    every = proven(one, task, "pymunk", steps_per_turn=12.0)
+    assert not all(met.within for met in every)
+
+
+def test_tolerances_are_those_of_the_task() -> None:
+    one, task = best("coupler", "three-positions")
+    tight = task.model_copy(update={"tolerance_m": 1e-12, "tolerance_deg": 1e-12})
+    assert all(met.limit <= 1e-12 for met in by_reference(one, tight))
+    assert not all(met.within for met in proven(one, tight, "mujoco"))
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_passing_times_are_those_of_the_law(sense: int) -> None:
+    for law in (ConstantSpeed(0.4, sense * 7.0), Oscillating(0.4, 0.9, 7.0)):
+        angles = 0.4 + sense * np.array([0.0, 0.3, 0.7])
+        at_s = passing_times(law, angles.tolist())
+        assert np.all(np.diff(at_s) > 0.0)
+        assert law.at(at_s)[0] == pytest.approx(angles, abs=1e-12)
+
+
+def test_the_scene_is_the_file() -> None:
+    one, _ = best("coupler", "driving-dyad")
+    at_s = passing_times(one.scene.driver.law, [p.driver_rad for p in one.positions])
+    motion = solve(one.scene, at_s)
+    assert max(p.off(motion, 1.0)[k] for k, p in enumerate(one.positions)) < 1e-12

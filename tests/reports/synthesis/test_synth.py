@@ -1,0 +1,131 @@
+"""`crankcheck synth`: what it lists, writes and proves, and what it refuses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from typer.testing import CliRunner, Result
+
+from models.files import read_scene
+from reports.cli import app
+
+
+def synth(*arguments: str) -> Result:
+    return CliRunner(env={"COLUMNS": "160"}).invoke(app, ["synth", *arguments])
+
+
+def test_kinds_and_shipped_tasks_are_listed() -> None:
+    told = synth().output
+    assert "coupler" in told
+    assert "three-positions" in told
+    assert "coupler" not in synth("stroke").output
+
+
+def test_solutions_are_written_as_scenes(tmp_path: Path) -> None:
+    result = synth("coupler", "three-positions", "-o", str(tmp_path / "out"))
+    assert result.exit_code == 0, result.output + result.stderr
+    assert "2 mechanisms looked at, 2 examined, 2 without a defect" in result.output
+    frame = pd.read_csv(tmp_path / "out/solutions.csv")
+    scene = read_scene(tmp_path / "out/solution-1.toml")
+    assert scene.links["input"].points["D"][0] == frame.loc[0, "input_O4D_m"]
+    assert scene.ground["O2"][0] == frame.loc[0, "O2_x_m"]
+
+
+def test_a_proof_names_every_engine(tmp_path: Path) -> None:
+    result = synth("rocker", "by-angle", "--prove", "--best", "1", "-o", str(tmp_path))
+    assert result.exit_code == 0, result.output + result.stderr
+    assert "PROVEN" in result.output
+    proof = pd.read_csv(tmp_path / "proof.csv")
+    assert set(proof["engine"]) == {"reference", "mujoco", "pymunk"}
+    assert proof["within"].all()
+
+
+def test_a_position_that_an_engine_misses_is_an_exit_code(tmp_path: Path) -> None:
+    task = tmp_path / "tight.toml"
+    task.write_text(
+        'name = "tight"\nsource = "a test"\nswing_deg = 60.0\nrocker_m = 0.2\n'
+        "tolerance_deg = 1e-12\n",
+        encoding="utf-8",
+    )
+    result = synth("rocker", str(task), "--prove", "--best", "1", "--engine", "mujoco")
+    assert result.exit_code == 1
+    assert "NOT PROVEN" in result.output
+    assert "OUT" in result.output
+
+
+def test_a_task_that_only_defects_answer_is_an_exit_code() -> None:
+    result = synth("coupler", "five-positions", "--prove")
+    assert result.exit_code == 1
+    assert "circuit defect" in result.output
+    assert "nothing to prove" in result.output
+
+
+def test_tolerances_are_told() -> None:
+    result = synth("stroke", "central", "--best", "1", "--vary", "1e-5")
+    assert "mechanisms meet the task" in result.output
+    assert "radial clearance" in result.output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("couplr", "x"), "did you mean coupler"),
+        (("coupler", "three-position"), "three-positions"),
+        (("coupler", "three-positions", "--prove", "--engine", "bulletz"), "bulletz"),
+        (("coupler", "three-positions", "--vary", "0"), "--vary"),
+        (("coupler", "three-positions", "--best", "0"), "--best"),
+        (("coupler", "three-positions", "-o", "/proc/nowhere"), "/proc"),
+    ],
+)
+def test_bad_input_is_one_message(arguments: tuple[str, ...], says: str) -> None:
+    result = synth(*arguments)
+    assert result.exit_code == 2
+    assert says in result.output + result.stderr
+    assert "Traceback" not in result.output + result.stderr
+
+
+POSE = "{{ point_m = [{}, {}], angle_deg = {} }}"
+IMPOSSIBLE = [
+    (
+        "rocker",
+        f"positions = [{POSE.format(0.0, 0.0, 10.0)}, {POSE.format(0.1, 0.2, 10.0)}]",
+        "pole is at infinity, along 153.4 deg",
+    ),
+    (
+        "coupler",
+        f"positions = [{POSE.format(0.0, 0.0, 1.0)}, {POSE.format(0.0, 0.0, 1.0)}]\n"
+        "moving_m = [[0.0, 0.1], [0.1, 0.0]]",
+        "positions 1 and 2 coincide",
+    ),
+    (
+        "coupler",
+        "positions = ["
+        + ", ".join(POSE.format(x, 0.0, 0.0) for x in (0.0, 0.1, 0.3))
+        + "]\nmoving_m = [[0.0, 0.1], [0.1, 0.0]]",
+        "A lies on a line in the three positions: the centre of its circle is at infinity",
+    ),
+    ("stroke", 'stroke_m = 0.1\nform = "offset"\ntime_ratio = 3.5', "has one below 3"),
+    ("stroke", "stroke_m = 0.1\nrod_m = 0.04", "the crank would not turn"),
+    (
+        "stroke",
+        'stroke_m = 0.1\nform = "offset"\ntime_ratio = 1.5\noffset_m = 1.0',
+        "it lies between 0 and",
+    ),
+    (
+        "stroke",
+        'stroke_m = 0.1\nform = "offset"\ntime_ratio = 1.5\nrod_m = 1.0',
+        "it lies between",
+    ),
+    ("rocker", "swing_deg = 60.0\nrocker_m = 0.2\ndistance_m = 0.05", "take more than 0.1 m"),
+]
+
+
+@pytest.mark.parametrize(("kind", "text", "says"), IMPOSSIBLE)
+def test_what_no_mechanism_does_is_said(tmp_path: Path, kind: str, text: str, says: str) -> None:
+    task = tmp_path / "task.toml"
+    task.write_text(f'name = "x"\nsource = "a test"\n{text}\n', encoding="utf-8")
+    result = synth(kind, str(task))
+    assert result.exit_code == 2
+    assert says in " ".join((result.output + result.stderr).split())
