@@ -90,6 +90,23 @@ def cut(text: str, room_in: float, size: float = SMALL) -> str:
     return "…"
 
 
+def wrapped(text: str, room_in: float, size: float = SMALL) -> list[str]:
+    """A text in lines that are no wider than there is room; a longer word is broken."""
+    lines = [""]
+    for word in text.split():
+        joined = f"{lines[-1]} {word}".lstrip()
+        if width_in(joined, size) <= room_in:
+            lines[-1] = joined
+            continue
+        lines += [word] * bool(lines[-1])
+        lines[-1] = word
+        while width_in(lines[-1], size) > room_in and len(lines[-1]) > 1:
+            fits = range(len(lines[-1]) - 1, 1, -1)
+            kept = next((n for n in fits if width_in(lines[-1][:n], size) <= room_in), 1)
+            lines[-1:] = [lines[-1][:kept], lines[-1][kept:]]
+    return lines
+
+
 def power_of_ten(value: float) -> str:
     """10⁻³ and the like."""
     return f"10{str(round(math.log10(value))).translate(RAISED)}"

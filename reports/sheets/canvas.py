@@ -55,6 +55,11 @@ def _layered(svg: str) -> str:
     return marked.replace("<svg ", f'<svg xmlns:inkscape="{INKSCAPE}" ', 1)
 
 
+def layer_words(title: str) -> str:
+    """Words as they stand in the name of a layer."""
+    return "".join(c if c.isalnum() else "-" for c in title).strip("-")
+
+
 def line(axes: Axes, start: Array, end: Array, gid: str = "", **look: Any) -> None:
     """A straight line [mm]."""
     drawn = Line2D([start[0], end[0]], [start[1], end[1]], **({"color": INK} | look))

@@ -31,6 +31,7 @@ from reports.sheets.centre_column import (
     height_of_column,
     write_legend,
 )
+from reports.sheets.cut_lines import arc_places, near_angles
 from reports.sheets.driver_range import assembled, range_about
 from reports.sheets.letters import Letter, together, write_letters
 from reports.sheets.paper import Box, Paper
@@ -49,8 +50,7 @@ CENTRE_MM, CENTRE_SIZE = 0.8, 7.0
 """Radius of a centre's circle, and the type of its name [point]."""
 GAP = 3.0
 DENSE = 1441
-ROUND = 721
-"""Places along a centrode, and along a circle."""
+"""Places along a centrode."""
 
 
 @dataclass(frozen=True)
@@ -217,13 +217,9 @@ def _circles(axes: Axes, sheet: CentreSheet, circles: CurvatureCircles) -> None:
 
 
 def _arc_near(middle: Array, radius: float, box: Box) -> Array:
-    """The part of a circle [mm] that may be in a box, (n, 2), closely: most of one that is far
-    larger than the sheet is of no use, and slow to draw."""
-    away = np.array(box.middle) - middle
-    reach = math.hypot(box.width, box.height) / 2
-    half = math.asin(reach / radius) if radius > reach else math.pi
-    angle = math.atan2(away[1], away[0]) + np.linspace(-half, half, ROUND)
-    return np.asarray(middle + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    """The part of a circle [mm] that may be in a box, (n, 2), closely."""
+    start, end = near_angles(middle, radius, *box.corners)
+    return arc_places(middle, radius, start, end)
 
 
 def _centres(axes: Axes, sheet: CentreSheet) -> None:

@@ -63,6 +63,12 @@ class Box:
     def middle(self) -> tuple[float, float]:
         return self.left + self.width / 2, self.bottom + self.height / 2
 
+    @property
+    def corners(self) -> tuple[Array, Array]:
+        """The lower left and the upper right one [mm]."""
+        low = np.array([self.left, self.bottom])
+        return low, low + np.array([self.width, self.height])
+
     def fitted(self, places: Array, padding: float) -> tuple[float, Array]:
         """The finest round scale [unit/mm] at which places (n, 2) have so much room around them
         [mm] in the box, 1 of places that are one; and the middle of them (2,)."""

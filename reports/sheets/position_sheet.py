@@ -6,7 +6,6 @@ a line, cross in it (lecture "Phan tich dong hoc", part II); the first position 
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -22,11 +21,11 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.figures.style import INK, QUIET
-from reports.sheets.canvas import Canvas, line
+from reports.sheets.canvas import Canvas
 from reports.sheets.driver_range import range_of_law, sense_of_law
 from reports.sheets.letters import NUMBER, Letter, write_letters
 from reports.sheets.paper import Box, Paper
-from reports.sheets.scheme import draw_scheme, extent_of, point_letters, symbol_radius
+from reports.sheets.scheme import draw_outline, draw_scheme, extent_of, point_letters, symbol_radius
 from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 
 PADDING = 12.0
@@ -155,13 +154,9 @@ def _loci(axes: Axes, sheet: PositionSheet) -> None:
 
 def _positions(axes: Axes, sheet: PositionSheet) -> None:
     """All positions of all links, faint."""
-    for link in sheet.scene.links.values():
-        corners = [sheet.at(sheet.points[name]) for name in link.points]
-        for k in range(len(sheet.angles)):
-            ring = [corner[k] for corner in corners]
-            ring = [*ring, ring[0]] if len(ring) > 2 else ring
-            for start, end in itertools.pairwise(ring):
-                line(axes, start, end, color=FAINT, linewidth=0.5)
+    for k in range(len(sheet.angles)):
+        places = {name: sheet.at(at[k]) for name, at in sheet.points.items()}
+        draw_outline(axes, sheet.scene.links.values(), places, FAINT, 0.5)
     for name in _driven(sheet.scene):
         for at in sheet.at(sheet.points[name]):
             axes.add_patch(Circle(tuple(at), DOT_MM, fc=FAINT, ec="none"))

@@ -4,8 +4,8 @@ the arrow of the driver's rotation."""
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from itertools import chain
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import chain, pairwise
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from matplotlib.patches import Polygon as Patch
 from analytic.drawings.placed_mechanism import PlacedMechanism, quarter_turn
 from models.array import Array
 from models.laws import Oscillating
-from models.scene import GROUND
+from models.scene import GROUND, Link
 from reports.figures.style import INK
 from reports.sheets.canvas import arrow_head, line
 from reports.sheets.letters import Letter, together
@@ -30,6 +30,7 @@ FOOT_DEG = 42.0
 """Half the angle about a pin that its foot is in."""
 NEAR_MM = 0.5
 """Points that stand nearer have their letters in one label."""
+PLATE = "#eef1f4"
 FRONT = 6
 """Pins lie over everything."""
 
@@ -39,8 +40,11 @@ def extent_of(placement: PlacedMechanism) -> Array:
     return np.array([*placement.points.values(), *chain(*travels(placement).values())])
 
 
-def draw_scheme(axes: Axes, placement: PlacedMechanism, at: Callable[[Array], Array]) -> None:
-    """The mechanism with its places [m] ``at`` those of the sheet [mm]."""
+def draw_scheme(
+    axes: Axes, placement: PlacedMechanism, at: Callable[[Array], Array], plate: str = PLATE
+) -> None:
+    """The mechanism with its places [m] ``at`` those of the sheet [mm]; ``plate`` is the colour of
+    plates, "none" of those that hide nothing."""
     scene = placement.scene
     places = {name: at(place) for name, place in placement.points.items()}
     slots = {name: (at(low), at(high)) for name, (low, high) in travels(placement).items()}
@@ -57,16 +61,14 @@ def draw_scheme(axes: Axes, placement: PlacedMechanism, at: Callable[[Array], Ar
     for link in scene.links.values():
         corners = np.array([places[point] for point in link.points])
         if len(corners) > 2 and not _flat(corners):
-            axes.add_patch(
-                Patch(corners, closed=True, fc="#eef1f4", ec=INK, lw=1.3, joinstyle="round")
-            )
+            axes.add_patch(Patch(corners, closed=True, fc=plate, ec=INK, lw=1.3, joinstyle="round"))
         else:
             for start, end in _segments(corners):
                 line(axes, start, end, f"scheme-{link.name}", linewidth=1.5)
     pinned = [point for point, bodies in placement.structure.pins.items() if len(bodies) > 1]
     for point in scene.ground:
         if point in pinned:
-            _foot(axes, places[point])
+            draw_foot(axes, places[point])
     for point, spot in places.items():
         radius = PIN_MM if point in pinned else 0.5 * PIN_MM
         face = "white" if point in pinned else INK
@@ -75,6 +77,17 @@ def draw_scheme(axes: Axes, placement: PlacedMechanism, at: Callable[[Array], Ar
         _turning(axes, placement, places)
     else:
         _moved_joint(axes, placement, places)
+
+
+def draw_outline(
+    axes: Axes, links: Iterable[Link], places: Mapping[str, Array], color: str, width: float
+) -> None:
+    """Links as lines between their points at ``places`` [mm]."""
+    for link in links:
+        ring = [places[name] for name in link.points]
+        ring = [*ring, ring[0]] if len(ring) > 2 else ring
+        for start, end in pairwise(ring):
+            line(axes, start, end, color=color, linewidth=width)
 
 
 def point_letters(placement: PlacedMechanism, places: Mapping[str, Array]) -> list[Letter]:
@@ -106,7 +119,7 @@ def _flat(corners: Array) -> bool:
     return bool(spread[1] < 1e-6 * spread[0])
 
 
-def _foot(axes: Axes, place: Array) -> None:
+def draw_foot(axes: Axes, place: Array) -> None:
     """A pin's support on hatched ground."""
     side, spare = np.array([0.6 * FOOT_MM, 0.0]), np.array([1.0, 0.0])
     left, right = place - (0.0, FOOT_MM) - side, place - (0.0, FOOT_MM) + side

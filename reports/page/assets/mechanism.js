@@ -233,7 +233,7 @@ crankcheck.mechanism = (() => {
     still();
     return {
       samples, show, farthest, worst, refit: still, size: scene.size,
-      driver: (position) => between(scene.told.at, position), between,
+      driver: (position) => between(scene.told.at, position), between, toScreen: (place) => toScreen(place),
     };
   };
 })();

@@ -10,7 +10,7 @@ from matplotlib.patches import Circle
 from analytic.drawings.polygon import Polygon, Vector
 from analytic.drawings.vector_equation import Kind
 from reports.figures.style import INK, TINY, width_in
-from reports.sheets.canvas import Canvas, arrow, line, text
+from reports.sheets.canvas import Canvas, arrow, layer_words, line, text
 from reports.sheets.paper import MM_PER_IN, Box
 from reports.sheets.polygons.magnified_errors import draw_errors
 from reports.sheets.polygons.polygon_on_paper import DrawnPolygon, crossing_line, image_lines
@@ -39,7 +39,7 @@ def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
     holds the legend alone."""
     quantity = drawn.polygon.quantity
     for number, step in enumerate(drawn.polygon.steps, 1):
-        axes = canvas.layer(f"{quantity}-{number}-{_plain(step.title)}")
+        axes = canvas.layer(f"{quantity}-{number}-{layer_words(step.title)}")
         for vector in step.vectors:
             _draw_vector(drawn, vector, axes, quantity)
         for at in step.nodes.values():
@@ -72,7 +72,3 @@ def _legend(axes: Axes, polygon: Polygon, box: Box) -> None:
     for told, colour in words:
         text(axes, x, box.bottom + 1.8, told, TINY, color=colour)
         x += MM_PER_IN * width_in(told, TINY) + 3.0
-
-
-def _plain(title: str) -> str:
-    return "".join(c if c.isalnum() else "-" for c in title).strip("-")

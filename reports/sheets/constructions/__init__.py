@@ -1,0 +1,1 @@
+"""Constructions of a synthesis, step by step as one draws them: sheets and pages."""

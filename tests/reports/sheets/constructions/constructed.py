@@ -1,0 +1,177 @@
+"""Constructions to draw: three positions by circles, the lecture's rocker, Burmester's curves, and
+a pole that is far off."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+
+from analytic.synthesis.asked import AskedAngle, PrecisionPosition
+from analytic.synthesis.burmester import Dyad, four_positions
+from analytic.synthesis.construction import Circle, Curve, Dot, Element, Segment, Step
+from analytic.synthesis.design import Proposal
+from analytic.synthesis.fourbar_draft import carried
+from analytic.synthesis.pose import Pose, bisector, circle_through, pole
+from models.draft import Draft, bar
+
+LECTURE = 'Lecture "Tong hop co cau" (synthesis)'
+THREE = (Pose(0.0 + 0.0j, 0.9), Pose(0.09 + 0.05j, 0.55), Pose(0.2 + 0.045j, 0.1))
+C, D = 0.0 + 0.0j, 0.12 + 0.0j
+"""Points of the body that is carried [m], in its own frame."""
+
+
+def _triples(poses: Sequence[Pose], place: complex) -> list[complex]:
+    return [pose.at(place) for pose in poses]
+
+
+def _centre_step(name: str, pivot: str, places: Sequence[complex]) -> tuple[Step, complex]:
+    """The centre of the circle through three places of a point, by two bisectors."""
+    centre = circle_through(*places)
+    assert centre is not None
+    lines: list[Element] = []
+    for one, other in ((0, 1), (1, 2)):
+        foot = bisector(places[one], places[other]).middle
+        lines += [Segment(places[one], places[other]), Segment(foot, centre, beyond=0.15)]
+    lines += [Circle(centre, abs(places[0] - centre)), Dot(centre, pivot, "result", fixed=True)]
+    words = (
+        f"The bisectors of {name}1 {name}2 and of {name}2 {name}3 cross in {pivot}, the centre of "
+        f"the circle through all places of {name}."
+    )
+    return Step(words, tuple(lines)), centre
+
+
+@lru_cache
+def three_positions(poses: tuple[Pose, ...] = THREE, name: str = "three-positions") -> Proposal:
+    """A coupler C D in three positions, by circumcentres (the lecture, example 6)."""
+    cs, ds = _triples(poses, C), _triples(poses, D)
+    given: list[Element] = []
+    for k, (c, d) in enumerate(zip(cs, ds, strict=True), 1):
+        given += [Segment(c, d, "given"), Dot(c, f"C{k}", "given"), Dot(d, f"D{k}", "given")]
+    first, o2 = _centre_step("C", "O2", cs)
+    second, o4 = _centre_step("D", "O4", ds)
+    links = tuple(Segment(a, b, "result") for a, b in ((o2, cs[0]), (cs[0], ds[0]), (o4, ds[0])))
+    steps = (
+        Step("The coupler C D in its three positions.", tuple(given)),
+        first,
+        second,
+        Step("The links are O2 C1, C1 D1 and O4 D1, the ground is O2 O4.", links),
+    )
+    dyads = (Dyad(o2, C), Dyad(o4, D))
+    return carried(name, LECTURE + ", example 6", poses, dyads, {}, pins=("C", "D"), steps=steps)
+
+
+@lru_cache
+def rocker_by_angle() -> Proposal:
+    """The rocker by its angle (the lecture, example 2): crank O2 A, coupler A B, rocker O4 B."""
+    o4, length, swing, lean = 0.0 + 0.0j, 0.2, math.radians(70.0), math.radians(115.0)
+    b1, b2 = (o4 + cmath.rect(length, lean + side * swing / 2) for side in (1.0, -1.0))
+    along = (b2 - b1) / abs(b2 - b1)
+    radius, middle = abs(b2 - b1) / 2, (b1 + b2) / 2
+    coupler = 0.3
+    o2 = middle + coupler * along
+    a1, a2 = o2 - radius * along, o2 + radius * along
+    # drawn with B in B1 where the crank lies over the coupler, away from O4's end
+    steps = (
+        Step(
+            "The rocker O4 B in its end positions, 70° apart.",
+            (
+                Dot(o4, "O4", "given", fixed=True),
+                Dot(b1, "B1", "given"),
+                Dot(b2, "B2", "given"),
+                Segment(o4, b1, "given"),
+                Segment(o4, b2, "given"),
+            ),
+        ),
+        Step("The line B1 B2, and its extension.", (Segment(b1, a2, beyond=0.1),)),
+        Step("O2 is chosen on the extension.", (Dot(o2, "O2", "result", fixed=True),)),
+        Step(
+            "Half of B1 B2 is the radius of a circle about O2, which meets the line in A1 and A2.",
+            (Circle(o2, radius), Dot(a1, "A1"), Dot(a2, "A2")),
+        ),
+        Step("The crank is O2 A1, the coupler A1 B1.", (
+            Segment(o2, a1, "result"), Segment(a1, b1, "result"), Segment(o4, b1, "result"))),
+    )  # fmt: skip
+    draft = Draft(
+        "rocker-by-angle",
+        LECTURE + ", example 2",
+        {"O2": o2, "O4": o4},
+        {
+            "crank": bar("O2", "A", radius),
+            "coupler": bar("A", "B", coupler),
+            "rocker": bar("O4", "B", length),
+        },
+        {},
+    )
+    start = cmath.phase(a1 - o2)
+    positions = tuple(
+        PrecisionPosition(start + half, (AskedAngle("rocker", cmath.phase(b - o4)),))
+        for half, b in ((0.0, b1), (math.pi, b2))
+    )
+    chosen = {"O2 from the middle of B1 B2": f"{coupler:g} m"}
+    return Proposal(draft, "crank", positions, chosen, steps)
+
+
+FOUR = (
+    Pose(0.0 + 0.0j, 0.0),
+    Pose(0.10 + 0.05j, 0.35),
+    Pose(0.18 + 0.14j, 0.9),
+    Pose(0.2 + 0.26j, 1.6),
+)
+
+
+@lru_cache
+def burmester_curves() -> Proposal:
+    """Burmester's curves of four positions, and the four-bar of two of their dyads."""
+    pieces = four_positions(FOUR)
+    every = [dyad for piece in pieces for dyad in piece]
+    near = [d for d in every if abs(d.fixed) < 0.45 and 0.05 < d.radius(FOUR) < 0.4]
+    first = near[0]
+    second = max(near, key=lambda d: min(abs(d.fixed - first.fixed), abs(d.moving - first.moving)))
+    centres = tuple(tuple(dyad.fixed for dyad in piece) for piece in pieces)
+    circles = tuple(tuple(FOUR[0].at(dyad.moving) for dyad in piece) for piece in pieces)
+    bodies: list[Element] = []
+    for k, pose in enumerate(FOUR, 1):
+        bodies += [
+            Segment(pose.point, pose.at(0.08 + 0j), "given"),
+            Dot(pose.point, f"P{k}", "given"),
+        ]
+    links: list[Element] = []
+    for dyad, pivot, pin in ((first, "O2", "A"), (second, "O4", "B")):
+        at = FOUR[0].at(dyad.moving)
+        links += [Segment(dyad.fixed, at, "result"), Dot(dyad.fixed, pivot, "result", fixed=True)]
+        links.append(Dot(at, f"{pin}1", "result"))
+    poles: list[Element] = []
+    for i, j in ((0, 1), (0, 2), (1, 2), (2, 3)):
+        place = pole(FOUR[i], FOUR[j])
+        assert place is not None
+        poles.append(Dot(place, f"P{i + 1}{j + 1}"))
+    steps = (
+        Step("The body in its four positions.", tuple(bodies)),
+        Step("The poles of its positions.", tuple(poles)),
+        Step("The centre-point curve: all places of fixed pivots.", (Curve(centres),)),
+        Step("The circle-point curve: all moving pivots, in position 1.", (Curve(circles),)),
+        Step("Two of their pairs are taken: O2 A1 and O4 B1.", tuple(links)),
+    )
+    return carried("burmester", LECTURE, FOUR, (first, second), {"P": 0j}, steps=steps)
+
+
+@lru_cache
+def far_pole() -> Proposal:
+    """Three positions, the first two of which are nearly a translation: their pole is far off."""
+    proposal = three_positions()
+    first, second = Pose(0j, 0.9), Pose(0.1 + 0.02j, 0.9 + 0.004)
+    place = pole(first, second)
+    assert place is not None
+    extra = Step(
+        "The pole of a turn that is nearly none, and the circle of a point about it.",
+        (
+            Dot(place, "P12"),
+            Segment(proposal.positions and first.point, place),
+            Circle(place, abs(place - first.point)),
+            Circle(place, 0.3, "auxiliary"),
+        ),
+    )
+    steps = (*proposal.steps, extra)
+    return Proposal(proposal.draft, proposal.driver, proposal.positions, {}, steps)
