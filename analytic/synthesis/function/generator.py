@@ -1,0 +1,117 @@
+"""A function generator: a mechanism of three numbers and two starts, its output in closed form.
+
+The numbers k1, k2, k3 are those of Freudenstein's equation. What is worked out here leads a search;
+what a mechanism is said to do is asked of the reference.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from models.array import Array
+
+WIDEST = 1e4
+"""A length that is so many times larger or smaller than the scale is none of a mechanism."""
+POLISHES = 4
+"""Newton's steps after a solution of Freudenstein's equation: each squares what rounding left."""
+
+
+@dataclass(frozen=True)
+class Generator(ABC):
+    """A mechanism in units of its scale, with positive lengths.
+
+    ``input_start`` [rad] and ``output_start`` [rad, or scales] are where the input and the output
+    are at the start of their ranges. ``turned`` names the starts that a negative length turned by
+    180 degrees: a link of length -a at an angle is one of length a at the opposite angle.
+    """
+
+    k: tuple[float, float, float]
+    input_start: float
+    output_start: float
+    turned: tuple[str, ...] = ()
+
+    @property
+    @abstractmethod
+    def lengths(self) -> tuple[float, ...]:
+        """Its lengths in scales."""
+
+    @abstractmethod
+    def discriminant(self, phi: Array) -> Array:
+        """Of the equation for the output at input angles [rad], (T,): negative where the mechanism
+        can not be assembled."""
+
+    @abstractmethod
+    def output(self, phi: Array, sign: float | Array) -> Array:
+        """The output at input angles [rad], in one of two assemblies (T,); nan where there is
+        none."""
+
+    @abstractmethod
+    def slopes(self, phi: Array, output: Array) -> Array:
+        """The derivatives of the output by k1, k2, k3 and the input angle (4, T)."""
+
+    @abstractmethod
+    def apart(self, asked: Array, output: Array) -> Array:
+        """What is asked of the output less what it is, whole turns of an angle left out (T,)."""
+
+    @property
+    def sound(self) -> bool:
+        """Whether it is a mechanism: finite lengths, and none of them nothing."""
+        return all(1.0 / WIDEST < length < WIDEST for length in self.lengths)
+
+    def error(self, turns: Array, ways: Array, sign: float | Array) -> Array:
+        """Its structural error where its input has turned from its start [rad] and its output is to
+        have gone a way from its own (T,): asked less had."""
+        output = self.output(self.input_start + turns, sign)
+        return self.apart(self.output_start + ways, output)
+
+    def signs(self, turns: Array, ways: Array) -> Array:
+        """The assembly that is nearer to what is asked, for each (T,)."""
+        plus, minus = (np.abs(self.error(turns, ways, sign)) for sign in (1.0, -1.0))
+        return np.where(np.nan_to_num(plus, nan=np.inf) <= minus, 1.0, -1.0)
+
+    def gradient(self, turns: Array, sign: float | Array, free: Sequence[str]) -> Array:
+        """The derivatives of the error by k1, k2, k3 and the free starts (T, 3 + free)."""
+        phi = self.input_start + turns
+        slopes = self.slopes(phi, self.output(phi, sign))
+        columns = [-slopes[0], -slopes[1], -slopes[2]]
+        columns += [-slopes[3]] * ("input" in free) + [np.ones_like(turns)] * ("output" in free)
+        return np.stack(columns, axis=1)
+
+    def moved(self, step: Array, free: Sequence[str]) -> Self:
+        """That with its numbers and its free starts moved, in the order of `gradient`."""
+        starts = {
+            f"{name}_start": getattr(self, f"{name}_start") + float(by)
+            for name, by in zip([n for n in STARTS if n in free], step[3:], strict=True)
+        }
+        k1, k2, k3 = (old + float(by) for old, by in zip(self.k, step, strict=False))
+        return replace(self, k=(k1, k2, k3), **starts)
+
+    def polished(self, turns: Array, ways: Array, free: Sequence[str]) -> Self:
+        """That of which the errors in precision points (n,) are rounding: Newton's method, as long
+        as it helps."""
+        best, signs = self, self.signs(turns, ways)
+        error = best.error(turns, ways, signs)
+        for _ in range(POLISHES):
+            try:
+                step = np.asarray(np.linalg.solve(best.gradient(turns, signs, free), -error), float)
+            except np.linalg.LinAlgError:
+                break
+            nearer = best.moved(step, free)
+            left = nearer.error(turns, ways, signs)
+            if not np.max(np.abs(left)) < np.max(np.abs(error)):
+                break
+            best, error = nearer, left
+        return best
+
+
+STARTS = ("input", "output")
+
+
+def opposite(angle: float) -> float:
+    """An angle half a turn on [rad]."""
+    return float(angle + np.pi)
