@@ -18,6 +18,8 @@ class Proposal:
     ``chosen`` are the numbers that the task left open, in words and SI units; ``steps`` draw how
     the rest was found. ``doubt`` is what a task gave up where it could not be met as asked.
     ``full`` is whether the driver has to turn fully, and be examined over a whole turn.
+    ``allowed`` is how far it may be from a position (angles in rad, lengths over the longest link):
+    0 of what is to be met exactly, more of what least squares fitted.
     """
 
     draft: Draft
@@ -26,3 +28,4 @@ class Proposal:
     chosen: Mapping[str, str] = field(default_factory=dict)
     steps: tuple[Step, ...] = ()
     doubt: str = ""
+    allowed: float = 0.0
