@@ -18,6 +18,8 @@ class Proposal:
     ``chosen`` are the numbers that the task left open, in words and SI units; ``steps`` draw how
     the rest was found. ``doubt`` is what a task gave up where it could not be met as asked.
     ``speed_rad_s`` is the driver's, or the circular frequency of one that swings.
+    ``allowed`` is how far it may be from a position (angles in rad, lengths over the longest link):
+    0 of what is to be met exactly, more of what least squares fitted.
     """
 
     draft: Draft
@@ -27,3 +29,4 @@ class Proposal:
     steps: tuple[Step, ...] = ()
     doubt: str = ""
     speed_rad_s: float = SPEED_RAD_S
+    allowed: float = 0.0

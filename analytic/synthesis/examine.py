@@ -83,7 +83,9 @@ class Examined:
     def defects(self) -> list[str]:
         """What keeps it from the task, in words; empty of a mechanism that does it."""
         worst = max(self.off)
-        unmet = [f"misses a position by {worst:.3g}"] * (not worst <= UNMET)
+        unmet = [f"misses a position by {worst:.3g}"] * (
+            not worst <= max(UNMET, self.proposal.allowed)
+        )
         return [f"{self.defect} defect"] * (self.defect != "none") + unmet
 
 

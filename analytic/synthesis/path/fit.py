@@ -1,0 +1,154 @@
+"""The least-squares fit of a coupler curve to points, from a start on.
+
+The unknowns are the three numbers of a shape, the three complex numbers that place it, and the
+crank's angles: one in all with timing, one for each point without. Then the residuals are those to
+the nearest points of the curve, which is an orthogonal fit. Derivatives are exact. Each number but
+the angles stays in its box, as the sine of an unknown: so a crank that turns fully goes on to.
+
+Source: G. H. Golub and V. Pereyra, SIAM Journal on Numerical Analysis 10 (1973) (that the placing
+numbers, in which the curve is linear, follow from the others, gives the starts here); S. J. Ahn,
+Least Squares Orthogonal Distance Fitting of Curves and Surfaces in Space, chapter 2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import least_squares  # type: ignore[import-untyped]  # ships no stubs
+
+from analytic.synthesis.path.task import UnitPath
+from analytic.synthesis.path.unit_four_bar import (
+    BOUNDS,
+    Complexes,
+    Family,
+    direction,
+    lengths,
+    lengths_jacobian,
+    turn,
+)
+from models.array import Array
+
+LARGEST = 12.0
+"""Of the placing numbers, over the radius of the path: larger mechanisms are of no use."""
+PENALTY = 3.0
+"""The weight of a dyad that does not close, over the radius of the path."""
+INSIDE = 0.999
+"""Of the half width of the box, a start is at most: at its wall the sine does not change."""
+BOXED = slice(0, 9)
+"""The unknowns in a box: three numbers of a shape, and three complex numbers that place it."""
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A four-bar near the points of a unit path: numbers of its shape, placing numbers O, K, Q,
+    and the crank's angles [rad] from the ground on.
+
+    ``cost`` is the mean square of the distances, ``mirrored`` whether they are from the mirror
+    image of the points.
+    """
+
+    family: Family
+    x: Array
+    placing: Complexes
+    phi: Array
+    cost: float
+    mirrored: bool = False
+
+
+def placed(lengths_of: tuple[Array, Array, Array], phi: Array, points: Complexes) -> Complexes:
+    """The placing numbers O, K, Q that fit points best, by linear least squares, (3,)."""
+    u, _ = direction(lengths_of, phi)
+    columns = np.stack([np.ones_like(u), np.exp(1j * phi), u], axis=1)
+    return np.asarray(np.linalg.lstsq(columns, points, rcond=1e-9)[0])
+
+
+def refit(start: Fitted, path: UnitPath, evaluations: int) -> Fitted:
+    """The four-bar of least squares near a start: after so many evaluations, at most."""
+    problem = _Problem(start.family, path)
+    result = least_squares(
+        problem.residuals,
+        problem.packed(start),
+        problem.jacobian,
+        method="lm",
+        x_scale="jac",
+        ftol=1e-12,
+        xtol=1e-12,
+        gtol=1e-14,
+        max_nfev=evaluations,
+    )
+    return replace(
+        problem.unpacked(result.x),
+        cost=2.0 * float(result.cost) / len(path.points),
+        mirrored=start.mirrored,
+    )
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """Residuals over the unknowns, both as real numbers."""
+
+    family: Family
+    path: UnitPath
+
+    @property
+    def box(self) -> tuple[Array, Array]:
+        """The middle and the half width of shape and placing numbers, (9,)."""
+        low, high = (np.array(side) for side in zip(*BOUNDS[self.family], strict=True))
+        middle = np.concatenate([0.5 * (low + high), np.zeros(6)])
+        return middle, np.concatenate([0.5 * (high - low), np.full(6, LARGEST)])
+
+    def packed(self, fit: Fitted) -> Array:
+        """The unknowns of a four-bar: what lies in a box as the arc sine of its share of it."""
+        placing = np.stack([fit.placing.real, fit.placing.imag], axis=1).ravel()
+        angles = fit.phi if self.path.turned is None else fit.phi[:1]
+        middle, half = self.box
+        share = (np.concatenate([fit.x, placing]) - middle) / half
+        return np.concatenate([np.arcsin(np.clip(share, -INSIDE, INSIDE)), angles])
+
+    def unpacked(self, z: Array) -> Fitted:
+        """The four-bar of unknowns."""
+        middle, half = self.box
+        inner = middle + half * np.sin(z[BOXED])
+        placing = inner[3::2] + 1j * inner[4::2]
+        return Fitted(self.family, inner[:3], placing, self._phi(z), 0.0)
+
+    def residuals(self, z: Array) -> Array:
+        """The distances from the points, then how far the dyad is open where it may be."""
+        fit = self.unpacked(z)
+        a, b, c = (float(each) for each in lengths(self.family, fit.x))
+        at = turn((a, b, c), fit.phi)
+        origin, crank, arm = fit.placing
+        off = origin + crank * np.exp(1j * fit.phi) + arm * at.u - self.path.points
+        opened = [PENALTY * at.excess] if self.family == "limited" else []
+        return np.concatenate([off.real, off.imag, *opened])
+
+    def jacobian(self, z: Array) -> Array:
+        """Their derivatives, (residuals, unknowns)."""
+        fit = self.unpacked(z)
+        a, b, c = (float(each) for each in lengths(self.family, fit.x))
+        at = turn((a, b, c), fit.phi)
+        _, crank, arm = fit.placing
+        e, one = np.exp(1j * fit.phi), np.ones_like(at.u)
+        by_shape = lengths_jacobian(self.family, fit.x)
+        by_angle = 1j * crank * e + arm * at.d_phi
+        columns = [*(arm * (by_shape @ at.d_shape)), one, 1j * one, e, 1j * e, at.u, 1j * at.u]
+        fixed = np.array(columns).T
+        off = np.hstack([fixed, self._spread(by_angle)])
+        rows = [off.real, off.imag]
+        if self.family == "limited":
+            shut = np.zeros((len(e), 9))
+            shut[:, :3] = (by_shape @ at.d_excess).T
+            rows.append(PENALTY * np.hstack([shut, self._spread(at.d_excess_phi)]))
+        every = np.concatenate(rows)
+        every[:, BOXED] *= self.box[1] * np.cos(z[BOXED])
+        return np.asarray(every)
+
+    def _phi(self, z: Array) -> Array:
+        turned = self.path.turned
+        return z[9:].copy() if turned is None else np.asarray(z[9] + turned)
+
+    def _spread(self, column: Complexes | Array) -> Complexes | Array:
+        """A derivative by each point's own angle, or by the one that all share."""
+        spread: Complexes | Array = np.diag(column) if self.path.turned is None else column[:, None]
+        return spread
