@@ -19,7 +19,8 @@ class Proposal:
     the rest was found. ``doubt`` is what a task gave up where it could not be met as asked.
     ``speed_rad_s`` is the driver's, or the circular frequency of one that swings.
     ``allowed`` is how far it may be from a position (angles in rad, lengths over the longest link):
-    0 of what is to be met exactly, more of what least squares fitted.
+    0 of what is to be met exactly, more of what least squares fitted. ``also_rad`` are angles that
+    a driver that swings goes to as well, beyond the positions.
     """
 
     draft: Draft
@@ -30,3 +31,4 @@ class Proposal:
     doubt: str = ""
     speed_rad_s: float = SPEED_RAD_S
     allowed: float = 0.0
+    also_rad: tuple[float, ...] = ()

@@ -52,9 +52,10 @@ class Examined:
     ``positions`` have the driver's angles [rad] as the scene's law goes through them, whole turns
     counted. ``least_sine`` is the least sine of a transmission angle, or what stands for it in
     other dyads, over the way of the driver; ``extent_m`` the larger side of the box that all named
-    points stay in. ``torque_n_m`` is the largest driving torque under the loads, or None
-    without any; ``off`` how far the reference is from each position (angles in rad, lengths
-    over the size).
+    points stay in. ``off`` is how far the reference is from each position (angles in rad, lengths
+    over the size). ``torque_n_m`` is the largest driving torque under the loads, None without any.
+    ``fault`` is what else keeps it from the task, ``notes`` say how well it does it, and ``misses``
+    is by how much it misses it between the positions.
     """
 
     proposal: Proposal
@@ -68,6 +69,9 @@ class Examined:
     extent_m: float
     off: tuple[float, ...]
     torque_n_m: float | None = None
+    fault: str = ""
+    notes: tuple[str, ...] = ()
+    misses: float = 0.0
 
     @property
     def text(self) -> str:
@@ -86,14 +90,21 @@ class Examined:
         unmet = [f"misses a position by {worst:.3g}"] * (
             not worst <= max(UNMET, self.proposal.allowed)
         )
-        return [f"{self.defect} defect"] * (self.defect != "none") + unmet
+        faults = [self.fault] * bool(self.fault)
+        return [f"{self.defect} defect"] * (self.defect != "none") + unmet + faults
 
 
 def ranked(every: Sequence[Examined]) -> list[Examined]:
     """Those without a defect first, each by its transmission angle, the smaller mechanism first
-    where these are equal."""
+    where these are equal; what misses the task between its positions by how much it does."""
     return sorted(
-        every, key=lambda one: (bool(one.defects), -round(one.least_sine, 9), one.extent_m)
+        every,
+        key=lambda one: (
+            bool(one.defects),
+            one.misses,
+            -round(one.least_sine, 9),
+            one.extent_m,
+        ),
     )
 
 
@@ -115,6 +126,7 @@ def examine(proposal: Proposal) -> Examined:
     on_arc = [arc.signs == p.signs and arc.holds(p.driver_rad, MARGIN / 100) for p in places]
     angles = _unwrapped(arc, [position.driver_rad for position in proposal.positions])
     own = [angle for angle, on in zip(angles, on_arc, strict=True) if on]
+    own += [_beside(angle, own) for angle in proposal.also_rad if arc.holds(angle)]
     driver = _driver(proposal.driver, arc, own, speed)
     draft = proposal.draft.driven(driver).with_branch(branch)
     scene = draft.scene
@@ -214,6 +226,11 @@ def _motion(scene: Scene, angles: Array, positions: Sequence[PrecisionPosition] 
         sliders=sliders,
         bound=False,
     )
+
+
+def _beside(angle: float, others: Sequence[float]) -> float:
+    """An angle [rad] without the whole turns that it is away from others."""
+    return others[0] + math.remainder(angle - others[0], math.tau)
 
 
 def _unwrapped(arc: Arc, angles: Sequence[float]) -> list[float]:

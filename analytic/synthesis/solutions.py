@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 from analytic.synthesis.coupler import coupler_proposals
 from analytic.synthesis.design import Proposal
 from analytic.synthesis.examine import Examined, examine, ranked
+from analytic.synthesis.function.designs import function_designs
+from analytic.synthesis.function.structural_error import FunctionProposal, structural_error
+from analytic.synthesis.path.search import generate
+from analytic.synthesis.posed import function_task, path_task
 from analytic.synthesis.quick_return import quick_return_proposals
 from analytic.synthesis.rocker import rocker_proposals
 from analytic.synthesis.strokes import stroke_proposals
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, ReachError
 from models.tasks.coupler import CouplerTask
+from models.tasks.function import FunctionTable
+from models.tasks.path import PathTable
 from models.tasks.quick_return import QuickReturnTask
 from models.tasks.rocker import RockerTask
 from models.tasks.stroke import StrokeTask
 from models.tasks.task import TaskTable
+
+MOST_PATHS = 10
+"""Mechanisms that a path is searched for."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +51,8 @@ def solutions_of(task: TaskTable) -> Solutions:
     for proposal in proposals:
         draft = replace(proposal.draft, note=task.note, loads=task.loads)
         try:
-            examined.append(examine(replace(proposal, draft=draft, speed_rad_s=task.speed_rad_s)))
+            own = replace(proposal, draft=draft, speed_rad_s=task.speed_rad_s)
+            examined.append(followed(examine(own)))
         except CrankcheckError as error:
             refused.append(str(error))
     if not examined:
@@ -58,5 +69,40 @@ def _proposals(task: TaskTable) -> tuple[list[Proposal], int]:
         return rocker_proposals(task)
     if isinstance(task, QuickReturnTask):
         return quick_return_proposals(task)
+    if isinstance(task, FunctionTable):
+        functions: list[Proposal] = [*function_designs(function_task(task))]
+        return functions, len(functions)
+    if isinstance(task, PathTable):
+        return _paths(task)
     assert isinstance(task, StrokeTask)
     return stroke_proposals(task)
+
+
+def _paths(task: PathTable) -> tuple[list[Proposal], int]:
+    """What least squares found, from so many starts."""
+    search = generate(
+        path_task(task),
+        name=task.name,
+        count=MOST_PATHS,
+        starts=task.starts,
+        seed=task.seed,
+        time_s=task.time_s,
+    )
+    return [fit.proposal for fit in search.fits], task.starts
+
+
+def followed(one: Examined) -> Examined:
+    """An examined generator with its structural error, worked out by the reference over the whole
+    range; what can not be assembled there has a fault. What only comes near misses as much."""
+    if not isinstance(one.proposal, FunctionProposal) or one.defects:
+        return replace(one, misses=one.proposal.allowed)
+    try:
+        error = structural_error(one.proposal, one)
+    except ReachError:
+        return replace(one, fault="can not be assembled over the whole range")
+    if one.proposal.task.mechanism == "fourbar":
+        told = f"{math.degrees(error.largest):.4g} deg, RMS {math.degrees(error.rms):.4g} deg"
+    else:
+        told = f"{error.largest:.4g} m, RMS {error.rms:.4g} m"
+    note = f"structural error up to {told} ({error.largest_y:.4g} of y)"
+    return replace(one, notes=(*one.notes, note), misses=error.largest)

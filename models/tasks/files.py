@@ -8,6 +8,8 @@ from pathlib import Path
 from models.errors import CrankcheckError, suggestion
 from models.shipped_tables import find_table, read_table, shipped_in
 from models.tasks.coupler import CouplerTask
+from models.tasks.function import FunctionTable
+from models.tasks.path import PathTable
 from models.tasks.quick_return import QuickReturnTask
 from models.tasks.rocker import RockerTask
 from models.tasks.stroke import StrokeTask
@@ -19,6 +21,8 @@ KINDS: Mapping[str, type[TaskTable]] = {
     "rocker": RockerTask,
     "stroke": StrokeTask,
     "quick-return": QuickReturnTask,
+    "function": FunctionTable,
+    "path": PathTable,
 }
 """What can be asked for, and the table of its file."""
 

@@ -32,6 +32,7 @@ def remarks(one: Examined, task: TaskTable) -> list[str]:
             if not task.pivots_in.holds(place)
         ]
         told += [f"{name} outside the region" for name in outside]
+    told += one.notes
     if one.proposal.doubt:
         told.append(one.proposal.doubt)
     return told

@@ -27,6 +27,7 @@ def proposed(
 ) -> FunctionProposal:
     """The proposal of a generator that meets a task's function at x (n,)."""
     phi = generator.input_start + task.input_turn(x)
+    ends = (generator.input_start, generator.input_start + task.input_range_rad)
     output = task.output_scale * generator.output_start + task.output_way(x)
     positions = tuple(
         PrecisionPosition(float(angle), (_asked(task, float(of)),))
@@ -42,6 +43,7 @@ def proposed(
         task=task,
         generator=generator,
         x_points=tuple(float(each) for each in x),
+        also_rad=ends,
     )
 
 

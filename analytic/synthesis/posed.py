@@ -1,0 +1,46 @@
+"""Function and path tasks as their theories have them, from a user's table."""
+
+from __future__ import annotations
+
+import math
+
+from analytic.synthesis.function.given import GivenFunction
+from analytic.synthesis.function.task import FunctionTask
+from analytic.synthesis.path.task import PathTask
+from models.tasks.function import FunctionTable
+from models.tasks.path import PathTable
+
+
+def function_task(table: FunctionTable) -> FunctionTask:
+    """Raises CrankcheckError for a function or ranges that make no task."""
+    if table.formula is not None:
+        function = GivenFunction.of_formula(table.formula)
+    else:
+        function = GivenFunction.of_table(table.x or [], table.y or [])
+    if table.mechanism == "fourbar":
+        output_range = math.radians(table.output_range_deg or 0.0)
+        output_start = _radians(table.output_start_deg)
+    else:
+        output_range, output_start = table.output_range_m or 0.0, table.output_start_m
+    return FunctionTask(
+        function,
+        *table.range_of_x,
+        math.radians(table.input_range_deg),
+        output_range,
+        mechanism=table.mechanism,
+        points=table.points if isinstance(table.points, int) else tuple(table.points),
+        input_start_rad=_radians(table.input_start_deg),
+        output_start=output_start,
+        ground_m=table.ground_m,
+        equal_ripple=table.equal_ripple,
+    )
+
+
+def path_task(table: PathTable) -> PathTask:
+    """Raises CrankcheckError for points that make no path."""
+    angles = None if table.crank_deg is None else tuple(map(math.radians, table.crank_deg))
+    return PathTask(tuple(complex(*place) for place in table.points_m), angles, table.closed)
+
+
+def _radians(degrees: float | None) -> float | None:
+    return None if degrees is None else math.radians(degrees)
