@@ -112,8 +112,14 @@ def _by_positions(task: RockerTask) -> Swung:
         for number, pose in enumerate((first, second), 1)
         for name, each in own.items()
     ]
+    ends_of = (min(own), max(own))
+    lines = [
+        Segment(pose.at(own[ends_of[0]]), pose.at(own[ends_of[1]]), "given")
+        for pose in (first, second)
+        if len(own) > 1
+    ]
     steps = (
-        Step("the body in its two positions", tuple(dots)),
+        Step("the body in its two positions", (*lines, *dots)),
         Step(
             f"the bisectors of {' and '.join(f'{n}1{n}2' for n in own)} meet in the rotopole O4",
             (*elements, Dot(pivot, O4, "result", fixed=True)),

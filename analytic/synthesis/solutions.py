@@ -24,6 +24,8 @@ from models.tasks.rocker import RockerTask
 from models.tasks.stroke import StrokeTask
 from models.tasks.task import TaskTable
 
+LONGEST_NAME = 34
+"""Letters of a task's name that go on to its scenes, which have 40 with their numbers."""
 MOST_PATHS = 10
 """Mechanisms that a path is searched for."""
 
@@ -49,7 +51,9 @@ def solutions_of(task: TaskTable) -> Solutions:
     proposals, looked = _proposals(task)
     examined, refused = [], []
     for proposal in proposals:
-        draft = replace(proposal.draft, note=task.note, loads=task.loads)
+        draft = replace(
+            proposal.draft, name=task.name, source=task.source, note=task.note, loads=task.loads
+        )
         try:
             own = replace(proposal, draft=draft, speed_rad_s=task.speed_rad_s)
             examined.append(followed(examine(own)))
@@ -58,7 +62,14 @@ def solutions_of(task: TaskTable) -> Solutions:
     if not examined:
         why = f": {refused[0]}" if refused else ""
         raise CrankcheckError(f"{task.name}: no mechanism does it{why}")
-    return Solutions(task, tuple(ranked(examined)), looked, tuple(refused))
+    named = [_named(one, number) for number, one in enumerate(ranked(examined), 1)]
+    return Solutions(task, tuple(named), looked, tuple(refused))
+
+
+def _named(one: Examined, number: int) -> Examined:
+    """A solution whose scene has a name of its own among those of its task."""
+    name = f"{one.scene.name[:LONGEST_NAME]}-{number}"
+    return replace(one, draft=replace(one.draft, name=name), scene=replace(one.scene, name=name))
 
 
 def _proposals(task: TaskTable) -> tuple[list[Proposal], int]:

@@ -30,7 +30,7 @@ class SynthRequest:
     ] = None
     best: Annotated[
         int, typer.Option(min=1, max=1000, help="So many of the solutions are listed and written.")
-    ] = 10
+    ] = 5
     prove: Annotated[
         bool, typer.Option("--prove", help="Run each in every engine, through what is asked.")
     ] = False

@@ -10,7 +10,6 @@ from rich.console import Console
 from analytic.synthesis.examine import Examined
 from analytic.synthesis.sensitivity import monte_carlo, sensitivity
 from analytic.synthesis.solutions import Solutions, solutions_of
-from models.errors import CrankcheckError
 from models.tasks.files import find_task, load_task, shipped_tasks
 from models.tasks.task import TaskTable
 from reports.cli.synthesising import SynthRequest
@@ -20,6 +19,15 @@ from reports.output.numbers import count
 from reports.output.provenance import provenance
 from reports.output.write import check_folder, write
 from reports.plan.chosen import chosen_engines, chosen_profiles
+from reports.sheets.constructions.construction_page import construction_page
+from reports.sheets.constructions.construction_sheet import construction_sheet
+from reports.sheets.constructions.solutions_page import (
+    construction_name,
+    scene_name,
+    solutions_page,
+    solutions_sheet,
+)
+from reports.sheets.paper import Paper
 from reports.synthesis.proof import Met, by_reference, limit_of, proven
 from reports.synthesis.proof_table import proof_frame, proof_table
 from reports.synthesis.sensitivity_table import clearance_in_words, sensitivity_table
@@ -27,7 +35,7 @@ from reports.synthesis.solution_table import solution_frame, solution_table
 from sim.registry import engine
 
 Proofs = Mapping[int, Sequence[Met]]
-FRAME, PROOF = "solutions.csv", "proof.csv"
+FRAME, PROOF, PAGE = "solutions.csv", "proof.csv", "index.html"
 SAMPLES = 1000
 """Mechanisms of the Monte Carlo: two seconds."""
 
@@ -36,7 +44,7 @@ def run_synth(request: SynthRequest, console: Console) -> int:
     """List, write and prove the solutions. Raises CrankcheckError for what can not be asked."""
     if request.kind is None or request.task is None:
         return _list(request.kind, console)
-    path = find_task(request.kind, request.task)
+    paper = Paper.of(request.paper)
     if request.output is not None:
         check_folder(request.output, "-o")
     task = load_task(request.kind, request.task)
@@ -62,11 +70,12 @@ def run_synth(request: SynthRequest, console: Console) -> int:
         for number, one in enumerate(listed, 1)
         if request.prove and not one.defects
     }
+    facts = provenance({name: engine(name).version() for name in engines})
     if request.prove:
-        facts = provenance({name: engine(name).version() for name in engines})
         _show_proof(console, proofs, facts, request)
     if request.output is not None:
-        _write(request.output, path, listed, task, proofs, console)
+        told = _counted(solutions, listed)
+        _write(request.output, listed, task, told, proofs, facts, paper, console)
     met = all(one.within for every in proofs.values() for one in every)
     return 0 if solutions.sound and met else 1
 
@@ -132,23 +141,34 @@ def _show_proof(
 
 def _write(
     folder: Path,
-    task_file: Path,
     listed: Sequence[Examined],
     task: TaskTable,
+    counted: str,
     proofs: Proofs,
+    facts: Mapping[str, str],
+    paper: Paper,
     console: Console,
 ) -> None:
-    """The scenes, the table, the proof."""
-    scenes = {f"solution-{number}.toml": one.text for number, one in enumerate(listed, 1)}
-    texts = {**scenes, FRAME: csv(solution_frame(listed, task))}
+    """The scenes, the tables, the constructions and the page that leads to them."""
+    texts: dict[str, str | bytes] = {
+        scene_name(number): one.text for number, one in enumerate(listed, 1)
+    }
+    texts[FRAME] = csv(solution_frame(listed, task))
     if proofs:
         texts[PROOF] = csv(proof_frame(proofs))
+    for number, one in enumerate(listed, 1):
+        title = f"{one.scene.name}: construction"
+        sheet = construction_sheet(one, paper)
+        texts[construction_name(number, "svg")] = sheet.saved("svg", title)
+        texts[construction_name(number, "html")] = construction_page(one)
+    every = solutions_sheet(listed, task, paper)
+    drawn = None if every is None else every.saved("svg", f"solutions of {task.name}")
+    texts[PAGE] = solutions_page(listed, task, counted, drawn, proofs, facts)
     check_folder(folder, "-o", list(texts))
-    if task_file.resolve().parent == folder.resolve() and task_file.name in texts:
-        raise CrankcheckError(f"-o {folder}: {task_file.name} is the task; choose another folder")
     for name, text in texts.items():
         write(folder / name, text)
-    _say(console, f"{folder}: {count(len(scenes), 'scene')}, {FRAME}" + f", {PROOF}" * bool(proofs))
+    _say(console, f"\n{folder / PAGE}: {count(len(listed), 'solution')}, with scenes, tables and "
+         "constructions beside it")  # fmt: skip
 
 
 def _say(console: Console, words: str) -> None:
