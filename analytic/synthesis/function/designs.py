@@ -110,7 +110,8 @@ def _solved(task: FunctionTask, x: Array, starts: Starts) -> list[Generator]:
 
 def _refined(task: FunctionTask, starts: Starts, generator: Generator) -> FunctionProposal:
     """The proposal of a mechanism, with equal ripples where they are asked for."""
-    x, doubts, spacing = task.x_points, _turned(task, generator), "as given"
+    x, spacing = task.x_points, "as given"
+    doubts: list[str] = []
     if isinstance(task.points, int):
         spacing = "Chebyshev's"
     if task.equal_ripple:
@@ -119,7 +120,7 @@ def _refined(task: FunctionTask, starts: Starts, generator: Generator) -> Functi
             generator, x, spacing = refined.generator, refined.x_points, "for equal ripples"
         except CrankcheckError as fault:
             doubts.append(str(fault))
-    doubts += _gap(task, generator)
+    doubts = [*_turned(task, generator), *doubts, *_gap(task, generator)]
     chosen = {
         f"{name} start": _start_in_words(task, name, getattr(starts, name)) for name in starts.tried
     } | {"spacing": spacing}

@@ -10,7 +10,8 @@ alternating signs.
        -L |- - -'- - -'- -'- -
 
 Newton's steps for the numbers and the level at fixed places, then the places moved to the largest
-errors, and on.
+errors, and on. Where an error has more tips, or its slopes do not alternate as those of polynomials
+do, a step of least largest linear error leads on.
 
 Source: R. S. Hartenberg and J. Denavit, Kinematic Synthesis of Linkages, chapter 10 (respacing of
 precision points); E. Ya. Remez (1934), as in any text on approximation.
@@ -23,7 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq  # type: ignore[import-untyped]  # ships no stubs
+from scipy.optimize import brentq, linprog  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.synthesis.function.generator import Generator
 from analytic.synthesis.function.task import FunctionTask
@@ -87,14 +88,17 @@ def equal_ripple(task: FunctionTask, start: Generator, free: Sequence[str]) -> E
         A start with its points in two assemblies, that does not close over the range, or whose
         error does not change its sign n times; no equal ripples after many steps.
     """
-    course = _Course.of(task)
-    now = course.ripples(start, _one_sign(start, task), 4 + len(free))
+    course, sign = _Course.of(task), _one_sign(start, task)
+    exact = float(np.max(np.abs(start.error(course.turns, course.ways, sign))))
+    if exact <= ROUNDING:  # it generates the function everywhere
+        return EqualRipple(start, task.x_points, exact, exact)
+    now = course.ripples(start, sign, 4 + len(free))
     if isinstance(now, str):
         raise CrankcheckError(f"equal ripples can not be looked for: {now}")
     before = now.largest
     for _ in range(STEPS):
         if now.unevenness <= max(EVEN * now.largest, ROUNDING):
-            return EqualRipple(now.generator, course.zeros(now), now.largest, before)
+            return EqualRipple(now.generator.positive, course.zeros(now), now.largest, before)
         now = _stepped(course, now, free)
     raise CrankcheckError(
         f"no equal ripples after {STEPS} steps: the errors still differ by "
@@ -115,26 +119,50 @@ def _one_sign(start: Generator, task: FunctionTask) -> float:
 
 
 def _stepped(course: _Course, now: Ripples, free: Sequence[str]) -> Ripples:
-    """A step of Newton's for equal tips, halved until the largest error is smaller."""
-    alternating = np.sign(now.tips)
-    turns, ways = course.at(now.x)
-    gradient = now.generator.gradient(turns, now.sign, free)
-    system = np.column_stack([gradient, -alternating])
-    try:
-        step = np.linalg.solve(system, -now.generator.error(turns, ways, now.sign))[:-1]
-    except np.linalg.LinAlgError:
-        step = np.full(len(now.x) - 1, np.nan)
-    for _ in range(HALVINGS):
-        moved = now.generator.moved(step, free)
-        after = course.ripples(moved, now.sign, len(now.x)) if moved.sound else ""
-        if isinstance(after, Ripples) and _better(after, now):
-            return after
-        step = 0.5 * step
+    """A step that makes the largest error smaller: Newton's for equal tips, or where that leads
+    nowhere the best of linear errors; each halved until it does."""
+    for propose in (_newton, _linear):
+        step = propose(course, now, free)
+        for _ in range(HALVINGS):
+            moved = now.generator.moved(step, free)
+            after = course.ripples(moved, now.sign, len(now.x)) if moved.sound else ""
+            if isinstance(after, Ripples) and _better(after, now):
+                return after
+            step = 0.5 * step
     raise CrankcheckError(
         "no equal ripples: no step makes the largest error, "
         f"{now.largest:.3g}, smaller, with tips that differ by {now.unevenness:.1e}; the points of "
         "Chebyshev's spacing stand as they are"
     )
+
+
+def _newton(course: _Course, now: Ripples, free: Sequence[str]) -> Array:
+    """The step after which the tips, were they linear and in place, were equal."""
+    turns, ways = course.at(now.x)
+    gradient = now.generator.gradient(turns, now.sign, free)
+    system = np.column_stack([gradient, -np.sign(now.tips)])
+    try:
+        step = np.linalg.solve(system, -now.generator.error(turns, ways, now.sign))[:-1]
+    except np.linalg.LinAlgError:
+        return np.zeros(len(now.x) - 1)
+    return np.asarray(step, dtype=np.float64)
+
+
+def _linear(course: _Course, now: Ripples, free: Sequence[str]) -> Array:
+    """The step after which the largest error of many looks, were they linear, is least."""
+    x = np.concatenate([course.x[::8], now.x])
+    turns, ways = course.at(x)
+    gradient = now.generator.gradient(turns, now.sign, free)
+    error = now.generator.error(turns, ways, now.sign) / now.largest
+    sizes = np.linalg.norm(gradient, axis=0)
+    scaled, ones = gradient / sizes, np.ones((len(x), 1))
+    found = linprog(
+        np.append(np.zeros(len(sizes)), 1.0),
+        np.block([[scaled / now.largest, -ones], [-scaled / now.largest, -ones]]),
+        np.concatenate([-error, error]),
+        bounds=[(None, None)] * len(sizes) + [(0.0, None)],
+    )
+    return np.asarray(found.x[:-1] / sizes) if found.status == 0 else np.zeros(len(sizes))
 
 
 def _better(after: Ripples, now: Ripples) -> bool:

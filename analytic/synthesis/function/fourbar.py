@@ -22,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.synthesis.function.generator import Generator, opposite
+from analytic.synthesis.function.generator import Generator, opposite, toggled
 from analytic.synthesis.function.pencil import one_vector, vectors_of
 from models.array import Array
 
@@ -37,27 +37,25 @@ Found = tuple[Numbers, float, float]
 class FourBarGenerator(Generator):
     """A four-bar in units of its ground d."""
 
-    @staticmethod
-    def of(k: Numbers, input_start: float, output_start: float) -> Generator:
-        """That with positive lengths: -a at phi is a at phi + 180 degrees, and -c at psi likewise;
-        in Freudenstein's equation k3 changes its sign with either."""
-        k1, k2, k3 = k
-        turned = ("input",) * (k1 < 0.0) + ("output",) * (k2 < 0.0)
+    @property
+    def positive(self) -> FourBarGenerator:
+        """In Freudenstein's equation k3 changes its sign with that of either length."""
+        k1, k2, k3 = self.k
         return FourBarGenerator(
-            (abs(k1), abs(k2), k3 if len(turned) != 1 else -k3),
-            opposite(input_start) if k1 < 0.0 else input_start,
-            opposite(output_start) if k2 < 0.0 else output_start,
-            turned,
+            (abs(k1), abs(k2), k3 if k1 * k2 > 0.0 else -k3),
+            opposite(self.input_start) if k1 < 0.0 else self.input_start,
+            opposite(self.output_start) if k2 < 0.0 else self.output_start,
+            toggled(self.turned, ("input",) * (k1 < 0.0) + ("output",) * (k2 < 0.0)),
         )
 
     @property
     def lengths(self) -> tuple[float, ...]:
         """a, b and c."""
         k1, k2, k3 = self.k
-        if k1 <= 0.0 or k2 <= 0.0:
+        if k1 == 0.0 or k2 == 0.0:
             return math.inf, math.inf, math.inf
         a, c = 1.0 / k1, 1.0 / k2
-        return a, math.sqrt(max(a**2 + c**2 + 1.0 - 2.0 * a * c * k3, 0.0)), c
+        return abs(a), math.sqrt(max(a**2 + c**2 + 1.0 - 2.0 * a * c * k3, 0.0)), abs(c)
 
     def _sides(self, phi: Array) -> tuple[Array, Array, Array]:
         """Those of p cos psi + q sin psi = r."""
@@ -116,7 +114,7 @@ def fourbars(
         found = _of_output(turns, ways, output_start)
     else:
         found = _of_none(turns, ways)
-    return [FourBarGenerator.of(*each) for each in found if all(np.isfinite(each[0]))]
+    return [FourBarGenerator(*each).positive for each in found if all(np.isfinite(each[0]))]
 
 
 def _of_both(turns: Array, ways: Array, phi0: float, psi0: float) -> Found:

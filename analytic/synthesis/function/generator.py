@@ -23,7 +23,7 @@ POLISHES = 4
 
 @dataclass(frozen=True)
 class Generator(ABC):
-    """A mechanism in units of its scale, with positive lengths.
+    """A mechanism in units of its scale; a search may lead through negative lengths.
 
     ``input_start`` [rad] and ``output_start`` [rad, or scales] are where the input and the output
     are at the start of their ranges. ``turned`` names the starts that a negative length turned by
@@ -37,8 +37,13 @@ class Generator(ABC):
 
     @property
     @abstractmethod
+    def positive(self) -> Generator:
+        """The same mechanism with positive lengths, and starts that are turned for that."""
+
+    @property
+    @abstractmethod
     def lengths(self) -> tuple[float, ...]:
-        """Its lengths in scales."""
+        """The sizes of its lengths in scales."""
 
     @abstractmethod
     def discriminant(self, phi: Array) -> Array:
@@ -115,3 +120,8 @@ STARTS = ("input", "output")
 def opposite(angle: float) -> float:
     """An angle half a turn on [rad]."""
     return float(angle + np.pi)
+
+
+def toggled(turned: tuple[str, ...], now: tuple[str, ...]) -> tuple[str, ...]:
+    """The starts that are turned after another turn of some: twice is not at all."""
+    return tuple(name for name in STARTS if (name in turned) != (name in now))

@@ -21,8 +21,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.synthesis.function.fourbar import Found, Numbers, over
-from analytic.synthesis.function.generator import Generator, opposite
+from analytic.synthesis.function.fourbar import Found, over
+from analytic.synthesis.function.generator import Generator, opposite, toggled
 from analytic.synthesis.function.pencil import one_vector, vectors_of
 from models.array import Array
 
@@ -31,24 +31,25 @@ from models.array import Array
 class SliderCrankGenerator(Generator):
     """A slider-crank in units of the slider's range."""
 
-    @staticmethod
-    def of(k: Numbers, input_start: float, output_start: float) -> Generator:
-        """That with a positive crank: -a at phi is a at phi + 180 degrees."""
-        k1, k2, k3 = k
-        if k1 < 0.0:
-            return SliderCrankGenerator(
-                (-k1, -k2, k3), opposite(input_start), output_start, ("input",)
-            )
-        return SliderCrankGenerator(k, input_start, output_start)
+    @property
+    def positive(self) -> SliderCrankGenerator:
+        """With a positive crank: both k1 and k2 change their signs."""
+        k1, k2, k3 = self.k
+        if k1 > 0.0:
+            return self
+        turned = toggled(self.turned, ("input",))
+        return SliderCrankGenerator(
+            (-k1, -k2, k3), opposite(self.input_start), self.output_start, turned
+        )
 
     @property
     def lengths(self) -> tuple[float, ...]:
         """a and b."""
         k1, _, k3 = self.k
-        if k1 <= 0.0:
+        if k1 == 0.0:
             return math.inf, math.inf
         a = 0.5 * k1
-        return a, math.sqrt(max(k3 + a**2 + self.offset**2, 0.0))
+        return abs(a), math.sqrt(max(k3 + a**2 + self.offset**2, 0.0))
 
     @property
     def offset(self) -> float:
@@ -107,7 +108,7 @@ def slider_cranks(
         found = _of_output(turns, output_start + ways, output_start)
     else:
         found = _of_none(turns, ways)
-    return [SliderCrankGenerator.of(*each) for each in found if all(np.isfinite(each[0]))]
+    return [SliderCrankGenerator(*each).positive for each in found if all(np.isfinite(each[0]))]
 
 
 def _of_both(phi: Array, s: Array, phi0: float, s0: float) -> Found:

@@ -1,0 +1,309 @@
+"""Function generators as proposals: met by the reference, with equal ripples, or refused."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.synthesis.examine import Examined, examine, ranked
+from analytic.synthesis.function.designs import function_designs, starts_of
+from analytic.synthesis.function.given import GivenFunction
+from analytic.synthesis.function.structural_error import (
+    FunctionProposal,
+    StructuralError,
+    structural_error,
+)
+from analytic.synthesis.function.task import FunctionTask, MechanismKind
+from models.draft import Draft
+from models.errors import CrankcheckError, ReachError
+from tests.analytic.synthesis.function_cases import known
+
+POWER = GivenFunction.of_formula("x^1.6")
+OUTPUTS = {"fourbar": math.radians(90.0), "slider-crank": 0.05}
+MET = 1e-10
+
+
+def power_task(kind: MechanismKind, count: int, *, equal_ripple: bool = False) -> FunctionTask:
+    """x^1.6 on 1 to 2.5 over 60 degrees of the input, 90 degrees of the output, or 50 mm."""
+    return FunctionTask(
+        POWER,
+        1.0,
+        2.5,
+        math.radians(60.0),
+        OUTPUTS[kind],
+        kind,
+        count,
+        input_start_rad=math.radians(30.0) if count == 3 else None,
+        output_start=(math.radians(60.0) if kind == "fourbar" else 0.025) if count == 3 else None,
+        equal_ripple=equal_ripple,
+    )
+
+
+def best(task: FunctionTask) -> tuple[FunctionProposal, Examined, StructuralError]:
+    """Of the mechanisms without defect that close over the range, that with the least error."""
+    found = []
+    for proposal in function_designs(task):
+        examined = examine(proposal)
+        if not examined.defects and "assembled over" not in proposal.doubt:
+            found.append((proposal, examined, structural_error(proposal, examined)))
+    return min(found, key=lambda one: one[2].largest)
+
+
+def check_known(seed: int, trials: int) -> None:
+    """Random mechanisms: their designs meet their points, and one of them makes the function."""
+    rng = np.random.default_rng(seed)
+    kinds: tuple[MechanismKind, ...] = ("fourbar", "slider-crank")
+    givens = {3: [("input", "output")], 4: [("input",), ("output",)], 5: [()]}
+    for number in range(trials):
+        kind, count = kinds[number % 2], 3 + number // 2 % 3
+        choices = givens[count]
+        case = known(rng, kind, count, choices[number % len(choices)])
+        proposals = function_designs(case.task)
+        errors = []
+        for proposal in proposals:
+            examined = examine(proposal)
+            if examined.least_sine > 1e-3:
+                assert max(examined.off) < MET, (number, examined.off, case)
+            if not examined.defects and "assembled" not in proposal.doubt:
+                errors.append(structural_error(proposal, examined).largest)
+        assert min(errors) < 1e-6 * case.task.output_scale, (number, errors, case)
+
+
+def test_designs_of_random_solvable_tasks_meet_their_points() -> None:
+    check_known(4, 36)
+
+
+@pytest.mark.slow
+def test_designs_of_a_thousand_random_solvable_tasks_meet_their_points() -> None:
+    check_known(5, 1000)
+
+
+@pytest.mark.parametrize(
+    ("kind", "count", "largest", "refined"),
+    [
+        ("fourbar", 3, 9.6868e-3, 5.5055e-3),
+        ("fourbar", 4, 2.8329e-4, 1.4714e-4),
+        ("slider-crank", 3, 1.66349e-4, 1.15942e-4),
+        ("slider-crank", 4, 2.6573e-6, 1.5018e-6),
+        ("slider-crank", 5, 1.3073e-6, 1.1366e-6),
+    ],
+)
+def test_a_power_has_these_structural_errors(
+    kind: MechanismKind, count: int, largest: float, refined: float
+) -> None:
+    plain = best(power_task(kind, count))[2]
+    even = best(power_task(kind, count, equal_ripple=True))[2]
+    assert plain.largest == pytest.approx(largest, rel=1e-3)
+    assert even.largest == pytest.approx(refined, rel=1e-3)
+    assert plain.largest_y == pytest.approx(largest * (2.5**1.6 - 1.0) / OUTPUTS[kind], rel=1e-3)
+    assert 0.0 < plain.rms < plain.largest
+
+
+def test_five_points_of_the_power_have_one_four_bar_with_a_branch_defect() -> None:
+    (proposal,) = function_designs(power_task("fourbar", 5))
+    assert examine(proposal).defects == ["branch defect"]
+
+
+@pytest.mark.parametrize("kind", ["fourbar", "slider-crank"])
+@pytest.mark.parametrize("count", [3, 4, 5])
+def test_equal_ripples_are_equal_and_no_larger_than_before(kind: MechanismKind, count: int) -> None:
+    task = power_task(kind, count)
+    plain, even = function_designs(task), function_designs(replace(task, equal_ripple=True))
+    refined = 0
+    for before, after in zip(plain, even, strict=True):
+        if after.chosen["spacing"] != "for equal ripples":
+            assert "equal ripples" in after.doubt
+            assert after.x_points == before.x_points
+            continue
+        refined += 1
+        first, second = examine(before), examine(after)
+        if first.defects or second.defects:
+            continue
+        error = structural_error(after, second, 4001)
+        assert error.largest <= structural_error(before, first, 4001).largest * (1.0 + 1e-9)
+        parts = np.split(error.error, np.flatnonzero(np.diff(np.sign(error.error))) + 1)
+        tips = np.array([np.max(np.abs(part)) for part in parts])
+        equal = tips > error.largest * (1.0 - 1e-3)
+        assert equal.sum() >= count + 1, tips
+        np.testing.assert_allclose(max(second.off), 0.0, atol=MET)
+    assert refined > 0 or (kind, count) == ("fourbar", 5)
+
+
+def test_a_function_that_a_mechanism_generates_exactly_has_no_ripples() -> None:
+    rng = np.random.default_rng(6)
+    for kind in ("fourbar", "slider-crank"):
+        case = known(rng, kind, 3, ("input", "output"))
+        (proposal,) = function_designs(replace(case.task, equal_ripple=True))
+        assert proposal.doubt == ""
+        assert proposal.x_points == tuple(case.task.x_points)
+        assert structural_error(proposal, examine(proposal)).largest < 1e-12
+
+
+def test_the_reference_and_the_closed_form_tell_one_error() -> None:
+    for kind in ("fourbar", "slider-crank"):
+        proposal, _, error = best(power_task(kind, 3))
+        task, own = proposal.task, proposal.generator
+        turns, ways = task.input_turn(error.x), task.output_scales(error.x)
+        sign = float(own.signs(turns, ways)[0])
+        np.testing.assert_allclose(
+            error.error, own.error(turns, ways, sign) * task.output_scale, atol=1e-12
+        )
+
+
+def test_the_error_is_nothing_in_the_precision_points_and_has_the_sign_of_the_lecture() -> None:
+    proposal, examined, error = best(power_task("fourbar", 3))
+    at = np.interp(proposal.x_points, error.x, error.error)
+    assert np.max(np.abs(at)) < 1e-5
+    # E = f - F: a shorter output way, as of a function half a percent smaller, has a smaller E.
+    less = replace(proposal.task, function=GivenFunction.of_callable(lambda x: 0.995 * x**1.6))
+    assert less.y_ends[0] == pytest.approx(0.995)
+    lowered = replace(proposal, task=less)
+    np.testing.assert_allclose(structural_error(lowered, examined).error, error.error, atol=1e-12)
+
+
+def test_open_starts_are_tried_on_the_grid_that_is_told() -> None:
+    task = power_task("fourbar", 3)
+    opened = replace(task, input_start_rad=None)
+    assert len(list(starts_of(opened))) == 24
+    assert len(list(starts_of(replace(opened, output_start=None)))) == 144
+    assert len(list(starts_of(power_task("fourbar", 4)))) == 24
+    slide = replace(power_task("slider-crank", 3), output_start=None)
+    assert [s.output for s in starts_of(slide)] == [k / 2 - 3.5 for k in range(13)]
+    found = function_designs(opened)
+    assert len({proposal.chosen["input start"] for proposal in found}) == 24
+    # The finer of a grid and one given are one mechanism, up to a half turn.
+    (own,) = function_designs(task)
+    near = min(
+        found,
+        key=lambda p: abs(
+            math.remainder(p.generator.input_start - own.generator.input_start, math.pi)
+        ),
+    )
+    np.testing.assert_allclose(near.generator.lengths, own.generator.lengths, rtol=1e-9)
+    examined = [examine(proposal) for proposal in found]
+    assert not ranked(examined)[0].defects
+
+
+def test_a_start_that_came_out_turned_is_told() -> None:
+    (proposal,) = function_designs(power_task("fourbar", 3))
+    assert "the input starts 180 degrees from the start that was given" in proposal.doubt
+    assert "the output starts 180 degrees" in proposal.doubt
+    first = proposal.positions[0].driver_rad
+    turn = float(proposal.task.input_turn(np.array(proposal.x_points[:1]))[0])
+    assert math.degrees(first - turn) == pytest.approx(210.0)
+
+
+def test_explicit_points_a_falling_function_and_clockwise_ranges() -> None:
+    task = FunctionTask(
+        GivenFunction.of_formula("1/x"),
+        1.0,
+        2.0,
+        math.radians(90.0),
+        math.radians(-90.0),
+        points=(1.9, 1.05, 1.5),
+        input_start_rad=math.radians(30.0),
+        output_start=math.radians(240.0),
+    )
+    assert task.y_ends == pytest.approx((1.0, 0.5))
+    np.testing.assert_allclose(task.output_way(np.array([1.0, 2.0])), [0.0, -math.pi / 2])
+    (proposal,) = function_designs(task)
+    assert proposal.x_points == (1.05, 1.5, 1.9)
+    examined = examine(proposal)
+    assert max(examined.off) < MET
+    assert not examined.defects
+
+
+def test_a_hump_and_a_table_are_generated() -> None:
+    x = np.linspace(0.0, math.pi, 60)
+    table = GivenFunction.of_table(x.tolist(), np.sin(x).tolist(), "a hump")
+    task = FunctionTask(table, 0.0, math.pi, 2.0, 0.6, "slider-crank", 3)
+    assert task.y_ends == pytest.approx((0.0, 1.0), abs=1e-3)
+    _, examined, error = best(task)
+    assert max(examined.off) < MET
+    assert error.largest < 0.05
+
+
+def test_lengths_go_with_the_ground_and_with_the_sliders_range() -> None:
+    task = power_task("fourbar", 3)
+    (one,), (large,) = function_designs(task), function_designs(replace(task, ground_m=3.0))
+    assert lengths(large.draft) == pytest.approx([3.0 * each for each in lengths(one.draft)])
+    slide = power_task("slider-crank", 3)
+    (one,) = function_designs(slide)
+    (large,) = function_designs(replace(slide, output_range=0.15, output_start=0.075))
+    assert lengths(large.draft) == pytest.approx([3.0 * each for each in lengths(one.draft)])
+
+
+def lengths(draft: Draft) -> list[float]:
+    return [float(str(link["length_m"])) for link in draft.links.values()]
+
+
+def test_a_mechanism_that_opens_within_the_range_is_told() -> None:
+    found = [p for p in function_designs(power_task("slider-crank", 4)) if "assembled" in p.doubt]
+    assert found
+    for proposal in found:
+        examined = examine(proposal)
+        with pytest.raises(ReachError, match="does not close over the whole range"):
+            structural_error(proposal, examined)
+
+
+def refused(says: str, **changes: object) -> None:
+    whole: dict[str, object] = {
+        "function": POWER,
+        "x_low": 1.0,
+        "x_high": 2.5,
+        "input_range_rad": 1.0,
+        "output_range": 1.0,
+    }
+    with pytest.raises(CrankcheckError) as told:
+        function_designs(FunctionTask(**(whole | changes)))  # type: ignore[arg-type]
+    assert says in str(told.value)
+
+
+def test_what_is_no_task_is_refused() -> None:
+    refused("a precision point at x = 2.6 was asked for, outside", points=(1.1, 1.5, 2.6))
+    refused("a precision point at x = nan", points=(1.1, 1.5, math.nan))
+    refused("precision points 2 and 3 coincide", points=(1.1, 1.5, 1.5 + 1e-9))
+    refused("2 precision points were asked for", points=2)
+    refused("6 precision points were asked for", points=6)
+    refused("is constant from", function=GivenFunction.of_formula("2 + 0*x"))
+    refused("not defined at x = -1", function=GivenFunction.of_formula("log(x)"), x_low=-1.0)
+    refused("jumps at x = 1.5708", function=GivenFunction.of_formula("tan(x)"))
+    refused("jumps at x = 2", function=GivenFunction.of_callable(lambda x: float(int(x))))
+    refused("give two numbers, the smaller one first", x_low=2.5)
+    refused("give two numbers", x_high=math.inf)
+    refused("an input range of 0 deg", input_range_rad=0.0)
+    refused("an output range of -400 deg", output_range=math.radians(-400.0))
+    refused("a slider's range of 0 m", mechanism="slider-crank", output_range=0.0)
+    refused("a ground length of -1 m", ground_m=-1.0)
+    refused("functions are generated by fourbar or slider-crank", mechanism="cam")
+    refused("leave one of them open", points=4, input_start_rad=0.0, output_start=0.0)
+    refused("leave both open, or ask for 4 points", points=5, input_start_rad=0.0)
+    refused("an input start of nan", input_start_rad=math.nan)
+    refused("they find their own", points=(1.1, 1.5, 2.0), equal_ripple=True)
+    refused("a whole turn of the input apart", points=(1.0, 1.5, 2.5), input_range_rad=math.tau)
+    line = GivenFunction.of_formula("3*x - 1")
+    refused("a whole family of mechanisms meets them", function=line, points=5)
+    refused(
+        "no fourbar meets the 4 precision points",
+        points=4,
+        input_start_rad=math.radians(30),
+        output_range=math.pi / 2,
+        input_range_rad=math.pi / 3,
+    )
+
+
+def test_a_table_is_refused_where_it_is_none_or_too_short() -> None:
+    with pytest.raises(CrankcheckError, match="have to increase"):
+        GivenFunction.of_table([0.0, 0.0], [1.0, 2.0])
+    with pytest.raises(CrankcheckError, match="finite numbers"):
+        GivenFunction.of_table([0.0, 1.0], [1.0, math.nan])
+    refused("its rows go from 1 to 2;", function=GivenFunction.of_table([1.0, 2.0], [0.0, 1.0]))
+
+
+def test_a_python_function_that_raises_is_not_defined_there() -> None:
+    refused("not defined at x = 1", function=GivenFunction.of_callable(lambda x: 1.0 / (x - 1.0)))
+    root = GivenFunction.of_callable(lambda x: (2.0 - x) ** 0.5)  # complex beyond 2
+    refused("is not defined at x = 2.0", function=root)
