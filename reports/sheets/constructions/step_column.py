@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 
-from analytic.synthesis.construction import Curve, Dot, Look
+from analytic.synthesis.construction import Dot, Look
 from reports.figures.style import INK, QUIET, SMALL, wrapped
 from reports.sheets.canvas import line, text
 from reports.sheets.constructions.construction_looks import (
@@ -16,6 +16,7 @@ from reports.sheets.constructions.construction_looks import (
     OTHERS,
     OTHERS_WIDTH,
     Stroke,
+    curves_of,
 )
 from reports.sheets.constructions.construction_view import ConstructionView
 from reports.sheets.paper import MM_PER_IN, Box
@@ -70,8 +71,9 @@ def parts_of(view: ConstructionView, far: Iterable[str]) -> list[list[Part]]:
 
 def _key(view: ConstructionView) -> list[Part]:
     """What the lines are, of those that there are."""
-    every = [each for step in view.steps for each in step.elements]
-    looks = {each.look for each in every if not isinstance(each, Dot | Curve)}
+    coloured = {id(curve) for curve in curves_of(view.steps)}  # by the numbers of their steps
+    every = [each for step in view.steps for each in step.elements if id(each) not in coloured]
+    looks = {each.look for each in every if not isinstance(each, Dot)}
     key = [(words, LOOKS[look]) for look, words in KEY.items() if look in looks]
     key.append(("mechanism in position 1", LOOKS["result"]))
     key += [("in the other positions", Stroke(OTHERS, OTHERS_WIDTH))] * bool(view.others)

@@ -11,14 +11,15 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.synthesis.construction import Curve, Dot, Segment, Step
+from analytic.synthesis.construction import Circle, Curve, Dot, Segment, Step
 from analytic.synthesis.examine import examine
 from models.array import Array
 from models.errors import CrankcheckError
+from reports.figures.style import width_in
 from reports.sheets.constructions.construction_sheet import construction_sheet, laid_out
 from reports.sheets.constructions.construction_view import ConstructionView
-from reports.sheets.constructions.strokes import xy
-from reports.sheets.paper import Paper
+from reports.sheets.constructions.strokes import strokes, xy
+from reports.sheets.paper import MM_PER_IN, Paper
 from tests.reports.sheets.constructions.constructed import (
     burmester_curves,
     far_pole,
@@ -144,15 +145,37 @@ def test_no_letter_is_on_a_line_and_none_off_the_sheet(name: str, paper: Paper) 
     assert overlaps(construction_sheet(EVERY[name](), paper).figure) == []
 
 
+@pytest.mark.parametrize("paper", [A4, UPRIGHT], ids=["A4", "upright"])
 @pytest.mark.parametrize("name", EVERY)
-def test_words_stay_in_their_column_and_lines_in_their_box(name: str) -> None:
-    sheet = laid_out(EVERY[name](), A4)
-    svg = construction_sheet(EVERY[name](), A4).saved("svg", "lines")
+def test_words_stay_in_their_column_and_lines_in_their_box(name: str, paper: Paper) -> None:
+    sheet = laid_out(EVERY[name](), paper)
+    canvas = construction_sheet(EVERY[name](), paper)
     low, high = sheet.box.corners
-    for gid, lines in drawn_lines(svg).items():
+    for gid, lines in drawn_lines(canvas.saved("svg", "lines")).items():
         if gid.startswith("step-"):
-            places = np.concatenate(lines) * (1, -1) + (0, A4.height)
+            places = np.concatenate(lines) * (1, -1) + (0, paper.height)
             assert np.all((places > low - 0.01) & (places < high + 0.01)), gid
+    low, high = sheet.column.corners
+    words = canvas.named("frame").texts[2:]  # after title and note
+    assert len(words) >= len(sheet.view.steps)
+    for word in words:
+        x, y = word.get_position()
+        assert low[0] < x < x + MM_PER_IN * width_in(word.get_text()) < high[0]
+        assert low[1] < y < high[1]
+
+
+def test_an_arc_goes_from_its_one_angle_to_the_other() -> None:
+    low, high = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
+    for start, end in ((0.2, 1.4), (5.0, 0.5), (-1.0, 2.0), (7.0, 7.5)):
+        (line,) = strokes(Circle(0.1j, 0.5, arc=(start, end)), low, high)
+        for place, angle in ((line[0], start), (line[-1], end)):
+            exact = xy(0.1j + 0.5 * np.exp(1j * angle))
+            assert place == pytest.approx(exact, abs=1e-12)
+    # of a large one, as much as is in the box, wherever its angles begin
+    for turn in (-math.tau, 0.0, math.tau):
+        (line,) = strokes(Circle(-50.0 + 0j, 50.0, arc=(turn, turn + 0.01)), low, high)
+        assert line[0] == pytest.approx((0.0, 0.0), abs=1e-9)
+        assert line[-1] == pytest.approx(xy(-50.0 + 50.0 * np.exp(0.01j)), abs=1e-9)
 
 
 def test_what_is_far_off_is_told_and_does_not_shrink_the_figure() -> None:
