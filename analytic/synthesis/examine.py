@@ -126,7 +126,8 @@ def examine(proposal: Proposal) -> Examined:
     on_arc = [arc.signs == p.signs and arc.holds(p.driver_rad, MARGIN / 100) for p in places]
     angles = _unwrapped(arc, [position.driver_rad for position in proposal.positions])
     own = [angle for angle, on in zip(angles, on_arc, strict=True) if on]
-    own += [_beside(angle, own) for angle in proposal.also_rad if arc.holds(angle)]
+    if arc.low is not None:
+        own += _unwrapped(arc, [angle for angle in proposal.also_rad if arc.holds(angle)])
     driver = _driver(proposal.driver, arc, own, speed)
     draft = proposal.draft.driven(driver).with_branch(branch)
     scene = draft.scene
@@ -226,11 +227,6 @@ def _motion(scene: Scene, angles: Array, positions: Sequence[PrecisionPosition] 
         sliders=sliders,
         bound=False,
     )
-
-
-def _beside(angle: float, others: Sequence[float]) -> float:
-    """An angle [rad] without the whole turns that it is away from others."""
-    return others[0] + math.remainder(angle - others[0], math.tau)
 
 
 def _unwrapped(arc: Arc, angles: Sequence[float]) -> list[float]:
