@@ -18,7 +18,15 @@ from models.tasks.files import load_task, shipped_tasks
 from models.tasks.task import TaskTable
 from reports.synthesis.proof import by_reference, proven
 
-EVERY = [(kind, name) for kind, names in shipped_tasks().items() for name in names]
+QUICK = {"function": "power-4-points", "path": "oval"}
+"""Of kinds whose tasks take seconds, the one that is not slow."""
+EVERY = [
+    pytest.param(kind, name, marks=pytest.mark.slow)
+    if QUICK.get(kind, name) != name
+    else (kind, name)
+    for kind, names in shipped_tasks().items()
+    for name in names
+]
 
 
 def best(kind: str, name: str) -> tuple[Examined, TaskTable]:
@@ -29,11 +37,12 @@ def best(kind: str, name: str) -> tuple[Examined, TaskTable]:
 @pytest.mark.parametrize(("kind", "name"), EVERY)
 def test_shipped_tasks_are_met_by_the_reference_and_the_engines(kind: str, name: str) -> None:
     one, task = best(kind, name)
-    if one.defects:
-        assert name == "five-positions"
+    if name in ("five-positions", "power-5-points"):
+        assert one.defects, "the one mechanism that there is"
         return
+    assert not one.defects
     exact = by_reference(one, task)
-    assert max(met.off for met in exact) < 1e-12
+    assert max(met.off for met in exact) < 1e-12 + one.proposal.allowed * one.scene.longest_m
     for engine in ("mujoco", "pymunk"):
         every = proven(one, task, engine)
         assert len(every) == len(exact)
