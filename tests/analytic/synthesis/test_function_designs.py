@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analytic.kinematics import solve_driven
+from analytic.synthesis.construction import Dot, Segment
 from analytic.synthesis.examine import Examined, examine, ranked
 from analytic.synthesis.function.designs import function_designs, starts_of
 from analytic.synthesis.function.given import GivenFunction
@@ -157,6 +159,8 @@ def test_the_error_is_nothing_in_the_precision_points_and_has_the_sign_of_the_le
     proposal, examined, error = best(power_task("fourbar", 3))
     at = np.interp(proposal.x_points, error.x, error.error)
     assert np.max(np.abs(at)) < 1e-5
+    assert error.rms == pytest.approx(math.sqrt(float(np.mean(error.error**2))), rel=2e-3)
+    assert error.largest >= np.max(np.abs(error.error))
     # E = f - F: a shorter output way, as of a function half a percent smaller, has a smaller E.
     less = replace(proposal.task, function=GivenFunction.of_callable(lambda x: 0.995 * x**1.6))
     assert less.y_ends[0] == pytest.approx(0.995)
@@ -238,6 +242,23 @@ def test_lengths_go_with_the_ground_and_with_the_sliders_range() -> None:
 
 def lengths(draft: Draft) -> list[float]:
     return [float(str(link["length_m"])) for link in draft.links.values()]
+
+
+@pytest.mark.parametrize("kind", ["fourbar", "slider-crank"])
+def test_the_steps_draw_the_links_where_the_reference_has_them(kind: MechanismKind) -> None:
+    (proposal,) = function_designs(power_task(kind, 3))
+    examined = examine(proposal)
+    points, result = proposal.steps
+    drawn = [e for e in result.elements if isinstance(e, Segment)]
+    lengths_m = [abs(each.end - each.start) for each in drawn]
+    assert lengths_m == pytest.approx(lengths(proposal.draft))
+    angles = np.array([position.driver_rad for position in proposal.positions])
+    motion = solve_driven(examined.scene, angles, np.ones(1), np.zeros(1), bound=False)
+    dots = {e.letter: e.place for e in points.elements if isinstance(e, Dot)}
+    for pin in "AB":
+        places = [dots[f"{pin}{number}"] for number in (1, 2, 3)]
+        position = motion.points[pin].position
+        np.testing.assert_allclose(position[:, 0] + 1j * position[:, 1], places, atol=1e-12)
 
 
 def test_a_mechanism_that_opens_within_the_range_is_told() -> None:

@@ -192,3 +192,16 @@ def test_the_gradient_is_that_of_differences() -> None:
             np.testing.assert_allclose(
                 (ends[0] - ends[1]) / 2e-6, exact[:, k], rtol=1e-6, atol=1e-8
             )
+
+
+def test_polishing_takes_away_what_rounding_left() -> None:
+    rng = np.random.default_rng(3)
+    for kind in ("fourbar", "slider-crank"):
+        case = known(rng, kind, 5, ())
+        turns = case.task.input_turn(case.task.x_points)
+        own = case.generator.output(case.generator.input_start + turns, case.sign)
+        free, step = ("input", "output"), 1e-7 * np.array([1.0, -1.0, 1.0, 1.0, -1.0])
+        rough = case.generator.moved(step, free)
+        assert np.max(np.abs(rough.error(turns, own, case.sign))) > 1e-9
+        fine = rough.polished(turns, own, free)
+        assert np.max(np.abs(fine.error(turns, own, case.sign))) < 1e-14
