@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import isotonic_regression  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.synthesis.path.coupler_curve import CouplerCurve, cognates, real_size
-from analytic.synthesis.path.fit import LARGEST, Fitted
+from analytic.synthesis.path.fit import TOO_LARGE, Fitted
 from analytic.synthesis.path.task import PathTask
 from analytic.synthesis.path.unit_four_bar import least_sine
 from models.array import Array
@@ -119,7 +119,7 @@ def _cognates(one: Candidate, task: PathTask) -> Iterator[Candidate]:
 
 def _leading(four_bar: CouplerCurve, angles: Array, task: PathTask) -> Iterator[Candidate]:
     """A four-bar, unless its crank does not lead through its angles, or it is far too large."""
-    small = math.isfinite(four_bar.size) and four_bar.size < 2.0 * LARGEST * task.radius_m
+    small = math.isfinite(four_bar.size) and four_bar.size <= TOO_LARGE * task.radius_m
     if not small or not four_bar.leads_through(angles):
         return
     if task.closed and four_bar.family == "limited":

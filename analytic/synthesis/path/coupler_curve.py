@@ -105,8 +105,7 @@ class CouplerCurve:
 def real_size(fit: Fitted) -> tuple[CouplerCurve, Array]:
     """The four-bar of a fit, in the unit of its path, and the crank's angles [rad]."""
     a, b, c = (float(each) for each in lengths(fit.family, fit.x))
-    origin, crank, arm = (complex(each) for each in fit.placing)
-    ground = crank / a
+    origin, ground, arm = (complex(each) for each in fit.placing)
     length, turn = abs(ground), cmath.phase(ground)
     own = CouplerCurve(
         origin, origin + ground, a * length, b * length, c * length, arm / ground * length, 1

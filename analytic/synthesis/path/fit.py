@@ -30,7 +30,9 @@ from analytic.synthesis.path.unit_four_bar import (
 from models.array import Array
 
 LARGEST = 12.0
-"""Of the placing numbers, over the radius of the path: larger mechanisms are of no use."""
+"""Of the placing numbers, over the radius of the path."""
+TOO_LARGE = 2.0 * LARGEST
+"""Of a link, over the radius of the path: larger mechanisms are of no use."""
 PENALTY = 3.0
 """The weight of a dyad that does not close, over the radius of the path."""
 INSIDE = 0.999
@@ -41,7 +43,7 @@ BOXED = slice(0, 9)
 
 @dataclass(frozen=True)
 class Fitted:
-    """A four-bar near the points of a unit path: numbers of its shape, placing numbers O, K, Q,
+    """A four-bar near the points of a unit path: numbers of its shape, placing numbers O, G, Q,
     and the crank's angles [rad] from the ground on.
 
     ``cost`` is the mean square of the distances, ``mirrored`` whether they are from the mirror
@@ -55,11 +57,19 @@ class Fitted:
     cost: float
     mirrored: bool = False
 
+    @property
+    def size(self) -> float:
+        """The longest of its links, over the radius of the path."""
+        _, ground, arm = self.placing
+        shape = lengths(self.family, self.x)
+        far = np.abs([arm, arm - ground * shape[1]])
+        return float(max(np.abs(ground) * max(1.0, *(float(each) for each in shape)), *far))
+
 
 def placed(lengths_of: tuple[Array, Array, Array], phi: Array, points: Complexes) -> Complexes:
-    """The placing numbers O, K, Q that fit points best, by linear least squares, (3,)."""
+    """The placing numbers O, G, Q that fit points best, by linear least squares, (3,)."""
     u, _ = direction(lengths_of, phi)
-    columns = np.stack([np.ones_like(u), np.exp(1j * phi), u], axis=1)
+    columns = np.stack([np.ones_like(u), lengths_of[0] * np.exp(1j * phi), u], axis=1)
     return np.asarray(np.linalg.lstsq(columns, points, rcond=1e-9)[0])
 
 
@@ -118,8 +128,8 @@ class _Problem:
         fit = self.unpacked(z)
         a, b, c = (float(each) for each in lengths(self.family, fit.x))
         at = turn((a, b, c), fit.phi)
-        origin, crank, arm = fit.placing
-        off = origin + crank * np.exp(1j * fit.phi) + arm * at.u - self.path.points
+        origin, ground, arm = fit.placing
+        off = origin + ground * a * np.exp(1j * fit.phi) + arm * at.u - self.path.points
         opened = [PENALTY * at.excess] if self.family == "limited" else []
         return np.concatenate([off.real, off.imag, *opened])
 
@@ -128,18 +138,23 @@ class _Problem:
         fit = self.unpacked(z)
         a, b, c = (float(each) for each in lengths(self.family, fit.x))
         at = turn((a, b, c), fit.phi)
-        _, crank, arm = fit.placing
-        e, one = np.exp(1j * fit.phi), np.ones_like(at.u)
+        _, ground, arm = fit.placing
+        e, one = a * np.exp(1j * fit.phi), np.ones_like(at.u)
         by_shape = lengths_jacobian(self.family, fit.x)
-        by_angle = 1j * crank * e + arm * at.d_phi
-        columns = [*(arm * (by_shape @ at.d_shape)), one, 1j * one, e, 1j * e, at.u, 1j * at.u]
+        by_angle = 1j * ground * e + arm * at.d_phi
+        by_lengths = arm * at.d_shape
+        by_lengths[0] += ground * e / a
+        columns = [*(by_shape @ by_lengths), one, 1j * one, e, 1j * e, at.u, 1j * at.u]
         fixed = np.array(columns).T
         off = np.hstack([fixed, self._spread(by_angle)])
         rows = [off.real, off.imag]
         if self.family == "limited":
             shut = np.zeros((len(e), 9))
             shut[:, :3] = (by_shape @ at.d_excess).T
-            rows.append(PENALTY * np.hstack([shut, self._spread(at.d_excess_phi)]))
+            rows.append(
+                PENALTY
+                * np.hstack([shut, self._spread(at.d_excess_phi.astype(np.complex128)).real])
+            )
         every = np.concatenate(rows)
         every[:, BOXED] *= self.box[1] * np.cos(z[BOXED])
         return np.asarray(every)
@@ -148,7 +163,6 @@ class _Problem:
         turned = self.path.turned
         return z[9:].copy() if turned is None else np.asarray(z[9] + turned)
 
-    def _spread(self, column: Complexes | Array) -> Complexes | Array:
+    def _spread(self, column: Complexes) -> Complexes:
         """A derivative by each point's own angle, or by the one that all share."""
-        spread: Complexes | Array = np.diag(column) if self.path.turned is None else column[:, None]
-        return spread
+        return np.diag(column) if self.path.turned is None else column[:, None]

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from analytic.synthesis.path.fit import Fitted, refit
+from analytic.synthesis.path.fit import TOO_LARGE, Fitted, refit
 from analytic.synthesis.path.task import MOST, UnitPath
 from analytic.synthesis.path.unit_four_bar import BOUNDS
 
@@ -82,19 +82,21 @@ def fitted(starts: Sequence[Fitted], path: UnitPath, clock: Clock) -> list[Fitte
             done.append(_fit(start, path, each))
             clock.fitted(each, done[-1])
         rest = current[len(done) :] if number > 0 else []
-        current = _apart(sorted(done + rest, key=lambda fit: fit.cost))
+        current = _apart(sorted(done + rest, key=lambda fit: (fit.size > TOO_LARGE, fit.cost)))
         if not clock.complete:
             break
     return current
 
 
 def _fit(start: Fitted, path: UnitPath, each: Round) -> Fitted:
-    """A fit over some of the points, with the crank's angles in all of them."""
+    """A fit over some of the points, with the crank's angles in all of them; the start, where the
+    fit grows too large."""
     own = path.mirrored if start.mirrored else path
     keep = np.arange(len(own.points)) if each.points >= len(own.points) else own.kept(each.points)
     fit = refit(replace(start, phi=start.phi[keep]), own.only(keep), each.evaluations)
     change = np.interp(np.arange(len(own.points)), keep, fit.phi - start.phi[keep])
-    return replace(fit, phi=start.phi + change)
+    grows = fit.size > TOO_LARGE >= start.size and math.isfinite(start.cost)
+    return start if grows else replace(fit, phi=start.phi + change)
 
 
 def _apart(fits: Sequence[Fitted]) -> list[Fitted]:

@@ -1,9 +1,9 @@
 """Starts for a path with timing: which shapes fit, with the best place and size of each.
 
-Of P_j = O + K exp(i phi_j) + Q u(phi_j) the first two terms span the same plane for all four-bars,
-as the angles phi_j are given but for their start. What they leave of the points, y, and of the
-coupler's direction, w, tells the rest: the least sum of squares is |y|^2 - |w* y|^2 / |w|^2. That
-is one product for a shape and a start of the crank, so that tens of thousands are looked at.
+Of P_j = O + G a exp(i phi_j) + Q u(phi_j) the first two terms span the same plane for all
+four-bars, as the angles phi_j are given but for their start. What they leave of the points, y, and
+of the coupler's direction, w, tells the rest: the least sum of squares is |y|^2 - |w* y|^2 / |w|^2.
+That is one product for a shape and a start of the crank, so that tens of thousands are looked at.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def _costs(path: UnitPath, family: Family, x: Array, start: Array) -> Array:
     """The least sums of squares, inf where the mechanism is too large or does not close."""
     assert path.turned is not None
     crank = np.exp(1j * path.turned)
-    common, _ = np.linalg.qr(np.stack([np.ones_like(crank), crank], axis=1))
+    common, triangle = np.linalg.qr(np.stack([np.ones_like(crank), crank], axis=1))
     a, b, c = (each[:, None] for each in lengths(family, x))
     u, cosine = direction((a, b, c), start[:, None] + path.turned)
     y, w = _left(path.points[None], common)[0], _left(u, common)
@@ -80,7 +80,12 @@ def _costs(path: UnitPath, family: Family, x: Array, start: Array) -> Array:
     product = w.conj() @ y
     arm = product / np.maximum(square, 1e-12)
     cost = np.sum(np.abs(y) ** 2) - np.abs(product) ** 2 / np.maximum(square, 1e-12)
-    bad = (np.abs(arm) > LARGEST) | (np.max(np.abs(cosine), axis=1) >= 1.0)
+    ground = ((path.points - arm[:, None] * u) @ common[:, 1].conj()) / (triangle[1, 1] * a[:, 0])
+    bad = (
+        (np.abs(arm) > LARGEST)
+        | (np.abs(ground) > LARGEST)
+        | (np.max(np.abs(cosine), axis=1) >= 1.0)
+    )
     return np.where(bad, np.inf, cost)
 
 

@@ -10,9 +10,9 @@
 
 A coupler point of any four-bar of this shape, however large and wherever it stands, is at
 
-    P = O + K exp(i phi) + Q u(phi)
+    P = O + G a exp(i phi) + Q u(phi)
 
-with three complex numbers O (the fixed pivot), K (crank over exp(i phi)) and Q (place in the
+with three complex numbers O (the fixed pivot), G (the ground, from O2 to O4) and Q (place in the
 coupler), in which it is linear. The other assembly is the mirror image of this one.
 """
 
