@@ -1,4 +1,4 @@
-"""Function and path tasks as their theories have them, from a user's table."""
+"""Tasks of functions, paths and lines as their theories have them, from a user's table."""
 
 from __future__ import annotations
 
@@ -6,9 +6,13 @@ import math
 
 from analytic.synthesis.function.given import GivenFunction
 from analytic.synthesis.function.task import FunctionTask
+from analytic.synthesis.hoeken import hoeken
+from analytic.synthesis.line_draft import StraightLine
 from analytic.synthesis.path.task import PathTask
+from analytic.synthesis.straight_line import straight_line
 from models.tasks.function import FunctionTable
 from models.tasks.path import PathTable
+from models.tasks.straight_line import StraightLineTable
 
 
 def function_task(table: FunctionTable) -> FunctionTask:
@@ -44,3 +48,24 @@ def path_task(table: PathTable) -> PathTask:
 
 def _radians(degrees: float | None) -> float | None:
     return None if degrees is None else math.radians(degrees)
+
+
+def straight_line_of(table: StraightLineTable) -> StraightLine:
+    """The linkage of a straight line. Raises CrankcheckError for what none has."""
+    start, direction = complex(*table.start_m), math.radians(table.direction_deg)
+    if table.linkage == "hoeken":
+        return hoeken(
+            table.length_m,
+            share=None if table.turn_deg is None else table.turn_deg / 360.0,
+            deviation=table.deviation,
+            even=table.even or "line",
+            start=start,
+            direction_rad=direction,
+        )
+    return straight_line(
+        table.linkage,
+        table.length_m,
+        deviation=table.deviation,
+        start=start,
+        direction_rad=direction,
+    )

@@ -11,7 +11,7 @@ from analytic.synthesis.examine import Examined, examine, ranked
 from analytic.synthesis.function.designs import function_designs
 from analytic.synthesis.function.structural_error import FunctionProposal, structural_error
 from analytic.synthesis.path.search import generate
-from analytic.synthesis.posed import function_task, path_task
+from analytic.synthesis.posed import function_task, path_task, straight_line_of
 from analytic.synthesis.quick_return import quick_return_proposals
 from analytic.synthesis.rocker import rocker_proposals
 from analytic.synthesis.strokes import stroke_proposals
@@ -21,6 +21,7 @@ from models.tasks.function import FunctionTable
 from models.tasks.path import PathTable
 from models.tasks.quick_return import QuickReturnTask
 from models.tasks.rocker import RockerTask
+from models.tasks.straight_line import StraightLineTable
 from models.tasks.stroke import StrokeTask
 from models.tasks.task import TaskTable
 
@@ -85,6 +86,8 @@ def _proposals(task: TaskTable) -> tuple[list[Proposal], int]:
         return functions, len(functions)
     if isinstance(task, PathTable):
         return _paths(task)
+    if isinstance(task, StraightLineTable):
+        return [straight_line_of(task).proposal], 1
     assert isinstance(task, StrokeTask)
     return stroke_proposals(task)
 

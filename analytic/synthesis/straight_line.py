@@ -31,6 +31,7 @@ from analytic.synthesis.straight_part import longest
 
 Kind = Literal["chebyshev", "watt", "roberts", "evans"]
 
+
 @dataclass(frozen=True)
 class Textbook:
     """A linkage in the textbook's numbers, its crank's angle in the middle of the straight part

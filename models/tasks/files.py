@@ -12,6 +12,7 @@ from models.tasks.function import FunctionTable
 from models.tasks.path import PathTable
 from models.tasks.quick_return import QuickReturnTask
 from models.tasks.rocker import RockerTask
+from models.tasks.straight_line import StraightLineTable
 from models.tasks.stroke import StrokeTask
 from models.tasks.task import TaskTable
 
@@ -23,6 +24,7 @@ KINDS: Mapping[str, type[TaskTable]] = {
     "quick-return": QuickReturnTask,
     "function": FunctionTable,
     "path": PathTable,
+    "straight-line": StraightLineTable,
 }
 """What can be asked for, and the table of its file."""
 
