@@ -21,7 +21,7 @@ from analytic.synthesis.path.coupler_curve import CouplerCurve, real_size
 from analytic.synthesis.path.descriptors import descriptors, match
 from analytic.synthesis.path.fit import Fitted, placed
 from analytic.synthesis.path.spread import between, spread
-from analytic.synthesis.path.task import PathTask, UnitPath
+from analytic.synthesis.path.task import UnitPath, refuse_points
 from analytic.synthesis.path.unit_four_bar import (
     BOUNDS,
     FULL,
@@ -139,18 +139,18 @@ def similar(points: Sequence[complex], count: int = 10) -> list[Similar]:
     Parameters
     ----------
     points
-        Points of the curve in order [m], the first one listed once.
+        Points of the curve in order [m], as many as there are, the first one listed once.
     count
         How many.
 
     Raises
     ------
     CrankcheckError
-        Points that are no path: see `PathTask`.
+        Points that are no path: fewer than four, or some that coincide with the next one.
     """
-    task = PathTask(tuple(points), closed=True)
-    found = _ranked(task.unit, count)
+    refuse_points(points, closed=True)
+    unit, middle, radius = UnitPath.of(np.array(points, dtype=np.complex128))
     return [
-        Similar(similarity, real_size(fit)[0].moved(complex(task.radius_m), task.middle))
-        for similarity, fit in found
+        Similar(similarity, real_size(fit)[0].moved(complex(radius), middle))
+        for similarity, fit in _ranked(unit, count)
     ]

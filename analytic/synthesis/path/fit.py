@@ -131,7 +131,7 @@ class _Problem:
         origin, ground, arm = fit.placing
         off = origin + ground * a * np.exp(1j * fit.phi) + arm * at.u - self.path.points
         opened = [PENALTY * at.excess] if self.family == "limited" else []
-        return np.concatenate([off.real, off.imag, *opened])
+        return np.concatenate([off.real, off.imag, *opened, np.zeros(self._spare)])
 
     def jacobian(self, z: Array) -> Array:
         """Their derivatives, (residuals, unknowns)."""
@@ -155,9 +155,16 @@ class _Problem:
                 PENALTY
                 * np.hstack([shut, self._spread(at.d_excess_phi.astype(np.complex128)).real])
             )
-        every = np.concatenate(rows)
+        every = np.concatenate([*rows, np.zeros((self._spare, rows[0].shape[1]))])
         every[:, BOXED] *= self.box[1] * np.cos(z[BOXED])
         return np.asarray(every)
+
+    @property
+    def _spare(self) -> int:
+        """Residuals of 0 that few points need: the library wants as many as there are unknowns."""
+        count = len(self.path.points)
+        angles = count if self.path.turned is None else 1
+        return max(0, 9 + angles - 2 * count)
 
     def _phi(self, z: Array) -> Array:
         turned = self.path.turned

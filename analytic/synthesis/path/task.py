@@ -34,6 +34,13 @@ class UnitPath:
     points: Complexes
     turned: Array | None
 
+    @staticmethod
+    def of(points: Complexes, turned: Array | None = None) -> tuple[UnitPath, complex, float]:
+        """The unit path of points [m], their middle and their radius [m]."""
+        middle = complex(np.mean(points))
+        radius = float(np.sqrt(np.mean(np.abs(points - middle) ** 2)))
+        return UnitPath((points - middle) / radius, turned), middle, radius
+
     @property
     def mirrored(self) -> UnitPath:
         """The mirror image, that a mechanism of the other assembly draws."""
@@ -69,28 +76,9 @@ class PathTask:
     closed: bool = False
 
     def __post_init__(self) -> None:
-        count = len(self.points)
-        if not LEAST <= count <= MOST:
-            raise CrankcheckError(
-                f"a path of {count} points was asked for; give {LEAST} to {MOST} points"
-            )
-        if not np.isfinite(self.array).all():
-            raise CrankcheckError("the points of a path have to be finite numbers [m]")
-        self._refuse_coinciding()
+        refuse_points(self.points, closed=self.closed, most=MOST)
         if self.crank_rad is not None:
-            _refuse_angles(self.crank_rad, count)
-
-    def _refuse_coinciding(self) -> None:
-        size = float(np.ptp(self.array.real) + np.ptp(self.array.imag))
-        pairs = list(itertools.pairwise(range(len(self.points))))
-        for i, j in pairs + [(len(self.points) - 1, 0)] * self.closed:
-            if abs(self.points[j] - self.points[i]) <= SAME * size:
-                at = self.points[i]
-                last = "; a closed path lists its first point once" if j == 0 else ""
-                raise CrankcheckError(
-                    f"points {i + 1} and {j + 1} of the path coincide at ({at.real:g}, "
-                    f"{at.imag:g}) m; leave one of them out{last}"
-                )
+            _refuse_angles(self.crank_rad, len(self.points))
 
     @property
     def array(self) -> Complexes:
@@ -110,23 +98,44 @@ class PathTask:
     @property
     def middle(self) -> complex:
         """The mean of the points [m]."""
-        return complex(np.mean(self.array))
+        return UnitPath.of(self.array)[1]
 
     @property
     def radius_m(self) -> float:
         """The root of the mean square of their distances from the middle [m]."""
-        return float(np.sqrt(np.mean(np.abs(self.array - self.middle) ** 2)))
+        return UnitPath.of(self.array)[2]
 
     @property
     def unit(self) -> UnitPath:
         """The path about its middle, over its radius."""
-        return UnitPath((self.array - self.middle) / self.radius_m, self.turned_rad)
+        return UnitPath.of(self.array, self.turned_rad)[0]
 
     @property
     def freedom(self) -> int:
         """How many numbers of a four-bar the path leaves open; negative of one met only nearly."""
         free = DETERMINED[self.is_timed] - len(self.points)
         return 2 * free if self.is_timed else free
+
+
+def refuse_points(points: Sequence[complex], *, closed: bool, most: float = math.inf) -> None:
+    """Raise CrankcheckError for points [m] that are no path, or more than so many."""
+    count = len(points)
+    if not LEAST <= count <= most:
+        range_ = f"{LEAST} to {most}" if math.isfinite(most) else f"{LEAST} or more"
+        raise CrankcheckError(f"a path of {count} points was asked for; give {range_} points")
+    places = np.array(points, dtype=np.complex128)
+    if not np.isfinite(places).all():
+        raise CrankcheckError("the points of a path have to be finite numbers [m]")
+    size = float(np.ptp(places.real) + np.ptp(places.imag))
+    pairs = list(itertools.pairwise(range(count)))
+    for i, j in pairs + [(count - 1, 0)] * closed:
+        if abs(points[j] - points[i]) <= SAME * size:
+            at = points[i]
+            last = "; a closed path lists its first point once" if j == 0 else ""
+            raise CrankcheckError(
+                f"points {i + 1} and {j + 1} of the path coincide at ({at.real:g}, {at.imag:g}) m; "
+                f"leave one of them out{last}"
+            )
 
 
 def _refuse_angles(angles: Sequence[float], count: int) -> None:

@@ -1,0 +1,201 @@
+"""Path generation: four-bars are found again from points that they go through."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve_driven
+from analytic.synthesis.examine import examine
+from analytic.synthesis.path.search import PathFit, generate
+from analytic.synthesis.path.task import PathTask
+from models.array import Array
+from models.errors import CrankcheckError
+from tests.analytic.synthesis.random_paths import random_path
+
+KINDS = list(itertools.product((True, False), (True, False)))
+NAMES = [f"{'timed' if t else 'free'}-{'closed' if c else 'open'}" for t, c in KINDS]
+
+
+def off_by_reference(fit: PathFit, task: PathTask) -> Array:
+    """How far the reference is from the points, at the angles of the precision positions [m]."""
+    angles = np.array([position.driver_rad for position in fit.examined.positions])
+    motion = solve_driven(fit.examined.scene, angles, np.ones(1), np.zeros(1), bound=False)
+    place = motion.points["P"].position
+    return np.asarray(np.abs(place[:, 0] + 1j * place[:, 1] - task.array))
+
+
+@pytest.mark.parametrize(("timed", "closed"), KINDS, ids=NAMES)
+def test_a_four_bar_is_found_again_from_its_path(timed: bool, closed: bool) -> None:
+    for seed in (1, 3):
+        _, _, task = random_path(seed, 15, timed=timed, closed=closed)
+        found = generate(task)
+        best = found.fits[0]
+        assert best.rms_m < 1e-4 * task.radius_m
+        assert found.complete
+        for fit in found.fits:
+            off = off_by_reference(fit, task)
+            assert not fit.examined.defects
+            assert fit.examined.turns_fully or not closed
+            assert np.max(off) == pytest.approx(fit.largest_m, rel=1e-6, abs=1e-9 * task.radius_m)
+            assert fit.rms_m == pytest.approx(
+                np.sqrt(np.mean(off**2)), rel=1e-6, abs=1e-9 * task.radius_m
+            )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("timed", "closed", "least"),
+    [(True, True, 0.95), (True, False, 0.8), (False, True, 0.9), (False, False, 0.8)],
+    ids=NAMES,
+)
+def test_most_of_forty_four_bars_are_found_again(timed: bool, closed: bool, least: float) -> None:
+    near = 0
+    for seed in range(40):
+        _, _, task = random_path(seed, 20, timed=timed, closed=closed)
+        near += generate(task).fits[0].rms_m < 1e-4 * task.radius_m
+    assert near >= least * 40
+
+
+def test_timing_is_kept_and_without_it_the_angles_are_free() -> None:
+    one, angles, task = random_path(4, 12, timed=True, closed=True)
+    for fit in generate(task, starts=24).fits:
+        assert np.diff(fit.crank_rad) == pytest.approx(np.diff(angles), abs=1e-5)
+    assert task.turned_rad is not None
+    # Other angles for the same points are another task, that the same four-bar does not do.
+    warped = task.turned_rad + 0.15 * np.sin(task.turned_rad)
+    other = replace(task, crank_rad=tuple(warped.tolist()))
+    assert generate(other, starts=24).fits[0].rms_m > 1e-3 * task.radius_m
+    free = generate(replace(task, crank_rad=None), starts=24).fits[0]
+    assert free.rms_m < 1e-5 * task.radius_m
+    assert one.family in ("crank-rocker", "double-crank")
+
+
+@pytest.mark.parametrize("timed", [True, False])
+def test_noise_is_not_fitted_and_not_made_worse(timed: bool) -> None:
+    noise = 0.01
+    _, _, task = random_path(1, 40, timed=timed, closed=True, noise=noise)
+    best = generate(task, starts=24).fits[0]
+    # Of both directions of the noise with timing, and of the one across the curve without.
+    expected = noise * math.sqrt(2.0 if timed else 1.0) * task.radius_m
+    assert 0.6 * expected < best.rms_m < 1.15 * expected
+    assert best.rms_m < best.largest_m < 5.0 * expected
+
+
+def test_the_mechanisms_are_distinct_and_the_nearest_is_the_first() -> None:
+    _, _, task = random_path(0, 12, timed=False, closed=True, noise=0.02)
+    fits = generate(task, count=6).fits
+    assert len(fits) > 2
+    errors = [round(fit.rms_m / task.radius_m, 6) for fit in fits]
+    assert errors == sorted(errors)
+    for one, other in itertools.combinations(fits, 2):
+        places = [(f.four_bar.o2, f.four_bar.o4, f.four_bar.arm) for f in (one, other)]
+        off = max(abs(p - q) for p, q in zip(*places, strict=True))
+        assert off > 1e-3 * task.radius_m or one.four_bar.sign != other.four_bar.sign
+
+
+def test_cognates_are_among_them() -> None:
+    _, _, task = random_path(0, 20, timed=False, closed=True)
+    fits = generate(task, count=4).fits
+    assert sum(fit.rms_m < 1e-9 * task.radius_m for fit in fits) >= 2
+
+
+def test_the_same_seed_gives_the_same_answer() -> None:
+    _, _, task = random_path(3, 10, timed=False, closed=False)
+    one, other = (generate(task, starts=10, seed=7) for _ in range(2))
+    assert [fit.four_bar for fit in one.fits] == [fit.four_bar for fit in other.fits]
+    timed = random_path(3, 10, timed=True, closed=False, noise=0.02)[2]
+    seeds = [generate(timed, starts=4, seed=seed).fits[0].rms_m for seed in (1, 1, 2)]
+    assert seeds[0] == seeds[1] != seeds[2]
+
+
+def test_a_search_ends_with_its_time_and_tells_how_far_it_is() -> None:
+    _, _, task = random_path(0, 30, timed=False, closed=True)
+    told: list[tuple[float, float]] = []
+    found = generate(task, time_s=0.0, progress=lambda *each: told.append(each))
+    assert not found.complete
+    assert found.fits
+    assert len(told) <= 3
+    told.clear()
+    assert generate(task, starts=8, progress=lambda *each: told.append(each)).complete
+    shares, best = zip(*told, strict=True)
+    assert list(shares) == sorted(shares)
+    assert shares[-1] == 1.0
+    assert list(best) == sorted(best, reverse=True)
+    assert best[-1] < 1e-2 * task.radius_m
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_points_in_a_wrong_order_are_never_met_as_if_they_were_in_order(closed: bool) -> None:
+    _, _, task = random_path(5, 14, timed=False, closed=closed)
+    points = list(task.points)
+    points[4], points[8] = points[8], points[4]
+    try:
+        fits = generate(PathTask(tuple(points), closed=closed), starts=16).fits
+    except CrankcheckError as error:
+        assert "in their order" in str(error)  # noqa: PT017  # either answer is a true one
+        return
+    for fit in fits:
+        assert fit.examined.defect == "none"
+        assert fit.rms_m > 0.03 * task.radius_m
+        steps = np.diff([position.driver_rad for position in fit.examined.positions])
+        assert np.all(steps > 0.0) or np.all(steps < 0.0)
+
+
+def test_a_distance_that_is_not_allowed_is_told_as_a_defect() -> None:
+    _, _, task = random_path(1, 12, timed=True, closed=True, noise=0.02)
+    proposal = generate(task, starts=8).fits[0].proposal
+    assert not examine(proposal).defects
+    (told,) = examine(replace(proposal, allowed=0.0)).defects
+    assert told.startswith("misses a position by")
+    assert examine(replace(proposal, allowed=0.5 * proposal.allowed)).defects
+
+
+def test_few_points_leave_freedom_and_are_met_exactly() -> None:
+    points = (0j, 0.1 + 0.05j, 0.22 + 0.06j, 0.3 + 0.02j, 0.34 - 0.06j)
+    best = generate(PathTask(points), starts=12).fits[0]
+    assert best.rms_m < 1e-8
+    assert best.proposal.chosen["freedom"].startswith("4 numbers")
+    timed = random_path(1, 5, timed=True, closed=False)[2]
+    determined = generate(timed).fits[0]
+    assert "freedom" not in determined.proposal.chosen
+    assert determined.rms_m < 1e-6 * timed.radius_m
+
+
+def test_the_steps_draw_the_points_the_curve_and_the_links() -> None:
+    _, _, task = random_path(0, 8, timed=True, closed=False)
+    steps = generate(task, starts=6, count=1).fits[0].proposal.steps
+    assert [len(step.elements) for step in steps] == [8, 1, 7]
+
+
+SQUARE = (0j, 1 + 0j, 1 + 1j, 1j)
+
+
+@pytest.mark.parametrize(
+    ("ask", "told"),
+    [
+        (lambda: PathTask(SQUARE[:3]), "path of 3 points was asked for; give 4 to 50"),
+        (lambda: PathTask(tuple(complex(k, k**2) for k in range(51))), "path of 51 points"),
+        (lambda: PathTask((*SQUARE, 1j)), "points 4 and 5 of the path coincide"),
+        (lambda: PathTask((*SQUARE, 0j), closed=True), "lists its first point once"),
+        (lambda: PathTask((0j,) * 5), "coincide"),
+        (lambda: PathTask((*SQUARE, complex(math.nan, 0.0))), "finite"),
+        (lambda: PathTask(SQUARE, (0.0, 1.0, 2.0)), "3 angles of the crank were given for 4"),
+        (lambda: PathTask(SQUARE, (0.0, 1.0, 0.5, 2.0)), "turn back, or stay"),
+        (lambda: PathTask(SQUARE, (0.0, 1.0, 1.0, 2.0)), "turn back, or stay"),
+        (lambda: PathTask(SQUARE, (0.0, 2.0, 4.0, 7.0)), "span 401.07 deg"),
+        (lambda: PathTask(SQUARE, (0.0, 2.0, 4.0, math.nan)), "turn back, or stay"),
+        (lambda: generate(PathTask(SQUARE), starts=0), "5 mechanisms from 0 starts"),
+    ],
+)
+def test_what_is_no_path_is_refused(ask, told: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(CrankcheckError, match=told):
+        ask()
+
+
+def test_an_open_path_may_come_back_to_its_first_point() -> None:
+    assert len(PathTask((*SQUARE, 0j)).points) == 5
