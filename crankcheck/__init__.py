@@ -73,6 +73,7 @@ if TYPE_CHECKING:
     from reports.face.simulation import Simulation, run
     from reports.face.solution import Solution, solve, solve_driven
     from reports.face.sweep import Sweep, sweep
+    from reports.face.synthesis import Synthesis, synth
     from reports.judge.cell import Cell
     from reports.judge.rules.rule import Finding
     from sim.engine import Run
@@ -106,6 +107,7 @@ __all__ = [
     "State",
     "StructureError",
     "Sweep",
+    "Synthesis",
     "__version__",
     "check",
     "check_model",
@@ -119,6 +121,7 @@ __all__ = [
     "solve",
     "solve_driven",
     "sweep",
+    "synth",
 ]
 
 
@@ -163,6 +166,8 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
                 from reports.face import solution as home
             case "Sweep" | "sweep":
                 from reports.face import sweep as home
+            case "Synthesis" | "synth":
+                from reports.face import synthesis as home
             case "Cell":
                 from reports.judge import cell as home
             case "Finding":

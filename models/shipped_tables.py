@@ -49,13 +49,18 @@ def read_table(path: Path, model: type[M]) -> M:
         raw = tables(regular_text(path))
     except UnreadableError as error:
         raise SceneError(str(path), [str(error)]) from None
+    return table_of(raw, model, str(path))
+
+
+def table_of(raw: dict[str, object], model: type[M], place: str) -> M:
+    """Tables as a model; ``place`` names them in messages. Raises SceneError with every fault."""
     try:
         return model.model_validate(raw)
     except ValidationError as error:
         lines = [
             _line(each["loc"], each["type"], each["msg"], each["input"]) for each in error.errors()
         ]
-        raise SceneError(str(path), lines) from None
+        raise SceneError(place, lines) from None
 
 
 def _line(loc: tuple[int | str, ...], kind: str, message: str, found: object) -> str:

@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 
 from analytic.synthesis.examine import Examined
+from analytic.synthesis.solutions import Solutions
 from models.tasks.task import TaskTable
 from reports.output.columns import plain_table
+from reports.output.numbers import count
 
 if TYPE_CHECKING:
     import pandas as pd  # a third of a second: not for what is only shown
@@ -36,6 +38,16 @@ def remarks(one: Examined, task: TaskTable) -> list[str]:
     if one.proposal.doubt:
         told.append(one.proposal.doubt)
     return told
+
+
+def counted(solutions: Solutions, listed: int) -> str:
+    """How many solutions there are, of how many, in words."""
+    many, sound = len(solutions.examined), len(solutions.sound)
+    told = f"{count(solutions.looked, 'mechanism')} looked at, {many} examined"
+    told += f", {sound} without a defect"
+    if solutions.refused:
+        told += f"; {len(solutions.refused)} are none ({solutions.refused[0]})"
+    return told + (f"; the best {listed} listed" if listed < many else "")
 
 
 def solution_table(every: Sequence[Examined], task: TaskTable) -> Table:

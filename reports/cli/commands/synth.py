@@ -31,7 +31,7 @@ from reports.sheets.paper import Paper
 from reports.synthesis.proof import Met, by_reference, limit_of, proven
 from reports.synthesis.proof_table import proof_frame, proof_table
 from reports.synthesis.sensitivity_table import clearance_in_words, sensitivity_table
-from reports.synthesis.solution_table import solution_frame, solution_table
+from reports.synthesis.solution_table import counted, solution_frame, solution_table
 from sim.registry import engine
 
 Proofs = Mapping[int, Sequence[Met]]
@@ -53,7 +53,7 @@ def run_synth(request: SynthRequest, console: Console) -> int:
     solutions = solutions_of(task)
     listed = _listed(solutions, request.best)
     _say(console, f"{task.name}: {task.source}")
-    _say(console, _counted(solutions, listed))
+    _say(console, counted(solutions, len(listed)))
     console.print("", solution_table(listed, task), sep="\n")
     if request.vary_m is not None:
         _show_sensitivity(console, solutions, task, request.vary_m)
@@ -74,7 +74,7 @@ def run_synth(request: SynthRequest, console: Console) -> int:
     if request.prove:
         _show_proof(console, proofs, facts, request)
     if request.output is not None:
-        told = _counted(solutions, listed)
+        told = counted(solutions, len(listed))
         _write(request.output, listed, task, told, proofs, facts, paper, console)
     met = all(one.within for every in proofs.values() for one in every)
     return 0 if solutions.sound and met else 1
@@ -97,16 +97,6 @@ def _list(kind: str | None, console: Console) -> int:
 def _listed(solutions: Solutions, best: int) -> list[Examined]:
     """The best, and where none is sound the best of those with a defect."""
     return list(solutions.examined[:best])
-
-
-def _counted(solutions: Solutions, listed: Sequence[Examined]) -> str:
-    """How many there are, in words."""
-    many, sound = len(solutions.examined), len(solutions.sound)
-    told = f"{count(solutions.looked, 'mechanism')} looked at, {many} examined"
-    told += f", {sound} without a defect"
-    if solutions.refused:
-        told += f"; {len(solutions.refused)} are none ({solutions.refused[0]})"
-    return told + (f"; the best {len(listed)} listed" if len(listed) < many else "")
 
 
 def _show_sensitivity(
