@@ -19,6 +19,8 @@ from models.scene import Scene
 
 SCAN = 1440
 """Angles of the first look at a turn: an unreachable range narrower than 0.25 deg may hide."""
+NARROW = 20 * math.tau / SCAN
+"""A range of fewer looks [rad] is looked at anew."""
 
 Range = tuple[float, float]
 Stretched = Callable[[Array], Chunk]
@@ -55,7 +57,22 @@ def ranges(stretched: Stretched, turns: int = 1) -> list[Range]:
     ends = [float(a) for a, was in zip(borders, closes[edges], strict=True) if was]
     if closes[0]:  # the range that holds the angle pi: its end is a turn after the first
         ends = [*ends[1:], ends[0] + math.tau]
-    return list(zip(opens, ends, strict=True))
+    wholes = zip(opens, ends, strict=True)
+    return [part for whole in wholes for part in _closer(stretched, whole)]
+
+
+def _closer(stretched: Stretched, whole: Range) -> list[Range]:
+    """A range that is so narrow that few looks fell into it, looked at anew: it may have gaps."""
+    low, high = whole
+    if high - low > NARROW:
+        return [whole]
+    grid = np.linspace(low, high, SCAN + 1)
+    closes = shortage(stretched, grid) <= 0.0
+    closes[[0, -1]] = True
+    edges = np.flatnonzero(closes[1:] != closes[:-1])
+    borders = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges]).tolist()
+    ends: list[float] = [low, *borders, high]
+    return list(zip(ends[::2], ends[1::2], strict=True))
 
 
 def _over_turns(stretched: Stretched, turns: int) -> list[Range] | None:

@@ -27,6 +27,8 @@ LOOKS = 1440
 ZOOMS, FINER = 5, 33
 """How often the smallest shortage between looks is looked for closer, and in how many places."""
 HALVINGS = 60
+NARROW = 0.02
+"""Of an arc: a part of it that is less wide has few of its looks, and is looked at anew."""
 ROUNDING = 64 * EPS
 """What a dyad may be open by, over the longest link, and counts as closed: at a change point."""
 GAP = 1e-6
@@ -177,7 +179,14 @@ def _closing(signed: SignedScene, arc: Arc) -> Iterator[Arc]:
     else:
         opens = [arc.low, *opens] if closes[0] else opens
         shuts = [*shuts, *([arc.high] if closes[-1] and arc.high else [])]
-    yield from _merged(arc, opens, shuts)
+    for part in _merged(arc, opens, shuts):
+        narrow = _width(part) < NARROW * _width(arc)
+        yield from _closing(signed, part) if narrow else [part]
+
+
+def _width(arc: Arc) -> float:
+    low, high = arc.range_rad
+    return high - low
 
 
 def _merged(arc: Arc, opens: list[End], shuts: list[End]) -> Iterator[Arc]:

@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.circuits.arcs import Arc
-from analytic.circuits.circuits import Circuits, Defect, Position, circuits_of
+from analytic.circuits.circuits import SAME, Circuits, Defect, Position, circuits_of
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve_driven
 from analytic.mechanism.grashof_of_scene import grashof_of
@@ -123,7 +123,7 @@ def examine(proposal: Proposal) -> Examined:
     _, arc = circuits.place(places[0])
     branch = dict(zip(circuits.signed.dyads, places[0].signs, strict=True))
     defect = circuits.defect(places)
-    on_arc = [arc.signs == p.signs and arc.holds(p.driver_rad, MARGIN / 100) for p in places]
+    on_arc = [arc.signs == p.signs and arc.holds(p.driver_rad, SAME) for p in places]
     angles = _unwrapped(arc, [position.driver_rad for position in proposal.positions])
     own = [angle for angle, on in zip(angles, on_arc, strict=True) if on]
     if arc.low is not None:

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analytic.circuits.circuits import circuits_of
 from analytic.circuits.own_arc import own_arc
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.mechanism.fourbar import FourBar
@@ -221,3 +222,20 @@ def test_a_triad_that_goes_on_for_more_than_a_turn_and_ends_is_told_with_both_en
 
 def test_a_triad_that_turns_fully_stands_at_every_angle() -> None:
     assert reach(load_scene("triad-platform")) == [(-math.pi, math.pi)]
+
+
+def test_a_gap_in_a_narrow_range_is_found() -> None:
+    """A crank of 600 m that swings by 0.24 degrees, and can not stand in the middle 0.006 of it."""
+    bar = FourBar(
+        driver=596.4151759095241,
+        coupler=0.18391558696195465,
+        rocker=2.1549374201702505,
+        ground=598.3859439717008,
+    )
+    near, far = bar.driver_range_rad
+    scene = fourbar(bar.driver, bar.coupler, bar.rocker, bar.ground)
+    found = reach(scene)
+    assert np.array(found) == pytest.approx(np.array([(-far, -near), (near, far)]), abs=1e-9)
+    arcs = [arc for circuit in circuits_of(scene).circuits for arc in circuit]
+    own = np.array(sorted({arc.range_rad for arc in arcs}))
+    assert own == pytest.approx(np.array(found), abs=1e-9)
