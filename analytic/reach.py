@@ -18,9 +18,12 @@ from models.array import Array, Mask
 from models.scene import Scene
 
 SCAN = 1440
-"""Angles of the first look at a turn: an unreachable range narrower than 0.25 deg may hide."""
+"""Angles of the first look at a turn; where it is nearest to closing, or to opening, between two of
+them, it is looked at closer."""
 NARROW = 20 * math.tau / SCAN
 """A range of fewer looks [rad] is looked at anew."""
+ZOOMS, FINER = 5, 33
+"""How often the smallest shortage between looks is looked for closer, and in how many places."""
 
 Range = tuple[float, float]
 Stretched = Callable[[Array], Chunk]
@@ -45,7 +48,8 @@ def ranges(stretched: Stretched, turns: int = 1) -> list[Range]:
     """
     if turns > 1 and (found := _over_turns(stretched, turns)) is not None:
         return found
-    grid = np.linspace(-math.pi, math.pi, SCAN + 1)
+    looks = np.linspace(-math.pi, math.pi, SCAN + 1)
+    grid = with_valleys(lambda theta: shortage(stretched, theta), looks)
     closes = shortage(stretched, grid) <= 0.0
     if closes.all():
         return [(-math.pi, math.pi)]
@@ -73,6 +77,27 @@ def _closer(stretched: Stretched, whole: Range) -> list[Range]:
     borders = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges]).tolist()
     ends: list[float] = [low, *borders, high]
     return list(zip(ends[::2], ends[1::2], strict=True))
+
+
+def with_valleys(shortage_at: Callable[[Array], Array], theta: Array) -> Array:
+    """The looks, and closer ones where a mechanism is nearest to closing, or to opening, between
+    two of them, so that no narrow part is passed over, nor one of two beside a look."""
+    short = shortage_at(theta)
+    size = np.abs(short[1:-1])
+    near = (size <= np.abs(short[:-2])) & (size <= np.abs(short[2:]))
+    places = np.flatnonzero(near) + 1
+    if not places.size:
+        return theta
+    low, high, sign = theta[places - 1], theta[places + 1], np.sign(short[places])
+    share, first = np.linspace(0.0, 1.0, FINER), np.zeros(0)
+    for _ in range(ZOOMS):
+        looks = low[:, None] + (high - low)[:, None] * share
+        first = first if first.size else looks.ravel()
+        value = shortage_at(looks.ravel()).reshape(looks.shape) * sign[:, None]
+        best = np.clip(np.argmin(value, axis=1), 1, FINER - 2)
+        rows = np.arange(len(best))
+        low, high, tip = looks[rows, best - 1], looks[rows, best + 1], looks[rows, best]
+    return np.unique(np.concatenate([theta, first, tip]))
 
 
 def _over_turns(stretched: Stretched, turns: int) -> list[Range] | None:

@@ -17,6 +17,7 @@ from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS
 from analytic.dyads.steps import Step, stretched
 from analytic.prepared import prepared
+from analytic.reach import with_valleys
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import StructureError
@@ -24,8 +25,6 @@ from models.scene import Scene
 
 LOOKS = 1440
 """Looks at an arc."""
-ZOOMS, FINER = 5, 33
-"""How often the smallest shortage between looks is looked for closer, and in how many places."""
 HALVINGS = 60
 NARROW = 0.02
 """Of an arc: a part of it that is less wide has few of its looks, and is looked at anew."""
@@ -158,7 +157,7 @@ def _closing(signed: SignedScene, arc: Arc) -> Iterator[Arc]:
     """The parts of an arc over which the next dyad closes: whatever its own sign."""
     signs = (*arc.signs, 1)
     key = signed.dyads[len(arc.signs)]
-    theta = _with_valleys(signed, signs, arc.angles(LOOKS + 1))
+    theta = with_valleys(lambda looks: signed.shortage(signs, looks), arc.angles(LOOKS + 1))
     closes = signed.shortage(signs, theta) <= 0.0
     if closes.all():
         yield arc
@@ -211,23 +210,3 @@ def _merged(arc: Arc, opens: list[End], shuts: list[End]) -> Iterator[Arc]:
 def _later(end: End) -> End:
     """An end a turn of the driver later."""
     return End(end.angle_rad + math.tau, end.dyad)
-
-
-def _with_valleys(signed: SignedScene, signs: Signs, theta: Array) -> Array:
-    """The looks, and those closer ones where a dyad is nearest to closing, or to opening, between
-    two of them, so that no narrow part is passed over."""
-    short = signed.shortage(signs, theta)
-    size = np.abs(short[1:-1])
-    near = (size <= np.abs(short[:-2])) & (size <= np.abs(short[2:]))
-    places = np.flatnonzero(near) + 1
-    if not places.size:
-        return theta
-    low, high, sign = theta[places - 1], theta[places + 1], np.sign(short[places])
-    share = np.linspace(0.0, 1.0, FINER)
-    for _ in range(ZOOMS):
-        looks = low[:, None] + (high - low)[:, None] * share
-        value = signed.shortage(signs, looks.ravel()).reshape(looks.shape) * sign[:, None]
-        best = np.clip(np.argmin(value, axis=1), 1, FINER - 2)
-        rows = np.arange(len(best))
-        low, high, tip = looks[rows, best - 1], looks[rows, best + 1], looks[rows, best]
-    return np.unique(np.concatenate([theta, tip]))
