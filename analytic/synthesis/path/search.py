@@ -112,15 +112,21 @@ def generate(
     clock = Clock(starts, time.monotonic() + time_s, task.radius_m, progress)
     fits = fitted(list(_starts(task, starts, seed)), task.unit, clock)
     sound: list[PathFit] = []
+    refused: list[str] = []
     for candidate in candidates(fits, task):
         if len(sound) == count:
             break
-        sound += _sound(f"{name}-{len(sound) + 1}", candidate, task)
+        one = _examined(f"{name}-{len(sound) + 1}", candidate, task)
+        if isinstance(one, PathFit):
+            sound.append(one)
+        else:
+            refused.append(one)
     if not sound:
+        nearest = f"; of the nearest one: {refused[0]}" if refused else ""
         raise CrankcheckError(
             f"no four-bar was found that leads through the {len(task.points)} points in their "
-            f"order ({len(fits)} fits from {starts} starts); take more starts or time, points that "
-            "lie more evenly, or leave the crank's angles free"
+            f"order ({len(fits)} fits from {starts} starts{nearest}); take more starts or time, "
+            "points that lie more evenly, or leave the crank's angles free"
         )
     clock.tell(1.0)
     return PathSearch(tuple(sound), clock.complete)
@@ -147,20 +153,18 @@ def _strayed(entry: Fitted, path: UnitPath, rng: np.random.Generator) -> Fitted:
     return replace(entry, x=x, placing=placed(lengths(entry.family, x), entry.phi, own.points))
 
 
-def _sound(name: str, candidate: Candidate, task: PathTask) -> list[PathFit]:
-    """A candidate that the reference finds no defect in, or nothing."""
+def _examined(name: str, candidate: Candidate, task: PathTask) -> PathFit | str:
+    """A candidate that the reference finds no defect in, or why it is none."""
     try:
         examined = examine(proposed(name, SOURCE, candidate, task))
-    except CrankcheckError:
-        return []  # too near a limit or a change point for the reference to tell its circuits
+    except CrankcheckError as error:
+        return str(error)  # such as a point on a pin, or a change point
     if examined.defects:
-        return []
-    return [
-        PathFit(
-            candidate.four_bar,
-            candidate.crank_rad,
-            candidate.rms_m,
-            candidate.largest_m,
-            examined,
-        )
-    ]
+        return ", ".join(examined.defects)
+    return PathFit(
+        candidate.four_bar,
+        candidate.crank_rad,
+        candidate.rms_m,
+        candidate.largest_m,
+        examined,
+    )

@@ -197,5 +197,13 @@ def test_what_is_no_path_is_refused(ask, told: str) -> None:  # type: ignore[no-
         ask()
 
 
+def test_what_a_crank_does_alone_is_refused_with_the_reason() -> None:
+    angles = tuple((math.tau * np.arange(12) / 12).tolist())
+    points = tuple(np.exp(1j * np.array(angles)).tolist())
+    with pytest.raises(CrankcheckError, match=r"of the nearest one: .*length AP is"):
+        generate(PathTask(points, angles, closed=True), starts=4)
+    assert generate(PathTask(points, closed=True), starts=4).fits[0].rms_m < 1e-2
+
+
 def test_an_open_path_may_come_back_to_its_first_point() -> None:
     assert len(PathTask((*SQUARE, 0j)).points) == 5
