@@ -35,6 +35,9 @@ STARTS = 48
 SOURCE = "Crankcheck: path generation by least squares"
 STRAYED = 0.12
 """Of the box of shapes: how far those starts are, at most, from an entry that are not one."""
+MOST_TRANSMISSION, MARGIN = math.radians(60.0), math.radians(1.0)
+"""The largest least transmission angle, of which few four-bars keep more, and by how much more of
+it least squares asks for, which gives way a little."""
 OWN = 0.7
 """The share of starts without timing that are entries themselves; the rest strays from them."""
 
@@ -74,6 +77,7 @@ def generate(
     seed: int = 0,
     time_s: float = math.inf,
     progress: Progress | None = None,
+    least_transmission_rad: float = 0.0,
 ) -> PathSearch:
     """Four-bars whose coupler point goes through the points of a task, or as near as they can.
 
@@ -93,6 +97,9 @@ def generate(
         After which no further fit is begun [s]; those found by then are returned.
     progress
         Is told, after each fit, the share that is done, and the least RMS distance by then [m].
+    least_transmission_rad
+        The least transmission angle of a mechanism over its way [rad]. Without one, the nearest
+        mechanisms to a path that none follows well are often near a dead centre.
 
     Returns
     -------
@@ -109,13 +116,23 @@ def generate(
         raise CrankcheckError(
             f"{count} mechanisms from {starts} starts were asked for; ask for at least one of each"
         )
+    if not 0.0 <= least_transmission_rad <= MOST_TRANSMISSION:
+        raise CrankcheckError(
+            f"a transmission angle of {math.degrees(least_transmission_rad):g} deg, at least, was "
+            f"asked for; ask for 0 to {math.degrees(MOST_TRANSMISSION):g} deg"
+        )
+    strict = least_transmission_rad + MARGIN * (least_transmission_rad > 0.0)
     clock = Clock(starts, time.monotonic() + time_s, task.radius_m, progress)
-    fits = fitted(list(_starts(task, starts, seed)), task.unit, clock)
+    fits = fitted(list(_starts(task, starts, seed)), task.unit, clock, strict)
     sound: list[PathFit] = []
     refused: list[str] = []
+    least_sine = math.sin(least_transmission_rad)
     for candidate in candidates(fits, task):
         if len(sound) == count:
             break
+        if candidate.least_sine < least_sine:
+            refused.append("its transmission angle is smaller than asked for")
+            continue
         one = _examined(f"{name}-{len(sound) + 1}", candidate, task)
         if isinstance(one, PathFit):
             sound.append(one)
