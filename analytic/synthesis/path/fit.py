@@ -12,6 +12,7 @@ Least Squares Orthogonal Distance Fitting of Curves and Surfaces in Space, chapt
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,6 +36,8 @@ TOO_LARGE = 2.0 * LARGEST
 """Of a link, over the radius of the path: larger mechanisms are of no use."""
 PENALTY = 3.0
 """The weight of a dyad that does not close, over the radius of the path."""
+STRICT = 20.0
+"""The weight of a transmission angle that is too small, over that of all points."""
 INSIDE = 0.999
 """Of the half width of the box, a start is at most: at its wall the sine does not change."""
 BOXED = slice(0, 9)
@@ -73,9 +76,10 @@ def placed(lengths_of: tuple[Array, Array, Array], phi: Array, points: Complexes
     return np.asarray(np.linalg.lstsq(columns, points, rcond=1e-9)[0])
 
 
-def refit(start: Fitted, path: UnitPath, evaluations: int) -> Fitted:
-    """The four-bar of least squares near a start: after so many evaluations, at most."""
-    problem = _Problem(start.family, path)
+def refit(start: Fitted, path: UnitPath, evaluations: int, transmission_rad: float = 0.0) -> Fitted:
+    """The four-bar of least squares near a start: after so many evaluations, at most; of a crank
+    that turns fully with a transmission angle of no less than one [rad], or little less."""
+    problem = _Problem(start.family, path, transmission_rad)
     result = least_squares(
         problem.residuals,
         problem.packed(start),
@@ -100,6 +104,7 @@ class _Problem:
 
     family: Family
     path: UnitPath
+    transmission_rad: float = 0.0
 
     @property
     def box(self) -> tuple[Array, Array]:
@@ -131,7 +136,8 @@ class _Problem:
         origin, ground, arm = fit.placing
         off = origin + ground * a * np.exp(1j * fit.phi) + arm * at.u - self.path.points
         opened = [PENALTY * at.excess] if self.family == "limited" else []
-        return np.concatenate([off.real, off.imag, *opened, np.zeros(self._spare)])
+        strained = [self._strained((a, b, c))[0]] if self._is_strict else []
+        return np.concatenate([off.real, off.imag, *opened, *strained, np.zeros(self._spare)])
 
     def jacobian(self, z: Array) -> Array:
         """Their derivatives, (residuals, unknowns)."""
@@ -155,16 +161,39 @@ class _Problem:
                 PENALTY
                 * np.hstack([shut, self._spread(at.d_excess_phi.astype(np.complex128)).real])
             )
+        if self._is_strict:
+            strained = np.zeros((2, 9 + self._angles))
+            strained[:, :3] = self._strained((a, b, c))[1] @ by_shape.T
+            rows.append(strained)
         every = np.concatenate([*rows, np.zeros((self._spare, rows[0].shape[1]))])
         every[:, BOXED] *= self.box[1] * np.cos(z[BOXED])
         return np.asarray(every)
 
     @property
+    def _angles(self) -> int:
+        """The crank's angles among the unknowns."""
+        return len(self.path.points) if self.path.turned is None else 1
+
+    @property
     def _spare(self) -> int:
         """Residuals of 0 that few points need: the library wants as many as there are unknowns."""
-        count = len(self.path.points)
-        angles = count if self.path.turned is None else 1
-        return max(0, 9 + angles - 2 * count)
+        return max(0, 9 + self._angles - 2 * len(self.path.points))
+
+    @property
+    def _is_strict(self) -> bool:
+        """Whether the transmission angle counts: with limits, it is small at these in any case."""
+        return self.transmission_rad > 0.0 and self.family != "limited"
+
+    def _strained(self, shape: tuple[float, float, float]) -> tuple[Array, Array]:
+        """By how much the cosines of the transmission angle, where A is nearest to O4 and farthest,
+        are beyond what is allowed, (2,), and the changes of that with a, b, c, (2, 3)."""
+        a, b, c = shape
+        rho, by_a = np.array([abs(1.0 - a), 1.0 + a]), np.array([math.copysign(1.0, a - 1.0), 1.0])
+        cosine = (b**2 + c**2 - rho**2) / (2.0 * b * c)
+        change = np.stack([-rho * by_a / (b * c), 1.0 / c - cosine / b, 1.0 / b - cosine / c])
+        weight = STRICT * math.sqrt(len(self.path.points))
+        beyond = np.maximum(np.abs(cosine) - math.cos(self.transmission_rad), 0.0)
+        return weight * beyond, weight * (np.where(beyond > 0.0, np.sign(cosine), 0.0) * change).T
 
     def _phi(self, z: Array) -> Array:
         turned = self.path.turned

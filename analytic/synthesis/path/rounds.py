@@ -68,7 +68,9 @@ class Clock:
             self.progress(share, self.best)
 
 
-def fitted(starts: Sequence[Fitted], path: UnitPath, clock: Clock) -> list[Fitted]:
+def fitted(
+    starts: Sequence[Fitted], path: UnitPath, clock: Clock, transmission_rad: float = 0.0
+) -> list[Fitted]:
     """The fits of the last round that was begun, the best first; with those of the round before for
     which the time did not last. One fit is made in any case."""
     current = list(starts)
@@ -79,7 +81,7 @@ def fitted(starts: Sequence[Fitted], path: UnitPath, clock: Clock) -> list[Fitte
             if clock.is_over and (done or number > 0):
                 clock.complete = False
                 break
-            done.append(_fit(start, path, each))
+            done.append(_fit(start, path, each, transmission_rad))
             clock.fitted(each, done[-1])
         rest = current[len(done) :] if number > 0 else []
         current = _apart(sorted(done + rest, key=lambda fit: (fit.size > TOO_LARGE, fit.cost)))
@@ -88,12 +90,14 @@ def fitted(starts: Sequence[Fitted], path: UnitPath, clock: Clock) -> list[Fitte
     return current
 
 
-def _fit(start: Fitted, path: UnitPath, each: Round) -> Fitted:
+def _fit(start: Fitted, path: UnitPath, each: Round, transmission_rad: float) -> Fitted:
     """A fit over some of the points, with the crank's angles in all of them; the start, where the
     fit grows too large."""
     own = path.mirrored if start.mirrored else path
     keep = np.arange(len(own.points)) if each.points >= len(own.points) else own.kept(each.points)
-    fit = refit(replace(start, phi=start.phi[keep]), own.only(keep), each.evaluations)
+    fit = refit(
+        replace(start, phi=start.phi[keep]), own.only(keep), each.evaluations, transmission_rad
+    )
     change = np.interp(np.arange(len(own.points)), keep, fit.phi - start.phi[keep])
     grows = fit.size > TOO_LARGE >= start.size and math.isfinite(start.cost)
     return start if grows else replace(fit, phi=start.phi + change)

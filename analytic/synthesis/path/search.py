@@ -35,6 +35,9 @@ STARTS = 48
 SOURCE = "Crankcheck: path generation by least squares"
 STRAYED = 0.12
 """Of the box of shapes: how far those starts are, at most, from an entry that are not one."""
+MOST_TRANSMISSION, MARGIN = math.radians(60.0), math.radians(1.0)
+"""The largest least transmission angle, of which few four-bars keep more, and by how much more of
+it least squares asks for, which gives way a little."""
 OWN = 0.7
 """The share of starts without timing that are entries themselves; the rest strays from them."""
 
@@ -74,6 +77,7 @@ def generate(
     seed: int = 0,
     time_s: float = math.inf,
     progress: Progress | None = None,
+    least_transmission_rad: float = 0.0,
 ) -> PathSearch:
     """Four-bars whose coupler point goes through the points of a task, or as near as they can.
 
@@ -93,6 +97,9 @@ def generate(
         After which no further fit is begun [s]; those found by then are returned.
     progress
         Is told, after each fit, the share that is done, and the least RMS distance by then [m].
+    least_transmission_rad
+        The least transmission angle of a mechanism over its way [rad]. Without one, the nearest
+        mechanisms to a path that none follows well are often near a dead centre.
 
     Returns
     -------
@@ -109,18 +116,34 @@ def generate(
         raise CrankcheckError(
             f"{count} mechanisms from {starts} starts were asked for; ask for at least one of each"
         )
+    if not 0.0 <= least_transmission_rad <= MOST_TRANSMISSION:
+        raise CrankcheckError(
+            f"a transmission angle of {math.degrees(least_transmission_rad):g} deg, at least, was "
+            f"asked for; ask for 0 to {math.degrees(MOST_TRANSMISSION):g} deg"
+        )
+    strict = least_transmission_rad + MARGIN * (least_transmission_rad > 0.0)
     clock = Clock(starts, time.monotonic() + time_s, task.radius_m, progress)
-    fits = fitted(list(_starts(task, starts, seed)), task.unit, clock)
+    fits = fitted(list(_starts(task, starts, seed)), task.unit, clock, strict)
     sound: list[PathFit] = []
+    refused: list[str] = []
+    least_sine = math.sin(least_transmission_rad)
     for candidate in candidates(fits, task):
         if len(sound) == count:
             break
-        sound += _sound(f"{name}-{len(sound) + 1}", candidate, task)
+        if candidate.least_sine < least_sine:
+            refused.append("its transmission angle is smaller than asked for")
+            continue
+        one = _examined(f"{name}-{len(sound) + 1}", candidate, task)
+        if isinstance(one, PathFit):
+            sound.append(one)
+        else:
+            refused.append(one)
     if not sound:
+        nearest = f"; of the nearest one: {refused[0]}" if refused else ""
         raise CrankcheckError(
             f"no four-bar was found that leads through the {len(task.points)} points in their "
-            f"order ({len(fits)} fits from {starts} starts); take more starts or time, points that "
-            "lie more evenly, or leave the crank's angles free"
+            f"order ({len(fits)} fits from {starts} starts{nearest}); take more starts or time, "
+            "points that lie more evenly, or leave the crank's angles free"
         )
     clock.tell(1.0)
     return PathSearch(tuple(sound), clock.complete)
@@ -147,20 +170,18 @@ def _strayed(entry: Fitted, path: UnitPath, rng: np.random.Generator) -> Fitted:
     return replace(entry, x=x, placing=placed(lengths(entry.family, x), entry.phi, own.points))
 
 
-def _sound(name: str, candidate: Candidate, task: PathTask) -> list[PathFit]:
-    """A candidate that the reference finds no defect in, or nothing."""
+def _examined(name: str, candidate: Candidate, task: PathTask) -> PathFit | str:
+    """A candidate that the reference finds no defect in, or why it is none."""
     try:
         examined = examine(proposed(name, SOURCE, candidate, task))
-    except CrankcheckError:
-        return []  # too near a limit or a change point for the reference to tell its circuits
+    except CrankcheckError as error:
+        return str(error)  # such as a point on a pin, or a change point
     if examined.defects:
-        return []
-    return [
-        PathFit(
-            candidate.four_bar,
-            candidate.crank_rad,
-            candidate.rms_m,
-            candidate.largest_m,
-            examined,
-        )
-    ]
+        return ", ".join(examined.defects)
+    return PathFit(
+        candidate.four_bar,
+        candidate.crank_rad,
+        candidate.rms_m,
+        candidate.largest_m,
+        examined,
+    )

@@ -190,11 +190,34 @@ SQUARE = (0j, 1 + 0j, 1 + 1j, 1j)
         (lambda: PathTask(SQUARE, (0.0, 2.0, 4.0, 7.0)), "span 401.07 deg"),
         (lambda: PathTask(SQUARE, (0.0, 2.0, 4.0, math.nan)), "turn back, or stay"),
         (lambda: generate(PathTask(SQUARE), starts=0), "5 mechanisms from 0 starts"),
+        (lambda: generate(PathTask(SQUARE), least_transmission_rad=1.5), "angle of 85.94"),
     ],
 )
 def test_what_is_no_path_is_refused(ask, told: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(CrankcheckError, match=told):
         ask()
+
+
+@pytest.mark.parametrize("timed", [True, False])
+def test_a_transmission_angle_is_kept_at_the_cost_of_the_distance(timed: bool) -> None:
+    turn = math.tau * (np.arange(24) + 0.1) / 24
+    heart = 16 * np.sin(turn) ** 3 + 1j * (13 * np.cos(turn) - 5 * np.cos(2 * turn))
+    crank = tuple(turn.tolist()) if timed else None
+    task = PathTask(tuple(heart.tolist()), crank, closed=True)
+    loose = generate(task, starts=16).fits
+    least = math.radians(30.0)
+    strict = generate(task, starts=16, least_transmission_rad=least).fits
+    assert all(fit.examined.least_transmission_rad >= least for fit in strict)
+    assert min(fit.examined.least_transmission_rad for fit in loose) < least
+    assert strict[0].rms_m < 0.5 * task.radius_m
+
+
+def test_what_a_crank_does_alone_is_refused_with_the_reason() -> None:
+    angles = tuple((math.tau * np.arange(12) / 12).tolist())
+    points = tuple(np.exp(1j * np.array(angles)).tolist())
+    with pytest.raises(CrankcheckError, match=r"of the nearest one: .*length AP is"):
+        generate(PathTask(points, angles, closed=True), starts=4)
+    assert generate(PathTask(points, closed=True), starts=4).fits[0].rms_m < 1e-2
 
 
 def test_an_open_path_may_come_back_to_its_first_point() -> None:

@@ -42,7 +42,8 @@ def test_the_derivatives_are_those_of_the_residuals(family: Family, timed: bool)
     rng = np.random.default_rng(2)
     for _ in range(8):
         points = rng.normal(size=7) + 1j * rng.normal(size=7)
-        problem = _Problem(family, UnitPath(points, np.linspace(0.0, 3.0, 7) if timed else None))
+        path = UnitPath(points, np.linspace(0.0, 3.0, 7) if timed else None)
+        problem = _Problem(family, path, transmission_rad=0.7)
         z = np.concatenate([0.4 * rng.normal(size=9), 6.0 * rng.random(1 if timed else 7)])
         step = 1e-6
         rows = [

@@ -5,11 +5,13 @@ from __future__ import annotations
 import cmath
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from analytic.kinematics import solve_driven
+from analytic.synthesis.exact_line import peaucellier
 from analytic.synthesis.examine import examine
 from analytic.synthesis.hoeken import best_hoeken, hoeken, hoeken_of
 from analytic.synthesis.line_draft import StraightLine
@@ -159,6 +161,24 @@ def test_evans_s_rule_holds_for_the_slider_that_its_rocker_stands_for() -> None:
     assert off(0.2) / off(0.1) == pytest.approx(16.0, rel=0.05)
 
 
+def test_peaucellier_leads_along_the_line_exactly_by_the_reference() -> None:
+    proposal = peaucellier(0.3, start=0.1 + 0.2j, direction_rad=0.4)
+    examined = examine(proposal)
+    assert not examined.defects
+    ends = [examined.positions[k].driver_rad for k in (0, -1)]
+    motion = solve_driven(examined.scene, np.linspace(*ends, 301), np.ones(1), np.zeros(1))
+    place = motion.points["P"].position
+    along = (place[:, 0] + 1j * place[:, 1] - (0.1 + 0.2j)) * cmath.exp(-0.4j)
+    assert along.real[[0, -1]] == pytest.approx([0.0, 0.3], abs=1e-12)
+    assert np.max(np.abs(along.imag)) < 1e-13
+    # A crank of another length leads P along a circle: the line is no matter of how it is measured.
+    crank = {"bar": ["O2", "A"], "length_m": 0.97 * proposal.draft.links["crank"]["length_m"]}  # type: ignore[operator]
+    links = {**proposal.draft.links, "crank": crank}
+    other = examine(replace(proposal, draft=replace(proposal.draft, links=links)))
+    assert other.defects
+    assert max(other.off) > 1e-3
+
+
 def test_a_smaller_deviation_takes_a_larger_linkage() -> None:
     sizes = [
         straight_line("watt", 1.0, deviation=each).four_bar.size for each in (1e-2, 1e-3, 1e-4)
@@ -174,6 +194,7 @@ def test_a_smaller_deviation_takes_a_larger_linkage() -> None:
         (lambda: straight_line("watt", math.nan), "straight part of nan m"),
         (lambda: straight_line("watt", 1.0, deviation=-1.0), "deviation of -1"),
         (lambda: straight_line("roberts", 1.0, deviation=1e-6), "1e-06 of its length"),
+        (lambda: peaucellier(-1.0), "straight part of -1 m"),
         (lambda: hoeken(1.0, share=0.2, deviation=1e-3), "follow from each other"),
         (lambda: hoeken(1.0, share=0.6), "over 0.6 of the crank's turn"),
         (lambda: hoeken(1.0, deviation=1e-12), "keeps it over less than"),
