@@ -142,7 +142,10 @@ def examine(proposal: Proposal) -> Examined:
         _off(scene, each) if on else _off(_at(circuits, place), each)
         for each, place, on in zip(positions, places, on_arc, strict=True)
     )
-    defect, off = _through_change_points(circuits, scene, positions, defect, off)
+    if defect in ("branch", "circuit") and circuits.change_points:
+        own_off = _through_change_points(scene, positions)
+        if max(own_off) <= max(UNMET, proposal.allowed):
+            defect, off = "none", own_off
     kind = grashof_of(scene)
     return Examined(
         proposal,
@@ -160,21 +163,14 @@ def examine(proposal: Proposal) -> Examined:
 
 
 def _through_change_points(
-    circuits: Circuits,
-    scene: Scene,
-    positions: Sequence[PrecisionPosition],
-    defect: Defect,
-    off: tuple[float, ...],
-) -> tuple[Defect, tuple[float, ...]]:
-    """Branches that meet in change points are one where the motion goes smoothly on through them:
-    the defect, and how far each position is off, of the reference on its way."""
-    if defect not in ("branch", "circuit") or not circuits.change_points:
-        return defect, off
+    scene: Scene, positions: Sequence[PrecisionPosition]
+) -> tuple[float, ...]:
+    """How far each position is off on the reference's own way, which goes smoothly through change
+    points: branches that meet in them are one; inf where there is no such way."""
     try:
-        own = tuple(_off(scene, each) for each in positions)
+        return tuple(_off(scene, each) for each in positions)
     except CrankcheckError:
-        return defect, off
-    return ("none", own) if max(own) <= UNMET else (defect, off)
+        return (math.inf,)
 
 
 def _turning(link: str, start_rad: float, speed_rad_s: float) -> Table:

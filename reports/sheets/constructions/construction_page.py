@@ -108,8 +108,8 @@ def _flat(lines: list[Array]) -> list[list[float]]:
 
 
 def _pose(view: ConstructionView, number: int) -> dict[str, object]:
-    """What is asked for in a position: the links whose angles or points are, as they stand there,
-    all links where these are none; and the places of asked points."""
+    """What is asked for in a position: the links whose angles are, or else whose points are, as
+    they stand there, all links where these are none; and the places of asked points."""
     placed, position = view.placements[number], view.examined.positions[number]
     places = [list(xy(each.place)) for each in position.asked if isinstance(each, AskedPlace)]
     return {"links": _flat(_asked_links(view, placed)), "places": places}
@@ -120,6 +120,7 @@ def _asked_links(view: ConstructionView, placed: PlacedMechanism | None) -> list
         return []
     names, points, _ = names_of(view.examined.positions)
     every = placed.scene.links.values()
-    some = [link for link in every if link.name in names or set(link.points) & set(points)]
+    asked = [link for link in every if link.name in names]
+    some = asked or [link for link in every if set(link.points) & set(points)]
     rings = [[placed.points[name] for name in link.points] for link in some or every]
     return [np.array([*ring, ring[0]] if len(ring) > 2 else ring) for ring in rings]

@@ -21,7 +21,7 @@ from reports.synthesis.proof import proven
 from tests.analytic.synthesis.random_tasks import TASKS, random_task
 
 LEAST_DEG = 20.0
-LONGEST = 4.0
+LONGEST, OF_SIX_BARS = 4.0, 12.0
 """Of a link of what carries a body, over the least distance of two pins of one."""
 CARRIES = ("two_positions", "three_positions", "given_pivots", "four_positions", "five_positions",
            "driving_dyad")  # fmt: skip
@@ -36,7 +36,8 @@ def is_easy(kind: str, one: Examined) -> bool:
         if len(one.scene.pins[p]) > 1 and len(one.scene.pins[q]) > 1
     ]
     spans = [*pins, *(span(link.points) for link in one.scene.links.values())]
-    even = kind not in CARRIES or max(spans) < LONGEST * min(pins)
+    most = OF_SIX_BARS if kind == "driving_dyad" else LONGEST
+    even = kind not in CARRIES or max(spans) < most * min(pins)
     return even and math.degrees(one.least_transmission_rad) > LEAST_DEG
 
 
@@ -64,7 +65,7 @@ def hold(kind: str, first: int, count: int, engines: tuple[str, ...]) -> None:
 @pytest.mark.parametrize("kind", TASKS)
 def test_engines_meet_what_the_reference_meets(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(coupler, "CHOSEN", 4)
-    hold(kind, 2000, 2, ENGINES[:2])
+    hold(kind, 2000, 1, ENGINES[:2])
 
 
 @pytest.mark.slow

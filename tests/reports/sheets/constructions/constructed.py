@@ -9,10 +9,11 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from analytic.synthesis.asked import AskedAngle, PrecisionPosition
-from analytic.synthesis.burmester import Dyad, four_positions
+from analytic.synthesis.burmester import four_positions
 from analytic.synthesis.construction import Circle, Curve, Dot, Element, Segment, Step
 from analytic.synthesis.design import Proposal
-from analytic.synthesis.fourbar_draft import carried
+from analytic.synthesis.fourbar_draft import CarriedBody
+from analytic.synthesis.guided_body import Dyad
 from analytic.synthesis.pose import Pose, bisector, circle_through, pole
 from models.draft import Draft, bar
 
@@ -59,7 +60,8 @@ def three_positions(poses: tuple[Pose, ...] = THREE, name: str = "three-position
         Step("The links are O2 C1, C1 D1 and O4 D1, the ground is O2 O4.", links),
     )
     dyads = (Dyad(o2, C), Dyad(o4, D))
-    return carried(name, LECTURE + ", example 6", poses, dyads, {}, pins=("C", "D"), steps=steps)
+    body = CarriedBody(name, LECTURE + ", example 6", tuple(poses), {"C": C, "D": D})
+    return body.four_bar(dyads, steps=steps)
 
 
 @lru_cache
@@ -154,7 +156,8 @@ def burmester_curves() -> Proposal:
         Step("The circle-point curve: all moving pivots, in position 1.", (Curve(circles),)),
         Step("Two of their pairs are taken: O2 A1 and O4 B1.", tuple(links)),
     )
-    return carried("burmester", LECTURE, FOUR, (first, second), {"P": 0j}, steps=steps)
+    body = CarriedBody("burmester", LECTURE, tuple(FOUR), {"P": 0j})
+    return body.four_bar((first, second), steps=steps)
 
 
 @lru_cache
