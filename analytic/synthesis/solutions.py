@@ -10,6 +10,7 @@ from analytic.synthesis.design import Proposal
 from analytic.synthesis.examine import Examined, examine, ranked
 from analytic.synthesis.function.designs import function_designs
 from analytic.synthesis.function.structural_error import FunctionProposal, structural_error
+from analytic.synthesis.path.rounds import Progress
 from analytic.synthesis.path.search import generate
 from analytic.synthesis.posed import function_task, path_task, straight_line_of
 from analytic.synthesis.quick_return import quick_return_proposals
@@ -47,9 +48,15 @@ class Solutions:
         return [one for one in self.examined if not one.defects]
 
 
-def solutions_of(task: TaskTable) -> Solutions:
-    """Propose and examine. Raises CrankcheckError for a task without any mechanism."""
-    proposals, looked = _proposals(task)
+def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions:
+    """Propose and examine; a search tells ``progress`` the share that is done, and how near it is.
+
+    Raises
+    ------
+    CrankcheckError
+        A task without any mechanism.
+    """
+    proposals, looked = _proposals(task, progress)
     examined, refused = [], []
     for proposal in proposals:
         draft = replace(
@@ -73,7 +80,7 @@ def _named(one: Examined, number: int) -> Examined:
     return replace(one, draft=replace(one.draft, name=name), scene=replace(one.scene, name=name))
 
 
-def _proposals(task: TaskTable) -> tuple[list[Proposal], int]:
+def _proposals(task: TaskTable, progress: Progress | None) -> tuple[list[Proposal], int]:
     """What is proposed for a task, and how many were looked at to choose them."""
     if isinstance(task, CouplerTask):
         return coupler_proposals(task)
@@ -85,14 +92,14 @@ def _proposals(task: TaskTable) -> tuple[list[Proposal], int]:
         functions: list[Proposal] = [*function_designs(function_task(task))]
         return functions, len(functions)
     if isinstance(task, PathTable):
-        return _paths(task)
+        return _paths(task, progress)
     if isinstance(task, StraightLineTable):
         return [straight_line_of(task).proposal], 1
     assert isinstance(task, StrokeTask)
     return stroke_proposals(task)
 
 
-def _paths(task: PathTable) -> tuple[list[Proposal], int]:
+def _paths(task: PathTable, progress: Progress | None) -> tuple[list[Proposal], int]:
     """What least squares found, from so many starts."""
     search = generate(
         path_task(task),
@@ -101,6 +108,8 @@ def _paths(task: PathTable) -> tuple[list[Proposal], int]:
         starts=task.starts,
         seed=task.seed,
         time_s=task.time_s,
+        progress=progress,
+        least_transmission_rad=math.radians(task.least_transmission_deg or 0.0),
     )
     return [fit.proposal for fit in search.fits], task.starts
 

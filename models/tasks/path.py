@@ -9,7 +9,7 @@ from pydantic import Field, StrictInt, model_validator
 from models.table_fields import Coordinates, Degrees
 from models.tasks.task import TaskTable
 
-LEAST_POINTS, MOST_POINTS = 3, 50
+LEAST_POINTS, MOST_POINTS = 4, 50
 
 
 class PathTable(TaskTable):
@@ -17,7 +17,8 @@ class PathTable(TaskTable):
     only the differences count. A ``closed`` path comes back to its first point, listed once.
 
     ``starts`` is from how many places least squares begins, ``seed`` that of the draw among them;
-    ``time_s`` ends the search after so long.
+    ``time_s`` ends the search after so long. Mechanisms below ``least_transmission_deg`` are not
+    taken.
     """
 
     points_m: Annotated[list[Coordinates], Field(min_length=LEAST_POINTS, max_length=MOST_POINTS)]

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from rich.console import Console
+from rich.progress import Progress
 
 from analytic.synthesis.examine import Examined
 from analytic.synthesis.sensitivity import monte_carlo, sensitivity
@@ -36,6 +39,8 @@ from sim.registry import engine
 
 Proofs = Mapping[int, Sequence[Met]]
 FRAME, PROOF, PAGE = "solutions.csv", "proof.csv", "index.html"
+OURS = re.compile(r"(solution|construction)-\d+\.(toml|svg|html)|proof\.csv")
+"""Files of such names in a folder are of this command."""
 SAMPLES = 1000
 """Mechanisms of the Monte Carlo: two seconds."""
 
@@ -50,7 +55,7 @@ def run_synth(request: SynthRequest, console: Console) -> int:
     task = load_task(request.kind, request.task)
     engines = chosen_engines(request.engines) if request.prove else []
     profiles = [name for name, _ in chosen_profiles(request.profiles, engines)]
-    solutions = solutions_of(task)
+    solutions = _searched(task, console)
     listed = _listed(solutions, request.best)
     _say(console, f"{task.name}: {task.source}")
     _say(console, counted(solutions, len(listed)))
@@ -78,6 +83,18 @@ def run_synth(request: SynthRequest, console: Console) -> int:
         _write(request.output, listed, task, told, proofs, facts, paper, console)
     met = all(one.within for every in proofs.values() for one in every)
     return 0 if solutions.sound and met else 1
+
+
+def _searched(task: TaskTable, console: Console) -> Solutions:
+    """The solutions, with a bar of a search for people who wait."""
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+        line = bar.add_task("searching", total=1.0)
+
+        def tell(share: float, best: float) -> None:
+            near = f"searching, {best:.3g} m RMS" if math.isfinite(best) else "searching"
+            bar.update(line, completed=share, description=near)
+
+        return solutions_of(task, tell)
 
 
 def _list(kind: str | None, console: Console) -> int:
@@ -155,10 +172,17 @@ def _write(
     drawn = None if every is None else every.saved("svg", f"solutions of {task.name}")
     texts[PAGE] = solutions_page(listed, task, counted, drawn, proofs, facts)
     check_folder(folder, "-o", list(texts))
+    left = sorted(
+        path.name
+        for path in folder.glob("*")
+        if OURS.fullmatch(path.name) and path.name not in texts
+    )
     for name, text in texts.items():
         write(folder / name, text)
     _say(console, f"\n{folder / PAGE}: {count(len(listed), 'solution')}, with scenes, tables and "
          "constructions beside it")  # fmt: skip
+    if left:
+        _say(console, f"left there by an earlier run: {', '.join(left)}")
 
 
 def _say(console: Console, words: str) -> None:
