@@ -117,7 +117,7 @@ def _three(task: CouplerTask, body: CarriedBody) -> tuple[Pair, dict[str, str]]:
 def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
     """Four positions: pairs along Burmester's curves; five: of all cranks that there are."""
     curves = four_positions(body.poses) if len(body.poses) == 4 else []
-    dyads = _spread(curves, CURVE_DYADS) if curves else five_positions(body.poses)
+    dyads = _wished(task, curves) if curves else five_positions(body.poses)
     if len(dyads) < 2:
         raise CrankcheckError(
             f"{task.name}: {len(dyads)} cranks hold the body in all {len(body.poses)} positions "
@@ -135,10 +135,17 @@ def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
     return proposals, len(proposals)
 
 
-def _spread(pieces: Sequence[Sequence[Dyad]], count: int) -> list[Dyad]:
-    """About so many dyads, evenly along the pieces."""
+def _wished(task: CouplerTask, pieces: Sequence[Sequence[Dyad]]) -> list[Dyad]:
+    """Cranks along the curves: those whose fixed pivots stand where they are wished, if two do."""
     every = [dyad for piece in pieces for dyad in piece]
-    return every[:: max(1, len(every) // count)]
+    region = task.pivots_in
+    inside = [dyad for dyad in every if region is not None and region.holds(dyad.fixed)]
+    return _spread(inside if len(inside) > 1 else every, CURVE_DYADS)
+
+
+def _spread(every: Sequence[Dyad], count: int) -> list[Dyad]:
+    """About so many cranks, evenly."""
+    return list(every[:: max(1, len(every) // count)])
 
 
 def _driven(

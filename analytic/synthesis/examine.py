@@ -55,7 +55,8 @@ class Examined:
     points stay in. ``off`` is how far the reference is from each position (angles in rad, lengths
     over the size). ``torque_n_m`` is the largest driving torque under the loads, None without any.
     ``fault`` is what else keeps it from the task, ``notes`` say how well it does it, and ``misses``
-    is by how much it misses it between the positions.
+    is by how much it misses it between the positions. ``unfulfilled`` are wishes of the task that
+    it does not fulfil.
     """
 
     proposal: Proposal
@@ -72,6 +73,7 @@ class Examined:
     fault: str = ""
     notes: tuple[str, ...] = ()
     misses: float = 0.0
+    unfulfilled: tuple[str, ...] = ()
 
     @property
     def text(self) -> str:
@@ -95,12 +97,14 @@ class Examined:
 
 
 def ranked(every: Sequence[Examined]) -> list[Examined]:
-    """Those without a defect first, each by its transmission angle, the smaller mechanism first
-    where these are equal; what misses the task between its positions by how much it does."""
+    """Those without a defect first, of these what fulfils most wishes; what misses the task between
+    its positions by how much it does, each by its transmission angle, and where these are equal
+    the smaller mechanism first."""
     return sorted(
         every,
         key=lambda one: (
             bool(one.defects),
+            len(one.unfulfilled),
             one.misses,
             -round(one.least_sine, 9),
             one.extent_m,

@@ -64,7 +64,8 @@ def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions
         )
         try:
             own = replace(proposal, draft=draft, speed_rad_s=task.speed_rad_s)
-            examined.append(followed(examine(own)))
+            one = followed(examine(own))
+            examined.append(replace(one, unfulfilled=tuple(unfulfilled(one, task))))
         except CrankcheckError as error:
             refused.append(str(error))
     if not examined:
@@ -72,6 +73,18 @@ def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions
         raise CrankcheckError(f"{task.name}: no mechanism does it{why}")
     named = [_named(one, number) for number, one in enumerate(ranked(examined), 1)]
     return Solutions(task, tuple(named), looked, tuple(refused))
+
+
+def unfulfilled(one: Examined, task: TaskTable) -> list[str]:
+    """What a task wishes and a mechanism does not have, in words."""
+    least, region = task.least_transmission_deg, task.pivots_in
+    told = []
+    if least is not None and math.degrees(one.least_transmission_rad) < least:
+        told.append(f"transmission below {least:g} deg")
+    if region is not None:
+        ground = one.proposal.draft.ground.items()
+        told += [f"{name} outside the region" for name, place in ground if not region.holds(place)]
+    return told
 
 
 def _named(one: Examined, number: int) -> Examined:

@@ -206,8 +206,11 @@ def _steps(
         yield Step(
             f"O2 beside the line by {-first.imag:.6g} m", (Dot(0j, O2, "result", fixed=True),)
         )
+    equal = task.form == "isosceles"
     yield Step(
-        "O2 B1 is rod less crank, O2 B2 rod and crank: half their difference is the crank",
+        "crank and rod are a quarter of the stroke each, and O2 is its middle"
+        if equal
+        else "O2 B1 is rod less crank, O2 B2 rod and crank: half their difference is the crank",
         (Segment(0j, first), Segment(0j, second), Circle(0j, crank)),
     )
     pin = cmath.rect(crank, angles[0])

@@ -44,7 +44,7 @@ class Synthesis(Shown):
         """A row for each solution, those with a defect too."""
         from reports.synthesis.solution_table import solution_frame
 
-        return solution_frame(self.details.examined, self.details.task)
+        return solution_frame(self.details.examined)
 
     def proof(self, engine: str, profile: str = "tuned", *, best: int = 1) -> pd.DataFrame:
         """What an engine makes of the best solutions without a defect: a row for each thing that
@@ -69,7 +69,7 @@ class Synthesis(Shown):
 
         listed = self.details.examined[:LISTED]
         console.print(counted(self.details, len(listed)), highlight=False, markup=False)
-        console.print("", solution_table(listed, self.details.task), sep="\n")
+        console.print("", solution_table(listed), sep="\n")
 
 
 @told_at_the_call

@@ -11,7 +11,6 @@ from rich.table import Table
 
 from analytic.synthesis.examine import Examined
 from analytic.synthesis.solutions import Solutions
-from models.tasks.task import TaskTable
 from reports.output.columns import plain_table
 from reports.output.numbers import count
 
@@ -21,23 +20,10 @@ if TYPE_CHECKING:
 DEFECT_FREE = "none"
 
 
-def remarks(one: Examined, task: TaskTable) -> list[str]:
-    """What a task wished and a mechanism does not have, in words."""
-    told = []
-    least = task.least_transmission_deg
-    if least is not None and math.degrees(one.least_transmission_rad) < least:
-        told.append(f"transmission below {least:g} deg")
-    if task.pivots_in is not None:
-        outside = [
-            name
-            for name, place in one.proposal.draft.ground.items()
-            if not task.pivots_in.holds(place)
-        ]
-        told += [f"{name} outside the region" for name in outside]
-    told += one.notes
-    if one.proposal.doubt:
-        told.append(one.proposal.doubt)
-    return told
+def remarks(one: Examined) -> list[str]:
+    """What a task wished and a mechanism does not have, and how well it does it, in words."""
+    doubt = one.proposal.doubt
+    return [*one.unfulfilled, *one.notes, *([doubt] if doubt else [])]
 
 
 def counted(solutions: Solutions, listed: int) -> str:
@@ -50,7 +36,7 @@ def counted(solutions: Solutions, listed: int) -> str:
     return told + (f"; the best {listed} listed" if listed < many else "")
 
 
-def solution_table(every: Sequence[Examined], task: TaskTable) -> Table:
+def solution_table(every: Sequence[Examined]) -> Table:
     """A row for each, numbered from 1."""
     table = plain_table(gap=2)
     for head in ("", "defect", "driver", "trans. deg", "size m", "type", "chosen, remarks"):
@@ -63,12 +49,12 @@ def solution_table(every: Sequence[Examined], task: TaskTable) -> Table:
             f"{math.degrees(one.least_transmission_rad):.2f}",
             f"{one.extent_m:.4g}",
             one.grashof,
-            "; ".join([*_chosen(one), *remarks(one, task)]),
+            "; ".join([*_chosen(one), *remarks(one)]),
         )
     return table
 
 
-def solution_frame(every: Sequence[Examined], task: TaskTable) -> pd.DataFrame:
+def solution_frame(every: Sequence[Examined]) -> pd.DataFrame:
     """The same with all digits, and the lengths: a row for each."""
     import pandas as pd
 
@@ -83,7 +69,7 @@ def solution_frame(every: Sequence[Examined], task: TaskTable) -> pd.DataFrame:
             "extent_m": one.extent_m,
             "type": one.grashof,
             "chosen": "; ".join(_chosen(one)),
-            "remarks": "; ".join(remarks(one, task)),
+            "remarks": "; ".join(remarks(one)),
             "largest_miss": max(one.off),
             "largest_torque_n_m": one.torque_n_m,
         }

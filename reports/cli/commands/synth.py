@@ -59,7 +59,7 @@ def run_synth(request: SynthRequest, console: Console) -> int:
     listed = _listed(solutions, request.best)
     _say(console, f"{task.name}: {task.source}")
     _say(console, counted(solutions, len(listed)))
-    console.print("", solution_table(listed, task), sep="\n")
+    console.print("", solution_table(listed), sep="\n")
     if request.vary_m is not None:
         _show_sensitivity(console, solutions, task, request.vary_m)
     proofs = {
@@ -160,7 +160,7 @@ def _write(
     texts: dict[str, str | bytes] = {
         scene_name(number): one.text for number, one in enumerate(listed, 1)
     }
-    texts[FRAME] = csv(solution_frame(listed, task))
+    texts[FRAME] = csv(solution_frame(listed))
     if proofs:
         texts[PROOF] = csv(proof_frame(proofs))
     for number, one in enumerate(listed, 1):

@@ -76,7 +76,7 @@ def _solutions(
             "extent": f"{one.extent_m:.4g}",
             "type": one.grashof,
             "chosen": [f"{name}: {value}" for name, value in one.proposal.chosen.items()],
-            "remarks": remarks(one, task),
+            "remarks": remarks(one),
         }
         for number, one in enumerate(every, 1)
     ]

@@ -9,6 +9,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from models.files import read_scene
+from models.tasks.files import find_task
 from reports.cli import app
 
 
@@ -129,3 +130,64 @@ def test_what_no_mechanism_does_is_said(tmp_path: Path, kind: str, text: str, sa
     result = synth(kind, str(task))
     assert result.exit_code == 2
     assert says in " ".join((result.output + result.stderr).split())
+
+
+FOUR = "positions = [" + ", ".join(
+    POSE.format(x, y, angle)
+    for x, y, angle in ((0.0, 0.0, 10.0), (0.2, 0.1, 35.0), (0.35, 0.3, 80.0), (0.5, 0.35, 100.0))
+) + "]\n"  # fmt: skip
+
+
+def test_fixed_pivots_stand_where_they_are_wished(tmp_path: Path) -> None:
+    task = tmp_path / "task.toml"
+    region = "pivots_in = { from_m = [-0.3, -0.3], to_m = [0.8, 0.8] }\n"
+    task.write_text(f'name = "x"\nsource = "a test"\n{FOUR}{region}', encoding="utf-8")
+    assert synth("coupler", str(task), "-o", str(tmp_path / "out")).exit_code == 0
+    frame = pd.read_csv(tmp_path / "out/solutions.csv")
+    for column in ("O2_x_m", "O2_y_m", "O4_x_m", "O4_y_m"):
+        assert frame[column].between(-0.3, 0.8).all()
+
+
+def test_wishes_that_are_not_fulfilled_are_told_and_ranked_behind(tmp_path: Path) -> None:
+    task = tmp_path / "task.toml"
+    text = load_text("coupler", "three-positions") + "least_transmission_deg = 50.0\n"
+    task.write_text(text, encoding="utf-8")
+    told = synth("coupler", str(task)).output
+    assert told.count("transmission below 50 deg") == 1
+    rows = [line for line in told.splitlines() if line[:1] in ("1", "2")]
+    assert "below" not in next(line for line in rows if line.startswith("1  "))
+
+
+def load_text(kind: str, name: str) -> str:
+    return find_task(kind, name).read_text(encoding="utf-8")
+
+
+def test_what_an_earlier_run_left_is_told(tmp_path: Path) -> None:
+    first = synth("rocker", "by-angle", "--best", "2", "-o", str(tmp_path))
+    assert "left there" not in first.output
+    (tmp_path / "mine.toml").write_text("x = 1\n", encoding="utf-8")
+    told = " ".join(synth("rocker", "by-angle", "--best", "1", "-o", str(tmp_path)).output.split())
+    left = "construction-2.html, construction-2.svg, solution-2.toml"
+    assert told.endswith(f"left there by an earlier run: {left}")
+
+
+def test_the_page_leads_to_every_file_that_is_written(tmp_path: Path) -> None:
+    synth("coupler", "three-positions", "-o", str(tmp_path), "--prove")
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert "Every position is met." in page
+    for number in (1, 2):
+        for name in (f"solution-{number}.toml", f"construction-{number}.html"):
+            assert (tmp_path / name).exists()
+            assert f'href="{name}"' in page
+
+
+def test_loads_are_weighed(tmp_path: Path) -> None:
+    task = tmp_path / "task.toml"
+    load = '[loads.weight]\nlink = "coupler"\npoint = "C"\nforce_n = {}\ndirection_deg = -90.0\n'
+    torques = []
+    for force in (100.0, 200.0):
+        text = load_text("coupler", "three-positions") + "speed_rad_s = 0.01\n" + load.format(force)
+        task.write_text(text, encoding="utf-8")
+        assert synth("coupler", str(task), "-o", str(tmp_path / "out")).exit_code == 0
+        torques.append(pd.read_csv(tmp_path / "out/solutions.csv")["largest_torque_n_m"][0])
+    assert torques[1] == pytest.approx(2.0 * torques[0], rel=1e-3)
