@@ -116,8 +116,9 @@ def _three(task: CouplerTask, body: CarriedBody) -> tuple[Pair, dict[str, str]]:
 
 def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
     """Four positions: pairs along Burmester's curves; five: of all cranks that there are."""
-    curves = four_positions(body.poses) if len(body.poses) == 4 else []
-    dyads = _wished(task, curves) if curves else five_positions(body.poses)
+    is_four = len(body.poses) == 4
+    curves = four_positions(body.poses) if is_four else []
+    dyads = _wished(task, curves) if is_four else five_positions(body.poses)
     if len(dyads) < 2:
         raise CrankcheckError(
             f"{task.name}: {len(dyads)} cranks hold the body in all {len(body.poses)} positions "

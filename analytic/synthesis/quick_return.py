@@ -27,6 +27,7 @@ from analytic.synthesis.design import Proposal
 from analytic.synthesis.strokes import lag_of
 from analytic.synthesis.to_and_fro import chord
 from models.draft import Draft, bar
+from models.errors import CrankcheckError
 from models.scene_text import Table
 from models.tasks.quick_return import QuickReturnTask
 
@@ -114,6 +115,12 @@ def _add_ram(
     with the lever's ``ends``, counted from the nearest."""
     stroke = abs(ends[0].real - ends[1].real)
     rod = task.rod_m or ROD * stroke
+    least = abs(ends[0].imag - height)
+    if not rod > least:
+        raise CrankcheckError(
+            f"rod_m is {rod:g}: the lever's end is up to {least:.6g} m beside the ram's line; take "
+            "a longer rod"
+        )
     below = math.asin((ends[0].imag - height) / rod)
     places = [end.real + rod * math.cos(below) for end in ends]
     links["rod"] = bar(END, RAM, rod)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from analytic.synthesis.asked import Asked, AskedAngle, AskedPlace, PrecisionPosition
-from analytic.synthesis.construction import Circle, Dot, Segment, Step
+from analytic.synthesis.construction import Circle, Dot, Element, Segment, Step
 from analytic.synthesis.design import Proposal
 from analytic.synthesis.fourbar_draft import letters_beside
 from analytic.synthesis.pose import Pose, bisector, pole, refuse_coinciding, turn_between
@@ -87,55 +87,67 @@ def _by_positions(task: RockerTask) -> Swung:
             f"along {across:.4g} deg: no rocker does that; a coupler can (`crankcheck synth "
             "coupler`)"
         )
-    letter, place = next(
-        (name, place) for name, place in own.items() if abs(first.at(place) - pivot) > 1e-9 * size
-    )
-    arm = (first.at(place) - pivot) / abs(first.at(place) - pivot)
-    arm_m = abs(first.at(place) - pivot)
+    off_pole = [name for name in own if abs(first.at(own[name]) - pivot) > 1e-9 * size]
+    if not off_pole and task.rocker_m is None:
+        raise CrankcheckError(
+            f"{task.name}: {', '.join(own)} is the pole, and so the rocker's pivot O4: give "
+            "rocker_m, how far its pin is from there"
+        )
+    # Of a body whose one point is the pole, the pin lies along its own x-axis.
+    letter = off_pole[0] if off_pole else ""
+    towards = first.at(own[letter]) - pivot if letter else cmath.exp(1j * first.angle)
+    arm_m, arm = abs(towards), towards / abs(towards)
     radius = task.rocker_m or arm_m
-    is_pin = abs(radius - arm_m) <= 1e-9 * arm_m
+    is_pin = bool(letter) and abs(radius - arm_m) <= 1e-9 * arm_m
     pin = letter if is_pin else letters_beside(own, 2)[1]
     turn = cmath.exp(1j * turn_between(first, second))
     ends = (pivot + radius * arm, pivot + radius * arm * turn)
     # The rocker's own frame: O4 at its origin, B on its x-axis.
     poses = (Pose(pivot, cmath.phase(arm)), Pose(pivot, cmath.phase(arm * turn)))
-    points = {name: poses[0].back(first.at(each)) for name, each in own.items()}
+    # A point in the pole stays there whatever the rocker does.
+    points = {name: poses[0].back(first.at(own[name])) for name in off_pole}
     if is_pin:
         points[letter] = complex(radius)
-    elements = [
-        Segment(bisector(a, b).middle, pivot, beyond=0.15)
-        for a, b in ((first.at(z), second.at(z)) for z in own.values())
-        if a != b
-    ]
-    dots = [
+    steps = (*_pole_steps((first, second), own, pivot), _pin_step(pivot, ends, pin, letter))
+    return Swung(pivot, ends, poses, points, steps, pin if is_pin else "")
+
+
+def _pole_steps(
+    places: tuple[Pose, Pose], own: Mapping[str, complex], pivot: complex
+) -> Iterator[Step]:
+    """The body in its positions, and the bisectors that meet in the pole."""
+    elements: list[Element] = [
         Dot(pose.at(each), f"{name}{number}", "given")
-        for number, pose in enumerate((first, second), 1)
+        for number, pose in enumerate(places, 1)
         for name, each in own.items()
     ]
-    ends_of = (min(own), max(own))
-    lines = [
-        Segment(pose.at(own[ends_of[0]]), pose.at(own[ends_of[1]]), "given")
-        for pose in (first, second)
+    if len(own) > 1:
+        one, other = own.values()
+        elements = [*(Segment(pose.at(one), pose.at(other), "given") for pose in places), *elements]
+    yield Step("the body in its two positions", tuple(elements))
+    ways = [(places[0].at(each), places[1].at(each)) for each in own.values()]
+    yield Step(
+        f"the bisectors of {' and '.join(f'{n}1{n}2' for n in own)} meet in the rotopole O4"
         if len(own) > 1
-    ]
-    steps = (
-        Step("the body in its two positions", (*lines, *dots)),
-        Step(
-            f"the bisectors of {' and '.join(f'{n}1{n}2' for n in own)} meet in the rotopole O4",
-            (*elements, Dot(pivot, O4, "result", fixed=True)),
-        ),
-        Step(
-            f"{pin} on the line from O4 to {letter}1, and on the same arc in position 2",
-            (
-                Circle(pivot, radius),
-                Segment(pivot, ends[0]),
-                Segment(pivot, ends[1]),
-                Dot(ends[0], f"{pin}1"),
-                Dot(ends[1], f"{pin}2"),
-            ),
+        else "the body turns from one into the other about the rotopole O4",
+        (
+            *(Segment(bisector(a, b).middle, pivot, beyond=0.15) for a, b in ways if a != b),
+            Dot(pivot, O4, "result", fixed=True),
         ),
     )
-    return Swung(pivot, ends, poses, points, steps, pin if is_pin else "")
+
+
+def _pin_step(pivot: complex, ends: tuple[complex, complex], pin: str, letter: str) -> Step:
+    """The rocker's pin in both positions."""
+    words = f"{pin} on the line from O4 to {letter}1, and on the same arc in position 2"
+    return Step(
+        words if letter else f"{pin} at its distance from O4, in both positions",
+        (
+            Circle(pivot, abs(ends[0] - pivot)),
+            *(Segment(pivot, end) for end in ends),
+            *(Dot(end, f"{pin}{number}") for number, end in enumerate(ends, 1)),
+        ),
+    )
 
 
 def _proposal(task: RockerTask, swung: Swung, distance_m: float, beyond: int) -> Proposal:

@@ -12,6 +12,9 @@ from models.tasks.task import TaskTable
 RIGID = 1e-3
 """By what share of it the distance of two points may differ between positions: exercises round."""
 
+RESERVED = ("O2", "O4", "O6", "input", "coupler", "output", "crank", "rod", "rocker", "ground")
+"""What solutions call their fixed pivots and their links."""
+
 
 class PoseTable(Table):
     """A position of a body: of a point with an angle, or of two points by their names."""
@@ -44,6 +47,12 @@ class PositionsTask(TaskTable):
         if len(kinds) > 1:
             told = " and ".join(", ".join(names) or "point_m and angle_deg" for names in kinds)
             raise ValueError(f"positions: found {told}; give all in the same way, of one body")
+        taken = [name for name in self.names if name in RESERVED]
+        if taken:
+            raise ValueError(
+                f"positions: {' and '.join(taken)}: solutions have pivots and links of that name "
+                f"({', '.join(RESERVED)}); give the point another"
+            )
         lengths = [abs(b - a) for a, b in (self._pair(one) for one in self.positions if one.points)]
         if lengths and lengths[0] == 0.0:
             raise ValueError("positions: the two points coincide; name two points apart")

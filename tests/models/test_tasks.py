@@ -48,6 +48,12 @@ FAULTS = [
         "{ points = { C = [0.0, 0.0], D = [0.0, 1.1] } }]",
         "1 m apart in position 1 and 1.1 m in position 2; a body is rigid",
     ),
+    (
+        "coupler",
+        "positions = [{ points = { O2 = [0.0, 0.0], D = [1.0, 0.0] } }, "
+        "{ points = { O2 = [0.0, 0.0], D = [0.0, 1.0] } }]",
+        "O2: solutions have pivots and links of that name",
+    ),
     ("coupler", "positions = [{ point_m = [0.0, 0.0] }, { angle_deg = 1.0 }]", "point_m and angle"),
     ("coupler", f"positions = [{A}, {B}]\n{MOVING}\npositons = 3", "unknown key"),
     (

@@ -120,6 +120,21 @@ IMPOSSIBLE = [
         "it lies between",
     ),
     ("rocker", "swing_deg = 60.0\nrocker_m = 0.2\ndistance_m = 0.05", "take more than 0.1 m"),
+    (
+        "rocker",
+        f"positions = [{POSE.format(0.1, 0.0, 0.0)}, {POSE.format(0.1, 0.0, 90.0)}]",
+        "P is the pole, and so the rocker's pivot O4: give rocker_m",
+    ),
+    (
+        "coupler",
+        "positions = [" + ", ".join(POSE.format(x, x**2, 5.0) for x in (0.0, 0.1, 0.3, 0.4)) + "]",
+        "0 cranks hold the body in all 4 positions",
+    ),
+    (
+        "quick-return",
+        'mechanism = "slotted-lever"\ntime_ratio = 1.5\nstroke_m = 0.1\nrod_m = 0.0001',
+        "take a longer rod",
+    ),
 ]
 
 
@@ -191,3 +206,12 @@ def test_loads_are_weighed(tmp_path: Path) -> None:
         assert synth("coupler", str(task), "-o", str(tmp_path / "out")).exit_code == 0
         torques.append(pd.read_csv(tmp_path / "out/solutions.csv")["largest_torque_n_m"][0])
     assert torques[1] == pytest.approx(2.0 * torques[0], rel=1e-3)
+
+
+def test_a_rocker_about_a_point_of_the_body_does_its_task(tmp_path: Path) -> None:
+    task = tmp_path / "task.toml"
+    poses = f"[{POSE.format(0.1, 0.0, 0.0)}, {POSE.format(0.1, 0.0, 90.0)}]"
+    head = 'name = "x"\nsource = "a test"\nrocker_m = 0.2\n'
+    task.write_text(f"{head}positions = {poses}\n", encoding="utf-8")
+    result = synth("rocker", str(task), "--best", "1", "--prove", "--engine", "mujoco")
+    assert result.exit_code == 0, result.output + result.stderr
