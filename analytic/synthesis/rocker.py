@@ -87,7 +87,8 @@ def _by_positions(task: RockerTask) -> Swung:
             f"along {across:.4g} deg: no rocker does that; a coupler can (`crankcheck synth "
             "coupler`)"
         )
-    off_pole = [name for name in own if abs(first.at(own[name]) - pivot) > 1e-9 * size]
+    near = 1e-9 * (size + abs(pivot))
+    off_pole = [name for name in own if abs(first.at(own[name]) - pivot) > near]
     if not off_pole and task.rocker_m is None:
         raise CrankcheckError(
             f"{task.name}: {', '.join(own)} is the pole, and so the rocker's pivot O4: give "
