@@ -23,7 +23,8 @@ from analytic.circuits.circuits import SAME, Circuits, Defect, Position, circuit
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve_driven
 from analytic.mechanism.grashof_of_scene import grashof_of
-from analytic.synthesis.asked import PrecisionPosition, names_of
+from analytic.synthesis.asked import PrecisionPosition
+from analytic.synthesis.asked_motion import asked_motion
 from analytic.synthesis.design import Proposal
 from models.array import Array
 from models.draft import SPEED_RAD_S, Draft
@@ -140,7 +141,8 @@ def examine(proposal: Proposal) -> Examined:
         for each, angle in zip(proposal.positions, angles, strict=True)
     )
     way = _way(scene.driver.law)
-    motion = _motion(scene, way, positions=None)
+    one = np.ones(1)
+    motion = solve_driven(scene, way, one, 0.0 * one, links=(), sliders=(), bound=False)
     sine = min((float(np.min(np.abs(s))) for s in motion.conditioning.values()), default=1.0)
     off = tuple(
         _off(scene, each) if on else _off(_at(circuits, place), each)
@@ -204,29 +206,10 @@ def _at(circuits: Circuits, place: Position) -> Scene:
 def _off(scene: Scene, position: PrecisionPosition) -> float:
     """How far a scene is from a position; inf where it is not assembled there."""
     try:
-        motion = _motion(scene, np.array([position.driver_rad]), [position])
+        motion = asked_motion(scene, [position])
     except ReachError:
         return math.inf
     return float(position.off(motion, scene.longest_m)[0])
-
-
-def _motion(scene: Scene, angles: Array, positions: Sequence[PrecisionPosition] | None) -> Motion:
-    """The scene at angles of the driver: of all points, or of what is asked in positions."""
-    if positions is None:
-        return solve_driven(
-            scene, angles, np.ones(1), np.zeros(1), links=(), sliders=(), bound=False
-        )
-    links, points, sliders = names_of(positions)
-    return solve_driven(
-        scene,
-        angles,
-        np.ones(1),
-        np.zeros(1),
-        links=links,
-        points=points,
-        sliders=sliders,
-        bound=False,
-    )
 
 
 def _unwrapped(arc: Arc, angles: Sequence[float]) -> list[float]:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 
+from analytic.synthesis.design import Proposal
+from analytic.synthesis.exact_line import peaucellier
 from analytic.synthesis.function.given import GivenFunction
 from analytic.synthesis.function.task import FunctionTask
 from analytic.synthesis.hoeken import hoeken
-from analytic.synthesis.line_draft import StraightLine
 from analytic.synthesis.path.task import PathTask
 from analytic.synthesis.straight_line import straight_line
 from models.tasks.function import FunctionTable
@@ -50,9 +51,11 @@ def _radians(degrees: float | None) -> float | None:
     return None if degrees is None else math.radians(degrees)
 
 
-def straight_line_of(table: StraightLineTable) -> StraightLine:
+def straight_line_of(table: StraightLineTable) -> Proposal:
     """The linkage of a straight line. Raises CrankcheckError for what none has."""
     start, direction = complex(*table.start_m), math.radians(table.direction_deg)
+    if table.linkage == "peaucellier":
+        return peaucellier(table.length_m, start=start, direction_rad=direction)
     if table.linkage == "hoeken":
         return hoeken(
             table.length_m,
@@ -61,11 +64,11 @@ def straight_line_of(table: StraightLineTable) -> StraightLine:
             even=table.even or "line",
             start=start,
             direction_rad=direction,
-        )
+        ).proposal
     return straight_line(
         table.linkage,
         table.length_m,
         deviation=table.deviation,
         start=start,
         direction_rad=direction,
-    )
+    ).proposal

@@ -13,8 +13,8 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.kinematics import solve_driven
-from analytic.synthesis.asked import Asked, names_of
+from analytic.synthesis.asked import Asked
+from analytic.synthesis.asked_motion import asked_motion
 from analytic.synthesis.examine import Examined
 from models.array import Array
 from models.draft import Draft, plate
@@ -190,18 +190,7 @@ def _varied(draft: Draft, by: Mapping[Dimension, float]) -> Draft:
 
 def _values(examined: Examined, scene: Scene) -> NDArray[np.complex128]:
     """What is asked, as it is at the positions' driver angles (P,): places, turns exp(i angle)."""
-    angles = np.array([position.driver_rad for position in examined.positions])
-    links, points, sliders = names_of(examined.positions)
-    motion = solve_driven(
-        scene,
-        angles,
-        np.ones(1),
-        np.zeros(1),
-        links=links,
-        points=points,
-        sliders=sliders,
-        bound=False,
-    )
+    motion = asked_motion(scene, examined.positions)
     return np.array(
         [
             one.value(motion)[k]

@@ -107,7 +107,7 @@ def _proposals(task: TaskTable, progress: Progress | None) -> tuple[list[Proposa
     if isinstance(task, PathTable):
         return _paths(task, progress)
     if isinstance(task, StraightLineTable):
-        return [straight_line_of(task).proposal], 1
+        return [straight_line_of(task)], 1
     assert isinstance(task, StrokeTask)
     return stroke_proposals(task)
 

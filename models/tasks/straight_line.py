@@ -15,10 +15,10 @@ class StraightLineTable(TaskTable):
 
     ``deviation`` is the largest distance from the line, over the length; of Hoeken's ``turn_deg``,
     the turn of the crank over the straight part, says it as well, and ``even`` whether the line or
-    the speed is to be best.
+    the speed is to be best. Peaucellier's eight bars lead a point exactly.
     """
 
-    linkage: Literal["hoeken", "chebyshev", "watt", "roberts", "evans"]
+    linkage: Literal["hoeken", "chebyshev", "watt", "roberts", "evans", "peaucellier"]
     length_m: Positive
     deviation: Annotated[float, Field(strict=True, gt=0.0, lt=1.0)] | None = None
     turn_deg: Annotated[float, Field(strict=True, gt=0.0, lt=360.0)] | None = None
@@ -31,6 +31,8 @@ class StraightLineTable(TaskTable):
         for key in ("turn_deg", "even"):
             if self.linkage != "hoeken" and getattr(self, key) is not None:
                 raise ValueError(f"{key}: belongs to hoeken; a {self.linkage} linkage has none")
+        if self.linkage == "peaucellier" and self.deviation is not None:
+            raise ValueError("deviation: a peaucellier linkage has none, leave it out")
         if self.turn_deg is not None and self.deviation is not None:
             raise ValueError("deviation and turn_deg: the one follows from the other; give one")
         return self
