@@ -108,7 +108,8 @@ def stroke_and_ratio(draw: Draw) -> TaskTable:
 
 
 def slotted_lever(draw: Draw) -> TaskTable:
-    ratio, stroke = float(draw.uniform(1.1, 5.0)), float(draw.uniform(0.05, 1.0))
+    """Levers that swing by up to 90 degrees: with more of it pymunk's ram breaks away."""
+    ratio, stroke = float(draw.uniform(1.1, 3.0)), float(draw.uniform(0.05, 1.0))
     return QuickReturnTask(**HEAD, mechanism="slotted-lever", time_ratio=ratio, stroke_m=stroke)
 
 
