@@ -31,6 +31,8 @@ MOST_BITS = 5000
 SHARP = 1e-40
 """How well roots are asked for, over their size: far beyond floats, so that what is worked out from
 them is exact to rounding."""
+SPECIAL = 1e-9
+"""Of the sizes that make them: sides of the compatibility linkage that are none."""
 SWEEP = 720
 """Turns of the compatibility linkage's first link that the curves are drawn by."""
 
@@ -149,6 +151,12 @@ def four_positions(poses: Sequence[Pose], count: int = SWEEP) -> list[list[Dyad]
     delta = np.array(
         [a[1] * d[2] - a[2] * d[1], a[2] * d[0] - a[0] * d[2], a[0] * d[1] - a[1] * d[0]]
     )
+    turned, moved = float(np.max(np.abs(a))), float(np.max(np.abs(d)))
+    if np.max(np.abs(delta)) <= SPECIAL * max(turned, SPECIAL) * moved:
+        raise CrankcheckError(
+            "the four positions are so special (turns about one point, or none at all) that they "
+            "have no curves; take three of them, or change one a little"
+        )
     ground = -np.sum(delta * e)
     # The shortest side turns further than the others: it leads.
     lead = int(np.argmin(np.abs(delta)))

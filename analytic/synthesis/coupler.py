@@ -60,6 +60,11 @@ def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
         proposals = [
             six for four in proposals if swings_little(four) for six in with_driving_dyad(four)
         ]
+        if not proposals:
+            raise CrankcheckError(
+                f"{task.name}: no driving dyad: the input link of every four-bar turns by half a "
+                "turn between the positions; take other distances_m"
+            )
     return proposals, len(proposals)
 
 

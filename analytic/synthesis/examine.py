@@ -90,7 +90,7 @@ class Examined:
     def defects(self) -> list[str]:
         """What keeps it from the task, in words; empty of a mechanism that does it."""
         worst = max(self.off)
-        unmet = [f"misses a position by {worst:.3g}"] * (
+        unmet = [f"misses a position by {worst:.3g} rad or longest links"] * (
             not worst <= max(UNMET, self.proposal.allowed)
         )
         faults = [self.fault] * bool(self.fault)
@@ -130,8 +130,9 @@ def examine(proposal: Proposal) -> Examined:
     defect = circuits.defect(places)
     on_arc = [arc.signs == p.signs and arc.holds(p.driver_rad, SAME) for p in places]
     angles = _unwrapped(arc, [position.driver_rad for position in proposal.positions])
-    own = [angle for angle, on in zip(angles, on_arc, strict=True) if on]
+    own = angles
     if arc.low is not None:
+        own = [angle for angle, on in zip(angles, on_arc, strict=True) if on]
         own += _unwrapped(arc, [angle for angle in proposal.also_rad if arc.holds(angle)])
     driver = _driver(proposal.driver, arc, own, speed)
     draft = proposal.draft.driven(driver).with_branch(branch)
@@ -140,7 +141,7 @@ def examine(proposal: Proposal) -> Examined:
         replace(each, driver_rad=angle)
         for each, angle in zip(proposal.positions, angles, strict=True)
     )
-    way = _way(scene.driver.law)
+    way = way_of(scene.driver.law)
     one = np.ones(1)
     motion = solve_driven(scene, way, one, 0.0 * one, links=(), sliders=(), bound=False)
     sine = min((float(np.min(np.abs(s))) for s in motion.conditioning.values()), default=1.0)
@@ -151,7 +152,8 @@ def examine(proposal: Proposal) -> Examined:
     if defect in ("branch", "circuit") and circuits.change_points:
         own_off = _through_change_points(scene, positions)
         if max(own_off) <= max(UNMET, proposal.allowed):
-            defect, off = "none", own_off
+            in_a_turn = abs(angles[-1] - angles[0]) < math.tau
+            defect, off = "none" if arc.low is not None or in_a_turn else "order", own_off
     kind = grashof_of(scene)
     return Examined(
         proposal,
@@ -244,13 +246,13 @@ def _driver(link: str, arc: Arc, angles: Sequence[float], speed: float) -> Table
     }
 
 
-def _way(law: Law) -> Array:
+def way_of(law: Law, count: int = LOOKS) -> Array:
     """Angles of the driver [rad] over its whole way."""
     if isinstance(law, Oscillating):
         swing = abs(law.amplitude_rad)
-        return np.linspace(law.centre_rad - swing, law.centre_rad + swing, LOOKS)
+        return np.linspace(law.centre_rad - swing, law.centre_rad + swing, count)
     start = float(law.at(np.zeros(1))[0][0])
-    return np.linspace(start, start + math.tau, LOOKS)
+    return np.linspace(start, start + math.tau, count)
 
 
 def _largest_torque(scene: Scene) -> float:

@@ -56,7 +56,8 @@ def placed(
     four_bar = book.moved(by, start - by * part.start)
     turn = cmath.phase(by)
     own = measured(four_bar, part.crank_rad[0] + turn, part.crank_rad[1] + turn)
-    angles = on_line(four_bar, own)
+    # The ends of the part as well: between them the point is as near as is told.
+    angles = sorted({own.crank_rad[0], *on_line(four_bar, own), own.crank_rad[1]})
     positions = tuple(
         PrecisionPosition(angle, (AskedPlace(POINT, complex(place)),))
         for angle, place in zip(angles, four_bar.at(np.array(angles)), strict=True)

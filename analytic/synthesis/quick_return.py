@@ -94,6 +94,11 @@ def _whitworth(task: QuickReturnTask, lag: float) -> Proposal:
     links: dict[str, Table] = {"crank": bar(O2, PIN, crank), "guide": bar(O4, END, arm)}
     sliders: dict[str, Table] = {PIN: {"on": "guide"}}
     ends = [complex(arm), complex(-arm)]
+    if task.rod_m is not None and not task.rod_m > arm:
+        raise CrankcheckError(
+            f"rod_m is {task.rod_m:g}: the guide's end is {arm:.6g} m from O4, which the rod has "
+            "to pass; take a longer one"
+        )
     slides = _add_ram(task, links, sliders, ends, 0.0)
     draft = Draft(task.name, task.source, {O2: 1j * pivots, O4: 0j}, links, {}, sliders=sliders)
     positions = tuple(

@@ -13,17 +13,22 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.kinematics import solve_driven
 from analytic.synthesis.asked import Asked
 from analytic.synthesis.asked_motion import asked_motion
-from analytic.synthesis.examine import Examined
+from analytic.synthesis.examine import Examined, way_of
 from models.array import Array
 from models.draft import Draft, plate
-from models.errors import ReachError
+from models.errors import CrankcheckError, ReachError
 from models.scene import Scene
 from models.scene_text import Table
 
+SINGULAR = 1e-3
+"""A least sine of transmission below which differences say nothing."""
 STEP = 1e-5
 """Of the longest link: a difference is off by the square of it, and by rounding over it."""
+ON_THE_WAY = 49
+"""Looks at the driver's way of a mechanism that is drawn at random."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +98,18 @@ class Spread:
 
 
 def sensitivity(examined: Examined) -> Sensitivity:
-    """The slopes of a mechanism that meets its positions."""
+    """The slopes of a mechanism that meets its positions.
+
+    Raises
+    ------
+    CrankcheckError
+        A mechanism that passes a change point, or a dead one: next to it there are no slopes.
+    """
+    if examined.least_sine < SINGULAR:
+        raise CrankcheckError(
+            f"{examined.scene.name}: it passes a position in which links are in line, where a "
+            "change of length as small as one likes leads into another assembly"
+        )
     draft = as_plates(examined)
     step = STEP * examined.scene.longest_m
     dimensions = tuple(_dimensions(draft))
@@ -115,17 +131,18 @@ def monte_carlo(
     examined: Examined, tolerance_m: float, limits: Sequence[float], count: int, seed: int = 19
 ) -> Spread:
     """So many mechanisms whose dimensions are off by up to a tolerance [m], evenly and each by
-    itself; ``limits`` (P,) of what is asked [m, rad]."""
+    itself; ``limits`` (P,) of what is asked [m, rad]. Those that can not be assembled all along the
+    driver's way are lost."""
     draft, draw = as_plates(examined), np.random.default_rng(seed)
     dimensions = [one for one in _dimensions(draft) if is_measured(examined, one)]
-    exact = _values(examined, draft.scene)
+    exact, way = _values(examined, draft.scene), way_of(examined.scene.driver.law, ON_THE_WAY)
     largest, within, lost = np.zeros(len(exact)), 0, 0
     for _ in range(count):
         off = draw.uniform(-tolerance_m, tolerance_m, len(dimensions)).tolist()
         try:
-            values = _values(
-                examined, _varied(draft, dict(zip(dimensions, off, strict=True))).scene
-            )
+            scene = _varied(draft, dict(zip(dimensions, off, strict=True))).scene
+            values = _values(examined, scene)
+            solve_driven(scene, way, np.ones(1), np.zeros(1), points=(), sliders=(), bound=False)
         except ReachError:
             lost += 1
             continue

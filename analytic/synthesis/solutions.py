@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from analytic.mechanism.travel import travel
+from analytic.synthesis.asked import AskedSlide
 from analytic.synthesis.coupler import coupler_proposals
 from analytic.synthesis.design import Proposal
 from analytic.synthesis.examine import Examined, examine, ranked
@@ -28,6 +30,10 @@ from models.tasks.task import TaskTable
 
 LONGEST_NAME = 34
 """Letters of a task's name that go on to its scenes, which have 40 with their numbers."""
+STROKE = 1e-9
+"""Of a stroke: what a slider goes further than asked is none of rounding beyond it."""
+FLAT = 1e-6
+"""A least sine of transmission below which there is a change point on the way."""
 MOST_PATHS = 10
 """Mechanisms that a path is searched for."""
 
@@ -58,7 +64,7 @@ def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions
     """
     proposals, looked = _proposals(task, progress)
     examined, refused = [], []
-    for proposal in proposals:
+    for number, proposal in enumerate(proposals, 1):
         draft = replace(
             proposal.draft, name=task.name, source=task.source, note=task.note, loads=task.loads
         )
@@ -67,7 +73,11 @@ def solutions_of(task: TaskTable, progress: Progress | None = None) -> Solutions
             one = followed(examine(own))
             examined.append(replace(one, unfulfilled=tuple(unfulfilled(one, task))))
         except CrankcheckError as error:
+            if task.loads and "loads." in str(error):
+                raise  # of the task's file, and of no mechanism
             refused.append(str(error))
+        if progress is not None and not isinstance(task, PathTable):
+            progress(number / len(proposals), math.inf)
     if not examined:
         why = f": {refused[0]}" if refused else ""
         raise CrankcheckError(f"{task.name}: no mechanism does it{why}")
@@ -85,6 +95,21 @@ def unfulfilled(one: Examined, task: TaskTable) -> list[str]:
         ground = one.proposal.draft.ground.items()
         told += [f"{name} outside the region" for name, place in ground if not region.holds(place)]
     return told
+
+
+def _stroked(one: Examined) -> Examined:
+    """A mechanism of a slider's stroke, with a fault where the slider does not turn back in its two
+    positions: over a turn it goes further, and in other times."""
+    slides = [each for p in one.positions for each in p.asked if isinstance(each, AskedSlide)]
+    names = {each.slider for each in slides}
+    if one.defects or len(names) != 1 or len(slides) != 2 or one.least_sine < FLAT:
+        return one
+    asked = abs(slides[1].displacement - slides[0].displacement)
+    found = travel(one.scene, names.pop())
+    if abs(found.stroke - asked) <= STROKE * asked:
+        return one
+    told = f"goes {found.stroke:.6g} m, time ratio {found.time_ratio:.4g}: take a longer rod"
+    return replace(one, fault=told)
 
 
 def _named(one: Examined, number: int) -> Examined:
@@ -131,7 +156,7 @@ def followed(one: Examined) -> Examined:
     """An examined generator with its structural error, worked out by the reference over the whole
     range; what can not be assembled there has a fault. What only comes near misses as much."""
     if not isinstance(one.proposal, FunctionProposal) or one.defects:
-        return replace(one, misses=one.proposal.allowed)
+        return _stroked(replace(one, misses=one.proposal.allowed))
     try:
         error = structural_error(one.proposal, one)
     except ReachError:

@@ -34,8 +34,6 @@ RODS = (2.0, 3.0, 4.0, 5.0)
 """Where a task is silent: rods, over half the stroke."""
 PLACES = 12
 """Where a task leaves O2 free on the circle of a time ratio: so many places of it."""
-LONGEST = 1e6
-"""Of a rod over its stroke: longer ones are no rods."""
 
 
 def stroke_proposals(task: StrokeTask) -> tuple[list[Proposal], int]:

@@ -22,7 +22,7 @@ class CouplerTask(PositionsTask):
 
     moving_m: tuple[Coordinates, Coordinates] | None = None
     fixed_m: tuple[Coordinates, Coordinates] | None = None
-    distances_m: tuple[float, float] | None = None
+    distances_m: Coordinates | None = None
     driver: Literal["first", "second", "either"] = "either"
     driving_dyad: bool = False
 

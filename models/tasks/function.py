@@ -30,7 +30,7 @@ class FunctionTable(TaskTable):
     y: Rows | None = None
     range_of_x: tuple[Number, Number]
     mechanism: Literal["fourbar", "slider-crank"] = "fourbar"
-    points: int | Annotated[list[Number], Field(min_length=3, max_length=5)] = 3
+    points: Literal[3, 4, 5] | Annotated[list[Number], Field(min_length=3, max_length=5)] = 3
     input_range_deg: Degrees
     input_start_deg: Degrees | None = None
     output_range_deg: Degrees | None = None

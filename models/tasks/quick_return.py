@@ -23,8 +23,8 @@ class QuickReturnTask(TaskTable):
     """A mechanism whose slow stroke takes ``time_ratio`` times the quick one, at constant speed.
 
     Its size is that of the ``crank_m``, of the distance of the pivots (``pivots_m``) or of the
-    ram's ``stroke_m`` on a lever as long as ``lever_m`` (silent: pivots and crank and a quarter
-    more); of a crank-rocker ``rocker_m``, whose ``swing_deg`` is asked for as well.
+    ram's ``stroke_m``; of a crank-rocker ``rocker_m``, whose ``swing_deg`` is asked for as well. A
+    ram has a rod of ``rod_m``, silent twice its stroke.
     """
 
     mechanism: Literal["slotted-lever", "whitworth", "crank-rocker"]

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field, StringConstraints, model_validator
 
 from models.draft import SPEED_RAD_S
-from models.table_fields import Coordinates, Degrees, Name, Positive, Table, Text
+from models.table_fields import Coordinates, Name, Positive, Table, Text
 
 MOST_LOADS = 20
 Source = Annotated[Text, StringConstraints(min_length=1)]
@@ -49,6 +49,6 @@ class TaskTable(Table):
     tolerance_m: Positive | None = None
     tolerance_deg: Positive | None = None
     pivots_in: Region | None = None
-    least_transmission_deg: Degrees | None = None
+    least_transmission_deg: Annotated[float, Field(strict=True, ge=0.0, le=60.0)] | None = None
     speed_rad_s: Positive = SPEED_RAD_S
     loads: dict[Name, dict[str, object]] = Field(default_factory=dict, max_length=MOST_LOADS)

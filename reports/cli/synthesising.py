@@ -37,14 +37,17 @@ class SynthRequest:
     engines: Engines = ()
     profiles: Annotated[
         Sequence[str], typer.Option("--profile", help="Profile of the engines; default: tuned.")
-    ] = ("tuned",)
-    steps_per_turn: Annotated[float, typer.Option(help="Steps in a turn of the proof.")] = 720.0
+    ] = ()
+    steps_per_turn: Annotated[
+        float, typer.Option(min=24, max=1e5, help="Steps in a turn of the proof.")
+    ] = 720.0
     vary_m: Annotated[
         float | None,
         typer.Option(
             "--vary",
             metavar="METRES",
             min=1e-9,
+            max=1e6,
             help="What dimensions that are off by up to so much do, and clearances.",
         ),
     ] = None

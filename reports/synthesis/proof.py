@@ -128,7 +128,7 @@ def _between(motion: Motion, at_s: Array) -> Motion:
     t = motion.time_s
     dt = float(t[1] - t[0]) if len(t) > 1 else 1.0
     first = np.clip(np.floor((at_s - t[0]) / dt).astype(int) - LEVERS // 2 + 1, 0, None)
-    there = first + LEVERS <= len(t)
+    there = (first + LEVERS <= len(t)) & (at_s >= t[0] - 1e-9 * dt)
     rows = np.where(there, first, 0)[:, None] + np.arange(LEVERS)
     rows = np.minimum(rows, len(t) - 1)
     along = (at_s - t[0]) / dt - np.where(there, first, 0)

@@ -76,7 +76,8 @@ class FourBarGenerator(Generator):
         p, q, _ = self._sides(phi)
         over = p * np.sin(output) - q * np.cos(output)  # less the derivative by psi
         by_phi = np.sin(phi - output) + self.k[1] * np.sin(phi)
-        return np.stack([np.cos(output), -np.cos(phi), np.ones_like(phi), by_phi]) / over
+        with np.errstate(divide="ignore", invalid="ignore"):  # in a dead point there are none
+            return np.stack([np.cos(output), -np.cos(phi), np.ones_like(phi), by_phi]) / over
 
     def apart(self, asked: Array, output: Array) -> Array:
         off = asked - output

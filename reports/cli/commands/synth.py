@@ -13,6 +13,7 @@ from rich.progress import Progress
 from analytic.synthesis.examine import Examined
 from analytic.synthesis.sensitivity import monte_carlo, sensitivity
 from analytic.synthesis.solutions import Solutions, solutions_of
+from models.errors import CrankcheckError
 from models.tasks.files import find_task, load_task, shipped_tasks
 from models.tasks.task import TaskTable
 from reports.cli.synthesising import SynthRequest
@@ -41,6 +42,8 @@ Proofs = Mapping[int, Sequence[Met]]
 FRAME, PROOF, PAGE = "solutions.csv", "proof.csv", "index.html"
 OURS = re.compile(r"(solution|construction)-\d+\.(toml|svg|html)|proof\.csv")
 """Files of such names in a folder are of this command."""
+USUAL = ("tuned",)
+"""Profiles of the proof where none is named."""
 SAMPLES = 1000
 """Mechanisms of the Monte Carlo: two seconds."""
 
@@ -50,11 +53,12 @@ def run_synth(request: SynthRequest, console: Console) -> int:
     if request.kind is None or request.task is None:
         return _list(request.kind, console)
     paper = Paper.of(request.paper)
+    _check(request)
     if request.output is not None:
         check_folder(request.output, "-o")
     task = load_task(request.kind, request.task)
     engines = chosen_engines(request.engines) if request.prove else []
-    profiles = [name for name, _ in chosen_profiles(request.profiles, engines)]
+    profiles = [name for name, _ in chosen_profiles(request.profiles or USUAL, engines)]
     solutions = _searched(task, console)
     listed = _listed(solutions, request.best)
     _say(console, f"{task.name}: {task.source}")
@@ -83,6 +87,18 @@ def run_synth(request: SynthRequest, console: Console) -> int:
         _write(request.output, listed, task, told, proofs, facts, paper, console)
     met = all(one.within for every in proofs.values() for one in every)
     return 0 if solutions.sound and met else 1
+
+
+def _check(request: SynthRequest) -> None:
+    """Refuse numbers that are none, and what belongs to a proof that is not asked for."""
+    numbers = {"--steps-per-turn": request.steps_per_turn, "--vary": request.vary_m}
+    for option, number in numbers.items():
+        if number is not None and not math.isfinite(number):
+            raise CrankcheckError(f"{option}: found {number}; give a number")
+    given = {"--engine": request.engines, "--profile": request.profiles}
+    for option, names in given.items():
+        if names and not request.prove:
+            raise CrankcheckError(f"{option} {names[0]}: engines are run by --prove; add it")
 
 
 def _searched(task: TaskTable, console: Console) -> Solutions:
@@ -125,8 +141,12 @@ def _show_sensitivity(
         return
     best = solutions.sound[0]
     limits = [limit_of(one, best.scene, task) for p in best.positions for one in p.asked]
-    slopes = sensitivity(best)
-    spread = monte_carlo(best, tolerance_m, limits, SAMPLES)
+    try:
+        slopes = sensitivity(best)
+        spread = monte_carlo(best, tolerance_m, limits, SAMPLES)
+    except CrankcheckError as error:
+        _say(console, f"\nno sensitivity: {error}")
+        return
     console.print("", sensitivity_table(slopes, limits, tolerance_m, spread), sep="\n")
     _say(console, clearance_in_words(slopes, limits, spread))
 

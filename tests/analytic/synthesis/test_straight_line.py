@@ -142,9 +142,10 @@ def test_the_precision_positions_are_on_the_line_and_the_steps_draw_them() -> No
     examined = examine(found.proposal)
     assert len(examined.positions) >= 2
     assert max(examined.off) < 1e-9
-    for position in found.proposal.positions:
-        (asked,) = position.asked
-        assert abs(asked.place.real) < 1e-12  # type: ignore[union-attr]
+    places = [position.asked[0].place for position in found.proposal.positions]  # type: ignore[union-attr]
+    assert max(abs(place.real) for place in places[1:-1]) < 1e-12
+    assert [place.imag for place in (places[0], places[-1])] == pytest.approx([0.0, 0.5], abs=1e-9)
+    assert max(abs(place.real) for place in places) <= found.part.deviation_m * (1.0 + 1e-9)
     assert len(found.proposal.steps) == 3
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import replace
 
@@ -14,6 +15,7 @@ from analytic.synthesis.examine import Examined
 from analytic.synthesis.passing import passing_times
 from analytic.synthesis.solutions import solutions_of
 from models.laws import ConstantSpeed, Oscillating
+from models.tasks.coupler import CouplerTask
 from models.tasks.files import load_task, shipped_tasks
 from models.tasks.task import TaskTable
 from reports.synthesis.proof import by_reference, proven
@@ -118,3 +120,38 @@ def test_the_scene_is_the_file() -> None:
     at_s = passing_times(one.scene.driver.law, [p.driver_rad for p in one.positions])
     motion = solve(one.scene, at_s)
     assert max(p.off(motion, 1.0)[k] for k, p in enumerate(one.positions)) < 1e-12
+
+
+def test_what_lies_before_the_first_sample_is_not_read() -> None:
+    one, task = best("rocker", "by-angle")
+    back = replace(one.positions[1], driver_rad=2.0 * one.positions[0].driver_rad
+                   - one.positions[1].driver_rad)  # fmt: skip
+    every = proven(replace(one, positions=(one.positions[0], back)), task, "mujoco")
+    assert [math.isnan(met.off) for met in every] == [False, True]
+
+
+def test_a_parallelogram_is_driven_the_way_that_its_positions_lie() -> None:
+    """Three translations on a circle: the coupler passes a change point between them."""
+    places = [0.1 * cmath.exp(1j * math.radians(angle)) for angle in (200.0, 170.0, 150.0)]
+    task = CouplerTask.model_validate(
+        {
+            "name": "x",
+            "source": "a test",
+            "positions": [{"point_m": [p.real, p.imag], "angle_deg": 0.0} for p in places],
+            "moving_m": [[places[0].real, places[0].imag], [places[0].real + 0.3, places[0].imag]],
+        }
+    )
+    for one in solutions_of(task).sound:
+        at_s = passing_times(one.scene.driver.law, [p.driver_rad for p in one.positions])
+        assert np.all(np.diff(at_s) > 0.0)
+        assert all(met.within for met in proven(one, task, "mujoco"))
+
+
+@pytest.mark.parametrize("linkage", ["hoeken", "chebyshev", "watt", "roberts", "evans"])
+def test_a_straight_line_is_gone_from_end_to_end(linkage: str) -> None:
+    one, _ = best("straight-line", linkage)
+    law = one.scene.driver.law
+    time_s = np.linspace(0.0, law.period_s, 2000)
+    x = solve(one.scene, time_s, bound=False).points["P"].position[:, 0]
+    assert x.min() < 1e-6
+    assert x.max() > 0.1 - 1e-6

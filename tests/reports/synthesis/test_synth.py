@@ -77,6 +77,10 @@ def test_tolerances_are_told() -> None:
         (("coupler", "three-positions", "--prove", "--engine", "bulletz"), "bulletz"),
         (("coupler", "three-positions", "--vary", "0"), "--vary"),
         (("coupler", "three-positions", "--best", "0"), "--best"),
+        (("coupler", "three-positions", "--vary", "inf"), "--vary"),
+        (("coupler", "three-positions", "--prove", "--steps-per-turn", "0"), "--steps-per-turn"),
+        (("coupler", "three-positions", "--prove", "--steps-per-turn", "nan"), "--steps-per-turn"),
+        (("coupler", "three-positions", "--engine", "mujoco"), "engines are run by --prove"),
         (("coupler", "three-positions", "-o", "/proc/nowhere"), "/proc"),
     ],
 )
@@ -128,7 +132,18 @@ IMPOSSIBLE = [
     (
         "coupler",
         "positions = [" + ", ".join(POSE.format(x, x**2, 5.0) for x in (0.0, 0.1, 0.3, 0.4)) + "]",
-        "0 cranks hold the body in all 4 positions",
+        "the four positions are so special",
+    ),
+    (
+        "quick-return",
+        'mechanism = "whitworth"\ntime_ratio = 1.5\nstroke_m = 0.3\nrod_m = 0.1',
+        "the guide's end is 0.15 m from O4, which the rod has to pass",
+    ),
+    (
+        "stroke",
+        'stroke_m = 0.1\n[loads.x]\nlink = "nolink"\npoint = "A"\nforce_n = 1.0\n'
+        "direction_deg = 0.0",
+        "loads.x.link: found nolink; use one of crank, rod",
     ),
     (
         "quick-return",
@@ -215,3 +230,18 @@ def test_a_rocker_about_a_point_of_the_body_does_its_task(tmp_path: Path) -> Non
     task.write_text(f"{head}positions = {poses}\n", encoding="utf-8")
     result = synth("rocker", str(task), "--best", "1", "--prove", "--engine", "mujoco")
     assert result.exit_code == 0, result.output + result.stderr
+
+
+def test_a_ram_that_turns_back_before_its_lever_has_a_fault(tmp_path: Path) -> None:
+    task = tmp_path / "task.toml"
+    head = 'name = "x"\nsource = "a test"\nmechanism = "slotted-lever"\n'
+    task.write_text(f"{head}time_ratio = 8.0\nstroke_m = 0.3\nrod_m = 0.1\n", encoding="utf-8")
+    result = synth("quick-return", str(task))
+    assert result.exit_code == 1
+    told = " ".join(result.output.split())
+    assert "goes 0.301" in told
+
+
+def test_next_to_a_change_point_there_are_no_slopes() -> None:
+    told = " ".join(synth("stroke", "isosceles", "--vary", "1e-4").output.split())
+    assert "no sensitivity: isosceles-1: it passes a position in which links are in line" in told
