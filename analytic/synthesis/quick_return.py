@@ -77,7 +77,9 @@ def _slotted_lever(task: QuickReturnTask, lag: float) -> Proposal:
         for k, (angle, one) in enumerate(zip(angles, asked, strict=True))
     )
     told = {"crank": f"{crank:.6g} m", "O2 O4": f"{pivots:.6g} m", "swing": _degrees(lag)}
-    return Proposal(draft, "crank", positions, told, tuple(_steps(1j * pivots, crank, ends, lag)))
+    return Proposal(
+        draft, "crank", positions, told, tuple(_steps(1j * pivots, crank, angles, ends, lag))
+    )
 
 
 def _whitworth(task: QuickReturnTask, lag: float) -> Proposal:
@@ -106,7 +108,9 @@ def _whitworth(task: QuickReturnTask, lag: float) -> Proposal:
         for angle, level, slide in zip(angles, levers, slides, strict=True)
     )
     told = {"crank": f"{crank:.6g} m", "O2 O4": f"{pivots:.6g} m", "stroke": f"{2.0 * arm:.6g} m"}
-    return Proposal(draft, "crank", positions, told, tuple(_steps(1j * pivots, crank, ends, lag)))
+    return Proposal(
+        draft, "crank", positions, told, tuple(_steps(1j * pivots, crank, angles, ends, lag))
+    )
 
 
 def _add_ram(
@@ -168,13 +172,16 @@ def _crank_rockers(task: QuickReturnTask, lag: float) -> Iterator[Proposal]:
                 for angle, lever in zip(turned, levers, strict=True)
             )
             told = {"crank": f"{crank:.6g} m", "coupler": f"{coupler:.6g} m"}
-            steps = _rocker_steps(centre, radius, pivot, crank, ends, lag)
+            pin = pivot + cmath.rect(crank, turned[0])
+            steps = _rocker_steps(Circle(centre, radius), Circle(pivot, crank), pin, ends, lag)
             yield Proposal(draft, "crank", positions, told, tuple(steps))
 
 
 def _rocker_steps(
-    centre: complex, radius: float, pivot: complex, crank: float, ends: list[complex], lag: float
+    seen: Circle, turn: Circle, pin: complex, ends: list[complex], lag: float
 ) -> Iterator[Step]:
+    """The circle that B1 B2 is ``seen`` from, the crank's circle, and its pin in position 1."""
+    pivot = turn.centre
     yield Step(
         "the rocker O4 B in its end positions",
         (
@@ -185,14 +192,13 @@ def _rocker_steps(
     )
     yield Step(
         f"the circle from which B1 B2 is seen under a = {_degrees(lag)}, and O2 on it",
-        (Circle(centre, radius), Dot(pivot, O2, "result", fixed=True)),
+        (seen, Dot(pivot, O2, "result", fixed=True)),
     )
-    pin = pivot + crank * (ends[0] - pivot) / abs(ends[0] - pivot) * _sense(pivot, ends)
     yield Step(
         "half the difference of O2 B1 and O2 B2 is the crank, half their sum the coupler",
         (
             *(Segment(pivot, end) for end in ends),
-            Circle(pivot, crank),
+            turn,
             Segment(pivot, pin, "result"),
             Segment(pin, ends[0], "result"),
             Segment(0j, ends[0], "result"),
@@ -201,13 +207,10 @@ def _rocker_steps(
     )
 
 
-def _sense(pivot: complex, ends: list[complex]) -> float:
-    """1 where the crank points to B1 (the further end), -1 where it points away."""
-    return 1.0 if abs(ends[0] - pivot) > abs(ends[1] - pivot) else -1.0
-
-
-def _steps(pivot: complex, crank: float, ends: list[complex], lag: float) -> Iterator[Step]:
-    """The limits of a lever or guide about O4."""
+def _steps(
+    pivot: complex, crank: float, angles: tuple[float, float], ends: list[complex], lag: float
+) -> Iterator[Step]:
+    """The limits of a lever or guide about O4, and the crank's angles there [rad]."""
     yield Step(
         f"the limits of the guide about O4, and O2 above it by {pivot.imag:.6g} m",
         (
@@ -216,7 +219,6 @@ def _steps(pivot: complex, crank: float, ends: list[complex], lag: float) -> Ite
             *(Segment(0j, end, "given") for end in ends),
         ),
     )
-    angles = (-0.5 * lag, math.pi + 0.5 * lag)
     pins = [pivot + cmath.rect(crank, angle) for angle in angles]
     yield Step(
         f"the crank's circle: its pin is at A1 and A2 there, and 180 deg + {_degrees(lag)} of the "

@@ -73,8 +73,9 @@ class Sensitivity:
         """The radial clearance of all joints [m] with which everything asked stays within its limit
         (P,), the pins free to lie to any side; and which of them sets it."""
         joints: dict[str, list[int]] = {}
+        pins = pinned(self.examined.scene)
         for k, one in enumerate(self.dimensions):
-            if one.point in pinned(self.examined.scene):
+            if one.point in pins:
                 joints.setdefault(one.point, []).append(k)
         effect = np.zeros(len(self.asked))
         for rows in joints.values():

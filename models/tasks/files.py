@@ -34,11 +34,16 @@ def shipped_tasks() -> dict[str, list[str]]:
     return {kind: list(shipped_in(TASKS / kind)) for kind in KINDS}
 
 
-def find_task(kind: str, name_or_path: str) -> Path:
-    """The file of a task. Raises CrankcheckError for another kind, or where there is none."""
+def refuse_unknown(kind: str) -> None:
+    """Raise CrankcheckError for what is no kind; the message suggests the near ones."""
     if kind not in KINDS:
         hint = suggestion(kind, KINDS, "there are", 2)
         raise CrankcheckError(f"kind of synthesis: no {kind!r}; {hint}")
+
+
+def find_task(kind: str, name_or_path: str) -> Path:
+    """The file of a task. Raises CrankcheckError for another kind, or where there is none."""
+    refuse_unknown(kind)
     return find_table(name_or_path, TASKS / kind, f"{kind} task", "crankcheck synth")
 
 

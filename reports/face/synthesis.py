@@ -11,7 +11,7 @@ from analytic.synthesis.solutions import Solutions, solutions_of
 from models.errors import CrankcheckError, shown
 from models.scene import Scene
 from models.shipped_tables import table_of
-from models.tasks.files import KINDS, find_task, load_task
+from models.tasks.files import KINDS, load_task, refuse_unknown
 from models.tasks.task import TaskTable
 from reports.face.shown import Shown
 from reports.face.told import told_at_the_call
@@ -96,8 +96,7 @@ def synth(kind: str, task: TaskLike) -> Synthesis:
 
 def _task(kind: str, task: TaskLike) -> TaskTable:
     if isinstance(task, Mapping):
-        if kind not in KINDS:
-            find_task(kind, "")
+        refuse_unknown(kind)
         return table_of(dict(task), KINDS[kind], "task")
     try:
         return load_task(kind, fspath(task))

@@ -13,7 +13,6 @@ from analytic.synthesis.asked import Asked, AskedAngle, AskedPlace
 from analytic.synthesis.examine import Examined
 from analytic.synthesis.passing import passing_times
 from models.array import Array
-from models.laws import Law, Oscillating
 from models.motion import Motion
 from models.scene import Scene
 from models.tasks.task import TaskTable
@@ -68,7 +67,7 @@ def proven(
     """
     scene = examined.scene
     at_s = passing_times(scene.driver.law, [p.driver_rad for p in examined.positions])
-    dt_s = math.tau / abs(_pace(scene.driver.law)) / steps_per_turn
+    dt_s = scene.driver.law.period_s / steps_per_turn
     steps = math.ceil(at_s.max() / dt_s) + LEVERS
     state = solve(scene, np.zeros(1), bound=False).state(0)
     done = run(scene, state, engine, profile, dt_s=dt_s, steps=steps)
@@ -82,11 +81,6 @@ def by_reference(examined: Examined, task: TaskTable) -> list[Met]:
     at_s = passing_times(examined.scene.driver.law, [p.driver_rad for p in examined.positions])
     motion = solve(examined.scene, at_s, bound=False)
     return list(_met(examined, task, "reference", "", motion, ""))
-
-
-def _pace(law: Law) -> float:
-    """The turns that steps are counted in [rad/s]."""
-    return law.frequency_rad_s if isinstance(law, Oscillating) else law.peak_speed_rad_s
 
 
 def _met(

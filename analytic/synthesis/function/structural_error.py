@@ -60,19 +60,9 @@ class StructuralError:
     y_scale: float
 
     @property
-    def error_y(self) -> Array:
-        """In units of y, (T,)."""
-        return np.asarray(self.error * self.y_scale)
-
-    @property
     def largest_y(self) -> float:
         """The largest in units of y."""
         return self.largest * abs(self.y_scale)
-
-    @property
-    def rms_y(self) -> float:
-        """The root mean square in units of y."""
-        return self.rms * abs(self.y_scale)
 
 
 def structural_error(

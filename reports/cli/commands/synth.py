@@ -14,7 +14,7 @@ from analytic.synthesis.examine import Examined
 from analytic.synthesis.sensitivity import monte_carlo, sensitivity
 from analytic.synthesis.solutions import Solutions, solutions_of
 from models.errors import CrankcheckError
-from models.tasks.files import find_task, load_task, shipped_tasks
+from models.tasks.files import load_task, refuse_unknown, shipped_tasks
 from models.tasks.task import TaskTable
 from reports.cli.synthesising import SynthRequest
 from reports.output.columns import plain_table
@@ -60,7 +60,7 @@ def run_synth(request: SynthRequest, console: Console) -> int:
     engines = chosen_engines(request.engines) if request.prove else []
     profiles = [name for name, _ in chosen_profiles(request.profiles or USUAL, engines)]
     solutions = _searched(task, console)
-    listed = _listed(solutions, request.best)
+    listed = solutions.examined[: request.best]
     _say(console, f"{task.name}: {task.source}")
     _say(console, counted(solutions, len(listed)))
     console.print("", solution_table(listed), sep="\n")
@@ -115,8 +115,8 @@ def _searched(task: TaskTable, console: Console) -> Solutions:
 
 def _list(kind: str | None, console: Console) -> int:
     """The kinds with their shipped tasks."""
-    if kind is not None and kind not in shipped_tasks():
-        find_task(kind, "")
+    if kind is not None:
+        refuse_unknown(kind)
     table = plain_table(gap=2)
     for head in ("kind", "shipped tasks"):
         table.add_column(head, overflow="fold")
@@ -125,11 +125,6 @@ def _list(kind: str | None, console: Console) -> int:
             table.add_row(name, ", ".join(tasks))
     console.print(table)
     return 0
-
-
-def _listed(solutions: Solutions, best: int) -> list[Examined]:
-    """The best, and where none is sound the best of those with a defect."""
-    return list(solutions.examined[:best])
 
 
 def _show_sensitivity(
