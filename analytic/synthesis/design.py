@@ -20,7 +20,8 @@ class Proposal:
     ``speed_rad_s`` is the driver's, or the circular frequency of one that swings.
     ``allowed`` is how far it may be from a position (angles in rad, lengths over the longest link):
     0 of what is to be met exactly, more of what least squares fitted. ``also_rad`` are angles that
-    a driver that swings goes to as well, beyond the positions.
+    a driver that swings goes to as well, beyond the positions. ``turns_back`` is the link or slider
+    that has its limits in the two positions, and so goes to and fro between them.
     """
 
     draft: Draft
@@ -32,3 +33,4 @@ class Proposal:
     speed_rad_s: float = SPEED_RAD_S
     allowed: float = 0.0
     also_rad: tuple[float, ...] = ()
+    turns_back: str = ""

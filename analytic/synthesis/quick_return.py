@@ -77,9 +77,9 @@ def _slotted_lever(task: QuickReturnTask, lag: float) -> Proposal:
         for k, (angle, one) in enumerate(zip(angles, asked, strict=True))
     )
     told = {"crank": f"{crank:.6g} m", "O2 O4": f"{pivots:.6g} m", "swing": _degrees(lag)}
-    return Proposal(
-        draft, "crank", positions, told, tuple(_steps(1j * pivots, crank, angles, ends, lag))
-    )
+    steps = tuple(_steps(1j * pivots, crank, angles, ends, lag))
+    goes = RAM if slides else "lever"
+    return Proposal(draft, "crank", positions, told, steps, turns_back=goes)
 
 
 def _whitworth(task: QuickReturnTask, lag: float) -> Proposal:
@@ -108,9 +108,8 @@ def _whitworth(task: QuickReturnTask, lag: float) -> Proposal:
         for angle, level, slide in zip(angles, levers, slides, strict=True)
     )
     told = {"crank": f"{crank:.6g} m", "O2 O4": f"{pivots:.6g} m", "stroke": f"{2.0 * arm:.6g} m"}
-    return Proposal(
-        draft, "crank", positions, told, tuple(_steps(1j * pivots, crank, angles, ends, lag))
-    )
+    steps = tuple(_steps(1j * pivots, crank, angles, ends, lag))
+    return Proposal(draft, "crank", positions, told, steps, turns_back=RAM)
 
 
 def _add_ram(
@@ -174,7 +173,7 @@ def _crank_rockers(task: QuickReturnTask, lag: float) -> Iterator[Proposal]:
             told = {"crank": f"{crank:.6g} m", "coupler": f"{coupler:.6g} m"}
             pin = pivot + cmath.rect(crank, turned[0])
             steps = _rocker_steps(Circle(centre, radius), Circle(pivot, crank), pin, ends, lag)
-            yield Proposal(draft, "crank", positions, told, tuple(steps))
+            yield Proposal(draft, "crank", positions, told, tuple(steps), turns_back="rocker")
 
 
 def _rocker_steps(

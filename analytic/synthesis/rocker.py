@@ -176,7 +176,7 @@ def _proposal(task: RockerTask, swung: Swung, distance_m: float, beyond: int) ->
     steps = (*swung.steps, *found.steps(swung.ends, (O2, crank_pin, rocker_pin)))
     links = Step("the rocker", (Segment(swung.pivot, swung.ends[0], "result"),))
     told = {"O2 from the chord's middle": f"{distance_m:.6g} m", "beyond": f"{rocker_pin}{beyond}"}
-    return Proposal(draft, "crank", positions, told, (*steps, links))
+    return Proposal(draft, "crank", positions, told, (*steps, links), turns_back="rocker")
 
 
 def _asked(swung: Swung, pose: Pose) -> tuple[Asked, ...]:

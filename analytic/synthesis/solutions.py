@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from analytic.mechanism.travel import travel
-from analytic.synthesis.asked import AskedSlide
 from analytic.synthesis.coupler import coupler_proposals
 from analytic.synthesis.design import Proposal
 from analytic.synthesis.examine import Examined, examine, ranked
@@ -18,6 +16,7 @@ from analytic.synthesis.posed import function_task, path_task, straight_line_of
 from analytic.synthesis.quick_return import quick_return_proposals
 from analytic.synthesis.rocker import rocker_proposals
 from analytic.synthesis.strokes import stroke_proposals
+from analytic.synthesis.turning_back import held_to_its_limits
 from models.errors import CrankcheckError, ReachError
 from models.tasks.coupler import CouplerTask
 from models.tasks.function import FunctionTable
@@ -30,10 +29,6 @@ from models.tasks.task import TaskTable
 
 LONGEST_NAME = 34
 """Letters of a task's name that go on to its scenes, which have 40 with their numbers."""
-STROKE = 1e-9
-"""Of a stroke: what a slider goes further than asked is none of rounding beyond it."""
-FLAT = 1e-6
-"""A least sine of transmission below which there is a change point on the way."""
 MOST_PATHS = 10
 """Mechanisms that a path is searched for."""
 
@@ -97,21 +92,6 @@ def unfulfilled(one: Examined, task: TaskTable) -> list[str]:
     return told
 
 
-def _stroked(one: Examined) -> Examined:
-    """A mechanism of a slider's stroke, with a fault where the slider does not turn back in its two
-    positions: over a turn it goes further, and in other times."""
-    slides = [each for p in one.positions for each in p.asked if isinstance(each, AskedSlide)]
-    names = {each.slider for each in slides}
-    if one.defects or len(names) != 1 or len(slides) != 2 or one.least_sine < FLAT:
-        return one
-    asked = abs(slides[1].displacement - slides[0].displacement)
-    found = travel(one.scene, names.pop())
-    if abs(found.stroke - asked) <= STROKE * asked:
-        return one
-    told = f"goes {found.stroke:.6g} m, time ratio {found.time_ratio:.4g}: take a longer rod"
-    return replace(one, fault=told)
-
-
 def _named(one: Examined, number: int) -> Examined:
     """A solution whose scene has a name of its own among those of its task."""
     name = f"{one.scene.name[:LONGEST_NAME]}-{number}"
@@ -156,7 +136,7 @@ def followed(one: Examined) -> Examined:
     """An examined generator with its structural error, worked out by the reference over the whole
     range; what can not be assembled there has a fault. What only comes near misses as much."""
     if not isinstance(one.proposal, FunctionProposal) or one.defects:
-        return _stroked(replace(one, misses=one.proposal.allowed))
+        return held_to_its_limits(replace(one, misses=one.proposal.allowed))
     try:
         error = structural_error(one.proposal, one)
     except ReachError:

@@ -9,6 +9,9 @@
       ----+---B1---B---B2---
 
 With the angle a = B1 O2 B2 the slow stroke takes 180 + a of the crank's turn, the quick 180 - a.
+All O2 of one a lie on a circle through B1 and B2, of radius R = stroke / (2 sin a). With the angle
+b = O2 B2 B1 it is O2 B1 = 2 R sin(b), O2 B2 = 2 R sin(a + b), e = O2 B2 sin(b), and O2 B1 is below
+the line by a + b: nothing here is a difference, and digits are kept where O2 is next to B1.
 
 Source: lecture "Tong hop co cau" (synthesis), slider-crank; R. L. Norton, Design of Machinery,
 sections 2.13 and 3.4 (time ratio).
@@ -19,6 +22,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -32,13 +36,52 @@ from models.tasks.stroke import StrokeTask
 O2, PIN, SLIDER = "O2", "A", "B"
 RODS = (2.0, 3.0, 4.0, 5.0)
 """Where a task is silent: rods, over half the stroke."""
+SQUARE = math.radians(0.1)
+"""Nearer to a = 90 deg the rod of every O2 stands square to the slider's line, but for less than
+this, at the inner end: there the crank is as good as locked."""
 PLACES = 12
 """Where a task leaves O2 free on the circle of a time ratio: so many places of it."""
 
 
+@dataclass(frozen=True)
+class Ends:
+    """Crank and rod [m], and the slider's ends seen from O2 [m]."""
+
+    crank: float
+    rod: float
+    first: complex
+    second: complex
+
+    @staticmethod
+    def beside(crank: float, rod: float, offset: float, *, over: bool = False) -> Ends:
+        """Of an offset; ``over`` O2 the one end is as far as the other."""
+        outer = math.sqrt((rod + crank) ** 2 - offset**2)
+        inner = -outer if over else math.sqrt(max((rod - crank) ** 2 - offset**2, 0.0))
+        return Ends(crank, rod, complex(inner, -offset), complex(outer, -offset))
+
+    @staticmethod
+    def seen_under(stroke: float, lag: float, at_far: float) -> Ends:
+        """Of the angles a = B1 O2 B2 and b = O2 B2 B1 [rad]."""
+        twice = stroke / math.sin(lag)
+        near, far = twice * math.sin(at_far), twice * math.sin(lag + at_far)
+        first = cmath.rect(near, -(lag + at_far))
+        return Ends(0.5 * (far - near), 0.5 * (far + near), first, first + stroke)
+
+    @property
+    def offset(self) -> float:
+        """The distance of O2 from the slider's line [m]."""
+        return abs(self.first.imag)
+
+    @property
+    def angles(self) -> tuple[float, float]:
+        """Of the crank in both ends [rad]: folded it points away from the slider."""
+        folded = cmath.phase(-self.first) if self.rod > self.crank else math.pi
+        return folded, cmath.phase(self.second)
+
+
 def stroke_proposals(task: StrokeTask) -> tuple[list[Proposal], int]:
     """The slider-cranks of a task. Raises CrankcheckError for what no such mechanism has."""
-    found = [_proposal(task, *sizes) for sizes in _sizes(task)]
+    found = [_proposal(task, ends) for ends in _ends(task)]
     return found, len(found)
 
 
@@ -47,18 +90,24 @@ def lag_of(time_ratio: float) -> float:
     return math.pi * (time_ratio - 1.0) / (time_ratio + 1.0)
 
 
-def _sizes(task: StrokeTask) -> Iterator[tuple[float, float, float]]:
-    """Crank, rod and offset [m]."""
+def ratio_of(lag: float) -> float:
+    """The time ratio of an angle a [rad]."""
+    return (math.pi + lag) / (math.pi - lag)
+
+
+def _ends(task: StrokeTask) -> Iterator[Ends]:
     stroke = task.stroke_m
     if task.form == "isosceles":
-        yield 0.25 * stroke, 0.25 * stroke, 0.0
+        yield Ends.beside(0.25 * stroke, 0.25 * stroke, 0.0, over=True)
     elif task.time_ratio is not None:
-        yield from _by_time_ratio(task, lag_of(task.time_ratio))
+        lag = lag_of(task.time_ratio)
+        for at_far in _by_time_ratio(task, lag):
+            yield Ends.seen_under(stroke, lag, at_far)
     else:
         offset = task.offset_m or 0.0
         rods = [task.rod_m] if task.rod_m else [0.5 * k * stroke + offset for k in RODS]
         for rod in rods:
-            yield crank_of(stroke, rod, offset), rod, offset
+            yield Ends.beside(crank_of(stroke, rod, offset), rod, offset)
 
 
 def crank_of(stroke: float, rod: float, offset: float) -> float:
@@ -82,107 +131,78 @@ def crank_of(stroke: float, rod: float, offset: float) -> float:
     return crank
 
 
-def _by_time_ratio(task: StrokeTask, lag: float) -> Iterator[tuple[float, float, float]]:
-    """O2 on the circle from which the stroke is seen under the angle a, beside its inner end."""
-    stroke, ratio = task.stroke_m, task.time_ratio
-    if lag >= 0.5 * math.pi:
+def _by_time_ratio(task: StrokeTask, lag: float) -> Iterator[float]:
+    """The angles b of O2 on the circle of the angle a, beside the stroke's inner end."""
+    most = 0.5 * math.pi - SQUARE
+    if lag > most:
         raise CrankcheckError(
-            f"time_ratio is {ratio:g}: a slider-crank whose crank turns has one below 3 (a below "
-            "90 deg); a slotted lever has any (`crankcheck synth quick-return`)"
+            f"time_ratio is {task.time_ratio:.8g}: a slider-crank whose crank turns has one below "
+            f"3, and transmits from {ratio_of(most):.4f} on by less than 0.1 deg; a slotted lever "
+            "has any (`crankcheck synth quick-return`)"
         )
-    radius = 0.5 * stroke / math.sin(lag)
-    centre = complex(0.5 * stroke, -0.5 * stroke / math.tan(lag))
     if task.offset_m is not None:
-        yield _sized(task, _at_height(task, centre, radius, -task.offset_m))
-        return
-    if task.rod_m is not None:
-        yield _sized(task, _with_rod(task, centre, radius))
-        return
-    reach = 0.5 * math.pi - lag
-    for share in (np.arange(PLACES) + 0.5) / PLACES:
-        angle = math.pi - reach + 2.0 * reach * share
-        yield _sized(task, centre + cmath.rect(radius, angle))
+        yield _beside(task, lag, task.offset_m)
+    elif task.rod_m is not None:
+        yield _with_rod(task, lag, task.rod_m)
+    else:
+        yield from (0.5 * math.pi - lag) * (np.arange(PLACES) + 0.5) / PLACES
 
 
-def _at_height(task: StrokeTask, centre: complex, radius: float, height: float) -> complex:
-    """The place of O2 on the circle, left of B1, at a height [m]."""
-    off = height - centre.imag
-    x = centre.real - math.sqrt(max(radius**2 - off**2, 0.0))
-    if abs(off) > radius or x >= 0.0 or height >= 0.0:
-        most = 2.0 * abs(centre.imag)
+def _beside(task: StrokeTask, lag: float, offset: float) -> float:
+    """The angle b of an offset, 2 R sin(a + b) sin(b): with t = tan(b) and k = e / R it is
+    (2 cos a - k) t^2 + 2 t sin a = k."""
+    over = 2.0 * offset * math.sin(lag) / task.stroke_m
+    least = 2.0 * math.cos(lag) - over
+    if not offset > 0.0 or not least > 0.0:
+        most = task.stroke_m / math.tan(lag)
         raise CrankcheckError(
-            f"offset_m is {-height:g}: with a stroke of {task.stroke_m:g} m and a time ratio of "
+            f"offset_m is {offset:g}: with a stroke of {task.stroke_m:g} m and a time ratio of "
             f"{task.time_ratio:g} it lies between 0 and {most:.6g} m"
         )
-    return complex(x, height)
+    sine = math.sin(lag)
+    return math.atan(over / (sine + math.sqrt(sine**2 + over * least)))
 
 
-def _with_rod(task: StrokeTask, centre: complex, radius: float) -> complex:
-    """The place of O2 on the circle that gives the rod, (O2 B1 + O2 B2) / 2: O2 B1 = 2 R sin(b) and
-    O2 B2 = 2 R sin(b + a) of the angle b that O2 B1 is seen under from the circle."""
-    assert task.rod_m is not None
-    lag = lag_of(task.time_ratio or 1.0)
-    # Their mean is 2 R sin(b + a / 2) cos(a / 2).
-    sine = task.rod_m / (2.0 * radius * math.cos(0.5 * lag))
-    b = math.asin(sine) - 0.5 * lag if sine < 1.0 else math.nan
-    if not 0.0 < b < 0.5 * math.pi - lag:
-        low, high = (2.0 * radius * math.cos(0.5 * lag) * math.sin(x)
-                     for x in (0.5 * lag, 0.5 * (math.pi - lag)))  # fmt: skip
+def _with_rod(task: StrokeTask, lag: float, rod: float) -> float:
+    """The angle b of a rod, the mean of O2 B1 and O2 B2: 2 R sin(b + a / 2) cos(a / 2)."""
+    most = task.stroke_m * math.cos(0.5 * lag) / math.sin(lag)
+    at_far = math.asin(rod / most) - 0.5 * lag if rod < most else math.nan
+    if not 0.0 < at_far < 0.5 * math.pi - lag:
+        low, high = (most * math.sin(x) for x in (0.5 * lag, 0.5 * (math.pi - lag)))
         raise CrankcheckError(
-            f"rod_m is {task.rod_m:g}: with a stroke of {task.stroke_m:g} m and a time ratio of "
+            f"rod_m is {rod:g}: with a stroke of {task.stroke_m:g} m and a time ratio of "
             f"{task.time_ratio:g} it lies between {low:.6g} and {high:.6g} m"
         )
-    # B1 is at 0; the chord O2 B1 is seen under b, so O2 is 2 b further round the circle.
-    return centre + (0j - centre) * cmath.exp(2j * b)
+    return at_far
 
 
-def _sized(task: StrokeTask, pivot: complex) -> tuple[float, float, float]:
-    """Crank, rod and offset of O2 at a place, B1 at 0."""
-    near, far = abs(pivot), abs(task.stroke_m - pivot)
-    return 0.5 * (far - near), 0.5 * (far + near), -pivot.imag
-
-
-def _proposal(task: StrokeTask, crank: float, rod: float, offset: float) -> Proposal:
+def _proposal(task: StrokeTask, ends: Ends) -> Proposal:
     """The slider-crank; its displacement counts from the inner end of the stroke."""
-    inner = math.sqrt(max((rod - crank) ** 2 - offset**2, 0.0))
-    outer = math.sqrt((rod + crank) ** 2 - offset**2)
-    if task.form == "isosceles":
-        inner = -outer
-    ends = complex(inner, -offset), complex(outer, -offset)
-    # Folded the crank points away from the slider, stretched towards it.
-    folded = cmath.phase(-ends[0]) if rod > crank else math.pi
-    angles = (folded, cmath.phase(ends[1]))
+    through = [ends.first.real, ends.first.imag]
     draft = Draft(
         task.name,
         task.source,
         {O2: 0j},
-        {"crank": bar(O2, PIN, crank), "rod": bar(PIN, SLIDER, rod)},
+        {"crank": bar(O2, PIN, ends.crank), "rod": bar(PIN, SLIDER, ends.rod)},
         {},
-        sliders={SLIDER: {"on": "ground", "through_m": [inner, -offset], "direction_deg": 0.0}},
+        sliders={SLIDER: {"on": "ground", "through_m": through, "direction_deg": 0.0}},
     )
     positions = tuple(
-        PrecisionPosition(angle, (AskedSlide(SLIDER, place - inner),))
-        for angle, place in zip(angles, (inner, outer), strict=True)
+        PrecisionPosition(angle, (AskedSlide(SLIDER, displacement),))
+        for angle, displacement in zip(ends.angles, (0.0, task.stroke_m), strict=True)
     )
-    lag = math.degrees(abs(math.remainder(angles[1] - angles[0] - math.pi, math.tau)))
     told = {
-        "crank": f"{crank:.6g} m",
-        "rod": f"{rod:.6g} m",
-        "offset": f"{offset:.6g} m",
-        "time ratio": f"{(180.0 + lag) / (180.0 - lag):.6g}",
+        "crank": f"{ends.crank:.6g} m",
+        "rod": f"{ends.rod:.6g} m",
+        "offset": f"{ends.offset:.6g} m",
     }
-    return Proposal(draft, "crank", positions, told, tuple(_steps(task, crank, rod, ends, angles)))
+    steps = tuple(_steps(task, ends))
+    return Proposal(draft, "crank", positions, told, steps, turns_back=SLIDER)
 
 
-def _steps(
-    task: StrokeTask,
-    crank: float,
-    rod: float,
-    ends: tuple[complex, complex],
-    angles: tuple[float, float],
-) -> Iterator[Step]:
+def _steps(task: StrokeTask, ends: Ends) -> Iterator[Step]:
     """The construction in the plane of the scene."""
-    first, second = ends
+    first, second = ends.first, ends.second
     yield Step(
         f"the stroke, {task.stroke_m:g} m on the slider's line",
         (
@@ -209,9 +229,9 @@ def _steps(
         "crank and rod are a quarter of the stroke each, and O2 is its middle"
         if equal
         else "O2 B1 is rod less crank, O2 B2 rod and crank: half their difference is the crank",
-        (Segment(0j, first), Segment(0j, second), Circle(0j, crank)),
+        (Segment(0j, first), Segment(0j, second), Circle(0j, ends.crank)),
     )
-    pin = cmath.rect(crank, angles[0])
+    pin = cmath.rect(ends.crank, ends.angles[0])
     yield Step(
         "crank and rod in position 1",
         (Segment(0j, pin, "result"), Segment(pin, first, "result"), Dot(pin, "A1", "result")),
