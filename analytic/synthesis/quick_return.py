@@ -19,13 +19,11 @@ import cmath
 import math
 from collections.abc import Iterator
 
-import numpy as np
-
 from analytic.synthesis.asked import AskedAngle, AskedSlide, PrecisionPosition
 from analytic.synthesis.construction import Circle, Dot, Segment, Step
 from analytic.synthesis.design import Proposal
+from analytic.synthesis.quick_crank_rocker import crank_rockers
 from analytic.synthesis.strokes import lag_of
-from analytic.synthesis.to_and_fro import chord
 from models.draft import Draft, bar
 from models.errors import CrankcheckError
 from models.scene_text import Table
@@ -36,15 +34,13 @@ LONGER = 1.25
 """Of the crank and the distance of the pivots together: a lever that its block stays on."""
 ROD = 2.0
 """Where a task is silent: of the ram's stroke."""
-PLACES = 24
-"""Places of O2 that are tried on the circle of a time ratio."""
 
 
 def quick_return_proposals(task: QuickReturnTask) -> tuple[list[Proposal], int]:
     """The mechanisms of a task, and how many there are."""
     lag = lag_of(task.time_ratio)
     if task.mechanism == "crank-rocker":
-        found = list(_crank_rockers(task, lag))
+        found = list(crank_rockers(task, lag))
     else:
         found = [_slotted_lever(task, lag) if task.mechanism == "slotted-lever"
                  else _whitworth(task, lag)]  # fmt: skip
@@ -134,76 +130,6 @@ def _add_ram(
     links["rod"] = bar(END, RAM, rod)
     sliders[RAM] = {"on": "ground", "through_m": [min(places), height], "direction_deg": 0.0}
     return [place - min(places) for place in places]
-
-
-def _crank_rockers(task: QuickReturnTask, lag: float) -> Iterator[Proposal]:
-    """O4 at the origin; O2 on a circle from which B1 B2 is seen under a, on either side of it."""
-    assert task.rocker_m is not None
-    assert task.swing_deg is not None
-    half = math.radians(0.5 * task.swing_deg)
-    levers = (0.5 * math.pi + half, 0.5 * math.pi - half)
-    ends = [cmath.rect(task.rocker_m, angle) for angle in levers]
-    radius = 0.5 * chord(task.rocker_m, 2.0 * half) / math.sin(lag)
-    for side in (1.0, -1.0):
-        centre = 0.5 * sum(ends) + side * 1j * radius * math.cos(lag)
-        reach = math.pi - lag
-        for share in (np.arange(PLACES // 2) + 0.5) / (PLACES // 2):
-            pivot = centre + side * 1j * radius * cmath.exp(1j * reach * (2.0 * share - 1.0))
-            far, near = sorted(ends, key=lambda end: -abs(end - pivot))
-            crank = 0.5 * (abs(far - pivot) - abs(near - pivot))
-            coupler = 0.5 * (abs(far - pivot) + abs(near - pivot))
-            if not 0.0 < crank < coupler:
-                continue
-            turned = [cmath.phase(end - pivot) + (math.pi if end == near else 0.0) for end in ends]
-            draft = Draft(
-                task.name,
-                task.source,
-                {O2: pivot, O4: 0j},
-                {
-                    "crank": bar(O2, PIN, crank),
-                    "coupler": bar(PIN, END, coupler),
-                    "rocker": bar(O4, END, task.rocker_m),
-                },
-                {},
-            )
-            positions = tuple(
-                PrecisionPosition(angle, (AskedAngle("rocker", lever),))
-                for angle, lever in zip(turned, levers, strict=True)
-            )
-            told = {"crank": f"{crank:.6g} m", "coupler": f"{coupler:.6g} m"}
-            pin = pivot + cmath.rect(crank, turned[0])
-            steps = _rocker_steps(Circle(centre, radius), Circle(pivot, crank), pin, ends, lag)
-            yield Proposal(draft, "crank", positions, told, tuple(steps), turns_back="rocker")
-
-
-def _rocker_steps(
-    seen: Circle, turn: Circle, pin: complex, ends: list[complex], lag: float
-) -> Iterator[Step]:
-    """The circle that B1 B2 is ``seen`` from, the crank's circle, and its pin in position 1."""
-    pivot = turn.centre
-    yield Step(
-        "the rocker O4 B in its end positions",
-        (
-            Dot(0j, O4, "given", fixed=True),
-            *(Segment(0j, end, "given") for end in ends),
-            *(Dot(end, f"B{n}", "given") for n, end in enumerate(ends, 1)),
-        ),
-    )
-    yield Step(
-        f"the circle from which B1 B2 is seen under a = {_degrees(lag)}, and O2 on it",
-        (seen, Dot(pivot, O2, "result", fixed=True)),
-    )
-    yield Step(
-        "half the difference of O2 B1 and O2 B2 is the crank, half their sum the coupler",
-        (
-            *(Segment(pivot, end) for end in ends),
-            turn,
-            Segment(pivot, pin, "result"),
-            Segment(pin, ends[0], "result"),
-            Segment(0j, ends[0], "result"),
-            Dot(pin, "A1", "result"),
-        ),
-    )
 
 
 def _steps(
