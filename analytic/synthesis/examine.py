@@ -30,7 +30,6 @@ from models.array import Array
 from models.draft import SPEED_RAD_S, Draft
 from models.errors import CrankcheckError, ReachError
 from models.laws import ConstantSpeed, Law, Oscillating
-from models.motion import Motion
 from models.scene import Scene
 from models.scene_text import Table
 
@@ -122,18 +121,16 @@ def examine(proposal: Proposal) -> Examined:
         Lengths that make no mechanism, or one that can not be assembled in its first position.
     """
     first, speed = proposal.positions[0].driver_rad, proposal.speed_rad_s
-    scene = proposal.draft.driven(_turning(proposal.driver, first, speed)).scene
-    circuits = circuits_of(scene)
+    circuits = circuits_of(proposal.draft.driven(_turning(proposal.driver, first, speed)).scene)
     places = [_place_of(circuits, each) for each in proposal.positions]
     _, arc = circuits.place(places[0])
-    branch = dict(zip(circuits.signed.dyads, places[0].signs, strict=True))
-    defect = circuits.defect(places)
     on_arc = [arc.signs == p.signs and arc.holds(p.driver_rad, SAME) for p in places]
     angles = _unwrapped(arc, [position.driver_rad for position in proposal.positions])
     own = angles
     if arc.low is not None:
         own = [angle for angle, on in zip(angles, on_arc, strict=True) if on]
         own += _unwrapped(arc, [angle for angle in proposal.also_rad if arc.holds(angle)])
+    branch = dict(zip(circuits.signed.dyads, places[0].signs, strict=True))
     driver = _driver(proposal.driver, arc, own, speed)
     draft = proposal.draft.driven(driver).with_branch(branch)
     scene = draft.scene
@@ -141,19 +138,17 @@ def examine(proposal: Proposal) -> Examined:
         replace(each, driver_rad=angle)
         for each, angle in zip(proposal.positions, angles, strict=True)
     )
-    way = way_of(scene.driver.law)
-    one = np.ones(1)
-    motion = solve_driven(scene, way, one, 0.0 * one, links=(), sliders=(), bound=False)
-    sine = min((float(np.min(np.abs(s))) for s in motion.conditioning.values()), default=1.0)
     off = tuple(
-        _off(scene, each) if on else _off(_at(circuits, place), each)
+        _off(scene if on else _at(circuits, place), each)
         for each, place, on in zip(positions, places, on_arc, strict=True)
     )
+    defect = circuits.defect(places)
     if defect in ("branch", "circuit") and circuits.change_points:
         own_off = _through_change_points(scene, positions)
         if max(own_off) <= max(UNMET, proposal.allowed):
             in_a_turn = abs(angles[-1] - angles[0]) < math.tau
             defect, off = "none" if arc.low is not None or in_a_turn else "order", own_off
+    sine, extent_m = _over_the_way(scene)
     kind = grashof_of(scene)
     return Examined(
         proposal,
@@ -164,10 +159,20 @@ def examine(proposal: Proposal) -> Examined:
         arc.low is None,
         kind.name if kind is not None else "",
         sine,
-        _extent(motion),
+        extent_m,
         off,
         _largest_torque(scene) if scene.loads else None,
     )
+
+
+def _over_the_way(scene: Scene) -> tuple[float, float]:
+    """The least sine of a transmission angle over the way of the driver, and the larger side of the
+    box that all points stay in [m]."""
+    way, one = way_of(scene.driver.law), np.ones(1)
+    motion = solve_driven(scene, way, one, 0.0 * one, links=(), sliders=(), bound=False)
+    sine = min((float(np.min(np.abs(s))) for s in motion.conditioning.values()), default=1.0)
+    every = np.concatenate([point.position for point in motion.points.values()])
+    return sine, float(np.max(np.ptp(every, axis=0)))
 
 
 def _through_change_points(
@@ -260,9 +265,3 @@ def _largest_torque(scene: Scene) -> float:
     time_s = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
     acting = forces(scene, time_s, bound=False, skip_dead_points=True)
     return float(np.nanmax(np.abs(acting.torque)))
-
-
-def _extent(motion: Motion) -> float:
-    """The larger side of the box that all points stay in [m]."""
-    every = np.concatenate([point.position for point in motion.points.values()])
-    return float(np.max(np.ptp(every, axis=0)))
