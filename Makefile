@@ -38,7 +38,7 @@ pytest slow: export OPENBLAS_NUM_THREADS := 1
 # Stolen work keeps both processes busy to the end, and the tests of a folder, which share what is
 # made for them, mostly in one of them.
 pytest: | $(VENV)/test
-	$(BIN)/python -m pytest -q -n 2 --dist worksteal -m "not slow" $(PYTEST)
+	$(BIN)/python -m pytest -q -n 2 --dist worksteal -m "not slow and not long" $(PYTEST)
 
 # The page of `crankcheck report` is tested in a real browser: installed where that can be done
 # without asking (as root on Debian); elsewhere its tests are skipped and say how to install it.
@@ -57,7 +57,7 @@ hard: $(VENV)/crankcheck
 	$(BIN)/crankcheck stability -o out/hard
 
 slow: $(VENV)/test
-	$(BIN)/python -m pytest -q -n 2 --dist worksteal -m slow $(PYTEST)
+	$(BIN)/python -m pytest -q -n 2 --dist worksteal -m "slow and not long" $(PYTEST)
 
 docs: $(VENV)/docs
 	$(BIN)/python -m docs.site
