@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import cProfile
 import csv
 import os
 import re
@@ -98,7 +99,8 @@ def fitting(raw: bytes, command: str) -> str:
 class Ended:
     """How a command ended: exit code, an exception that it let out, output, messages, warnings of
     Python and numpy, files that it left and those that it wrote elsewhere, the outcomes of its
-    cells, processor time [s], and the memory [byte] before and at its peak."""
+    cells, calls of functions (those of C too; 0 where nobody counted), processor time [s], and the
+    memory [byte] before and at its peak."""
 
     code: int
     escaped: str
@@ -108,6 +110,7 @@ class Ended:
     files: tuple[str, ...]
     elsewhere: tuple[str, ...]
     outcomes: tuple[str, ...]
+    calls: int
     took_s: float
     before: int
     peak: int
@@ -140,12 +143,16 @@ class Ended:
 
 
 def attempt(
-    made: bytes | Callable[[Path], object], *arguments: str, name: str = "scene.toml"
+    made: bytes | Callable[[Path], object],
+    *arguments: str,
+    name: str = "scene.toml",
+    counted: bool = False,
 ) -> Ended:
     """Run the command with ``arguments`` on a file with these bytes, or one that is made by that,
     in a folder of its own.
 
-    ``FILE`` and ``OUT`` among the arguments are the file and the folder for what it writes.
+    ``FILE`` and ``OUT`` among the arguments are the file and the folder for what it writes. Calls
+    are ``counted`` on demand, as that slows down what calls much.
     """
     _forget_peak()
     before = _peak()
@@ -155,6 +162,7 @@ def attempt(
         _ = made(home / name) if callable(made) else (home / name).write_bytes(made)
         given = [f"../{name}" if each == "FILE" else each for each in arguments]
         given = [re.sub("^OUT", "../out", each) for each in given]
+        counter = cProfile.Profile()
         began = time.process_time()
         with (
             contextlib.chdir(home / "work"),
@@ -162,6 +170,7 @@ def attempt(
             _watched(home) as elsewhere,
             mock.patch.object(window_count, "MOST_WINDOWS", MOST_WINDOWS),
             warnings.catch_warnings(record=True) as caught,
+            counter if counted else contextlib.nullcontext(),
         ):
             warnings.simplefilter("always")
             code, escaped, output, errors = _run(given)
@@ -177,6 +186,7 @@ def attempt(
             files=tuple(left),
             elsewhere=(*elsewhere, *(file for file in left if not file.startswith("out"))),
             outcomes=_outcomes(home / "out" / "verify.csv"),
+            calls=sum(entry.callcount for entry in counter.getstats()),
             took_s=took,
             before=before,
             peak=_peak(),
