@@ -75,6 +75,12 @@ ELASTIC = (
     f"verify FILE --engine mujoco {_SHORT} --segments 4",
 )
 """What files of mechanisms with elastic links are tried with."""
+ELASTIC_QUICK = (
+    "solve FILE --elements 2 --forces -o OUT.csv",
+    "vibration FILE --modes 2",
+    "export FILE",
+)
+"""The shortest of these."""
 MOST_WINDOWS = 200
 """Of an integration: as many as a user may wait for take minutes."""
 MOMENT = "solve FILE --duration 0.01 --steps 4"
