@@ -1,15 +1,12 @@
-"""The command `crankcheck` as a process of its own, and an engine that misbehaves on request."""
+"""An engine that misbehaves on request."""
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 
 import pytest
 
 from sim import registry
-from tests.worlds.command import COMMAND
-from tests.worlds.programs import Start
 
 BAD_ENGINE = '''
 """MuJoCo, with a fault that a setting chooses."""
@@ -49,12 +46,6 @@ from sim.registry import Declaration
 DECLARATION = Declaration("mujoco", "mujoco")
 """
 KNOWN = "from sim import registry\nregistry.ENGINES['bad'] = 'bad_engine'\n"
-
-
-@pytest.fixture
-def start(programs: Start) -> Start:
-    """Starts `crankcheck` with arguments; its output is to be read from the process."""
-    return partial(programs, COMMAND)
 
 
 @pytest.fixture

@@ -1,43 +1,140 @@
-"""On a real Dask cluster: a scheduler and two workers, started from the command line."""
+"""On a Dask cluster: one that is made up, and a real one started from the command line."""
 
 from __future__ import annotations
 
 import socket
 import subprocess
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pandas as pd
 import pytest
 
 from models.errors import CrankcheckError
+from models.scene import Scene
+from reports.judge.cell import Cell
 from reports.store.reader import read_store
 from reports.sweep import cluster as clusters
-from tests.worlds.command import PYTHON
+from reports.sweep.measured import measured
+from reports.workers.isolated import Limits
+from tests.worlds.command import COMMAND, PYTHON
+from tests.worlds.in_process import Here
 from tests.worlds.programs import Start, programs
+from tests.worlds.tiers import slow
 
 GRID = ("fourbar-lecture-1", "slotted-lever", "--steps-per-turn", "90,180", "--no-timing")
 BY_CHANCE = {"wall_s", "logged_us_per_step", "run_on"}
 
 
+@dataclass(eq=False)
+class Cluster:
+    """Does all at once in this thread; results come last first."""
+
+    workers: Sequence[str] = ("one",)
+    closed: bool = False
+    results: dict[int, object] = field(default_factory=dict)
+
+    def scheduler_info(self) -> dict[str, object]:
+        return {"workers": self.workers}
+
+    def map(self, function: Callable[[Cell], object], cells: Sequence[Cell], pure: bool) -> object:
+        assert not pure
+        self.results = {number: function(cell) for number, cell in enumerate(cells)}
+        return [SimpleNamespace(key=number) for number in self.results]
+
+    def as_completed(self, futures: Any, with_results: bool) -> Iterator[tuple[object, object]]:
+        assert with_results
+        return iter([(each, self.results[each.key]) for each in reversed(futures)])
+
+    def close(self) -> None:
+        self.closed = True
+
+
+def dask(monkeypatch: pytest.MonkeyPatch, cluster: Cluster, error: Exception | None = None) -> None:
+    """Whoever asks Dask for a cluster gets this one, or an error."""
+
+    def client(address: str, timeout: float) -> Cluster:
+        assert (address, timeout) == ("tcp://there:1", clusters.ANSWER_S)
+        if error is not None:
+            raise error
+        return cluster
+
+    module = SimpleNamespace(Client=client, as_completed=cluster.as_completed)
+    monkeypatch.setitem(sys.modules, "distributed", cast(Any, module))
+
+
+def test_outcomes_come_as_they_end_from_a_child_of_each_limit(
+    monkeypatch: pytest.MonkeyPatch, fourbar: Scene
+) -> None:
+    children: list[Child] = []
+
+    class Child(Here[object]):
+        def __init__(self, limits: Limits) -> None:
+            super().__init__(limits)
+            children.append(self)
+
+        def call(self, function: Callable[..., object], *arguments: object) -> object:
+            return (function, *arguments)
+
+        def close(self) -> None:
+            self.closed = True
+
+    cluster = Cluster()
+    dask(monkeypatch, cluster)
+    monkeypatch.setattr(clusters, "Isolated", Child)
+    cells = [Cell(fourbar, "pymunk", "tuned", 0.01, steps) for steps in (20, 30, 40)]
+    for limits, keep in ((Limits(7.0), True), (Limits(7.0), False), (Limits(8.0), False)):
+        client = clusters.connected("tcp://there:1")
+        ended = clusters.on_cluster(client, cells, limits, keep)
+        assert [next(ended)] == [(2, (measured, cells[2], keep))]
+        assert not cluster.closed
+        assert list(ended) == [(n, (measured, cells[n], keep)) for n in (1, 0)]
+        assert cluster.closed
+        cluster.closed = False
+    assert [(child.limits.time_s, child.closed) for child in children] == [(7, True), (8, False)]
+
+
+@pytest.mark.parametrize(
+    ("cluster", "error", "words"),
+    [
+        (Cluster(), OSError("no way"), r"there:1: no scheduler answers there \(no way\); start"),
+        (Cluster(), ValueError("what?"), r"there:1: no scheduler answers there \(what\?\); start"),
+        (Cluster(workers=()), None, "there:1: no workers; start some with `dask worker tcp:"),
+    ],
+)
+def test_no_cluster_is_said_in_one_line(
+    cluster: Cluster, error: Exception | None, words: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    dask(monkeypatch, cluster, error)
+    with pytest.raises(CrankcheckError, match=f"^--dask tcp://{words}"):
+        clusters.connected("tcp://there:1")
+    monkeypatch.setitem(sys.modules, "distributed", cast(Any, None))
+    with pytest.raises(CrankcheckError, match=r"^--dask: distributed is not installed; pip"):
+        clusters.connected("tcp://there:1")
+
+
 @pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """The address of a scheduler with two workers."""
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Where a scheduler with two workers is."""
     pytest.importorskip("distributed", reason="pip install 'crankcheck[dask]'")
     address = nowhere()
     port = address.rpartition(":")[2]
     folder = tmp_path_factory.mktemp("cluster")
-    wait = f"import distributed; distributed.Client({address!r}).wait_for_workers(2, 60)"
+    wait = f"import distributed; distributed.Client({address!r}).wait_for_workers(2, 600)"
     with programs() as start:
 
-        def dask(*arguments: str) -> None:
+        def begin(*arguments: str) -> None:
             command = (PYTHON, "-P", "-m", "dask", *arguments, "--no-dashboard")
             start(*command, output=subprocess.DEVNULL)
 
-        dask("scheduler", "--host", "127.0.0.1", "--port", port)
+        begin("scheduler", "--host", "127.0.0.1", "--port", port)
         for _ in range(2):
-            dask("worker", address, "--nthreads", "1", "--local-directory", str(folder))
-        subprocess.run([PYTHON, "-W", "ignore", "-c", wait], check=True, timeout=120)
+            begin("worker", address, "--nthreads", "1", "--local-directory", str(folder))
+        subprocess.run([PYTHON, "-W", "ignore", "-c", wait], check=True)
         yield address
 
 
@@ -48,13 +145,14 @@ def nowhere() -> str:
         return f"tcp://127.0.0.1:{probe.getsockname()[1]}"
 
 
+@slow("a real scheduler and workers, six processes: `make test` holds our side of it to a fake")
 def test_a_cluster_gives_the_same_rows_bit_by_bit(
-    start: Start, cluster: str, tmp_path: Path
+    programs: Start, address: str, tmp_path: Path
 ) -> None:
     stores = []
-    for name, more in (("here", ()), ("there", ("--dask", cluster))):
-        done = start("sweep", *GRID, "-o", tmp_path / name, *more)
-        _, err = done.communicate(timeout=300)
+    for name, more in (("here", ()), ("there", ("--dask", address))):
+        done = programs(COMMAND, "sweep", *GRID, "-o", tmp_path / name, *more)
+        _, err = done.communicate()
         assert done.returncode == 0, err
         assert "Traceback" not in err
         stores.append(read_store(tmp_path / name).cells.set_index("key").sort_index())
@@ -66,7 +164,8 @@ def test_a_cluster_gives_the_same_rows_bit_by_bit(
     pd.testing.assert_frame_equal(here[names], there[names], check_exact=True)
 
 
-def test_no_scheduler_is_said_in_one_line(
+@slow("Dask takes seconds to import; what it says of itself is to stay unsaid")
+def test_dask_says_nothing_beside_our_line(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(clusters, "ANSWER_S", 0.3)

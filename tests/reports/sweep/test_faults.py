@@ -16,7 +16,7 @@ from reports.judge.cell import Cell
 from reports.store.reader import read_store
 from reports.workers.isolated import Isolated, Lost
 from tests.worlds.command import shadows
-from tests.worlds.programs import Start
+from tests.worlds.in_process import Here
 
 EXPECTED = {
     "none": ("ok", ""),
@@ -26,21 +26,28 @@ EXPECTED = {
     "leave": ("crashed", "the engine ended its process (exit code 5)"),
     "throw": ("crashed", "RuntimeError: no luck"),
 }
-LIMIT_S = 60.0
+LIMIT_S = 600.0
 Answer = TypeVar("Answer")
 
 
 def swept(
-    folder: Path, *faults: str, limit_s: float = LIMIT_S, timing: bool = False, again: bool = False
+    folder: Path,
+    *faults: str,
+    engine: str = "bad",
+    limit_s: float = LIMIT_S,
+    timing: bool = False,
+    again: bool = False,
 ) -> str:
-    """The output of a sweep of the bad engine over some faults."""
+    """The output of a sweep of an engine, the bad one over some faults, with one child."""
     output = StringIO()
     request = SweepRequest(
         folder,
         scenes=["fourbar-lecture-1"],
-        engines=["bad"],
+        engines=[engine],
+        profiles=["tuned"],
         steps_per_turn="90",
-        settings=[f"bad.fault={','.join(faults)}"],
+        settings=[f"bad.fault={','.join(faults)}"] * bool(faults),
+        jobs=1,
         limit_s=limit_s,
         timing=timing,
         again=again,
@@ -50,8 +57,12 @@ def swept(
 
 
 @pytest.mark.usefixtures("_bad_engine")
-def test_every_fault_is_a_row_with_its_reason(tmp_path: Path) -> None:
+def test_every_fault_is_a_row_with_its_reason(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     folder = tmp_path / "store"
+    monkeypatch.setattr("reports.sweep.running.Isolated", Here)  # of timing
+    monkeypatch.setattr("reports.sweep.measured.REPEAT_S", 1e-3)
     swept(folder, *(fault for fault in EXPECTED if fault != "hang"), timing=True)
     told = swept(folder, "hang", limit_s=1.0)  # where no other cell has to be done in that time
     cells = read_store(folder).cells
@@ -63,13 +74,13 @@ def test_every_fault_is_a_row_with_its_reason(tmp_path: Path) -> None:
     assert "1 timeout, such as" in told
 
 
-def test_what_stands_in_the_working_folder_is_not_imported(start: Start, tmp_path: Path) -> None:
+def test_what_stands_in_the_working_folder_is_not_imported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     mine = shadows(tmp_path / "mine")
     (mine / "queue.py").write_text("raise SystemExit('mine')")
-    options = ("--engine", "pymunk", "--steps-per-turn", "90", "--no-timing")
-    done = start("sweep", "fourbar-lecture-1", "-o", "store", *options, cwd=mine)
-    _, err = done.communicate(timeout=300)
-    assert done.returncode == 0, err
+    monkeypatch.chdir(mine)
+    swept(Path("store"), engine="pymunk")
     assert set(read_store(mine / "store").cells.status) == {"ok"}
 
 
@@ -100,7 +111,7 @@ def test_a_wider_limit_runs_again_what_was_ended(
     assert ran(3.0).startswith("2 cells: 0 run now, 2 were there")
     assert ran(2.0).startswith("2 cells: 0 run now, 2 were there")
     assert ran(2.0, again=True).startswith("2 cells: 1 run now, 1 were there")
-    ran(60.0, "none")  # a wider limit, and the cell that was ended is not asked for
+    ran(600.0, "none")  # a wider limit, and the cell that was ended is not asked for
     assert len(read_store(folder).cells) == 2
-    assert ran(30.0).startswith("2 cells: 1 run now, 1 were there")
+    assert ran(300.0).startswith("2 cells: 1 run now, 1 were there")
     assert list(read_store(folder).cells.status) == ["ok", "ok"]

@@ -2,60 +2,103 @@
 
 from __future__ import annotations
 
-import random
 import re
 import signal
+import subprocess
 import sys
-import time
+from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
 import psutil
 import pytest
+from filelock import FileLock
+from typer.testing import CliRunner
 
+from reports.cli import app
 from reports.store.reader import Stored, read_store, stored_keys
-from tests.worlds.command import COMMAND
-from tests.worlds.programs import Start, programs, until
+from reports.workers.signals import Stopped
+from tests.worlds.command import COMMAND, PYTHON, script
+from tests.worlds.in_process import in_this_process
+from tests.worlds.programs import Start, until
+from tests.worlds.tiers import few, slow, slowly
 
-SEED = 20261121
-STEPS = "90,100,108,120,144,150,160,360,720,1440"
-"""Most cells take a moment, as what is tested is the store; the last take long enough to be killed
-in."""
-GRID = ("slider-crank-offset", "--steps-per-turn", STEPS, "--turns", "2")
-NUMBER = 8 * 10
-FEW = 4 * 5
-LONG = ("--turns", "30", "--no-timing")
-"""Cells that take longer than the writer waits until it keeps some."""
+GRID = ("slider-crank-offset", "--profile", "tuned", "--turns", "2", "--jobs", "1")
+STEPS = ("--steps-per-turn", "90,100,108,120")
+NUMBER = 2 * 4
 BY_CHANCE = {"wall_s", "logged_us_per_step", "run_on", "us_per_step"}
-SLOW_KILLS = [pytest.param(kill, marks=pytest.mark.slow) for kill in range(1, 5)]
+PROGRAM = script("""
+import os, sys
+from pathlib import Path
+import psutil
+from reports.store import writer
+from crankcheck.__main__ import main
+
+event, name, number, sign, *arguments = sys.argv[1:]
+left = [None] * int(number)
+
+def hear(what, details):
+    if what == event and name in str(details) and left:
+        left.pop()
+        if not left:
+            children = psutil.Process().children(recursive=True)
+            Path("children").write_text(" ".join(str(each.pid) for each in children))
+            os.kill(os.getpid(), int(sign))
+
+if __name__ == "__main__":
+    writer.EVERY_S = 0.0
+    sys.addaudithook(hear)
+    sys.argv = ["crankcheck", *arguments]
+    main()
+""")
+"""The command, which writes each cell at once and sends itself a signal at a moment: an event that
+Python tells of, part of its arguments, and the how manieth it is."""
+CELLS = ("os.rename", "/cells/cells-")
+"""A part with one cell is about to be there."""
+STARTS = ("subprocess.Popen", "python")
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL is POSIX")
+
+
+def begun(
+    start: Start, folder: Path, moment: Sequence[object], sign: signal.Signals, *more: str
+) -> subprocess.Popen[str]:
+    """A sweep into a store of the folder that sends itself the signal at that moment."""
+    (folder / "run.py").write_text(PROGRAM)
+    options = (*GRID, *STEPS, "-o", "store", *more)
+    return start(PYTHON, "run.py", *moment, int(sign), "sweep", *options, cwd=folder)
+
+
+def children_end(folder: Path) -> None:
+    """Wait for the end of what that sweep had started at the moment, which was something."""
+    pids = [int(pid) for pid in (folder / "children").read_text().split()]
+    assert pids
+    until(lambda: not any(psutil.pid_exists(pid) for pid in pids))
+
+
+def counted(folder: Path, *options: str) -> tuple[int, ...]:
+    """Cells in all, run now, and there before, and cells timed now of a sweep that is not
+    disturbed."""
+    with in_this_process() as patch:
+        patch.setattr("reports.sweep.running.timed_in_turns", times)
+        args = ["sweep", *GRID, *STEPS, "-o", str(folder), *options]
+        done = CliRunner().invoke(app, args, catch_exceptions=False)
+    assert done.exit_code == 0, done.output
+    found = re.search(r"(\d+) cells: (\d+) run now, (\d+) were there; (\d+) timed", done.output)
+    assert found, done.output
+    return tuple(map(int, found.groups()))
+
+
+def times(_: object, cells: Sequence[object], *__: object) -> list[object]:
+    """In place of a clock."""
+    return [((3.0, 2.0), (2.5, 2.25))] * len(cells)
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Stored:
     """The same sweep, never disturbed."""
     folder = tmp_path_factory.mktemp("whole") / "store"
-    with programs() as start:
-        done = start(COMMAND, "sweep", *GRID, "-o", folder, "--no-timing")
-        _, err = done.communicate(timeout=300)
-    assert done.returncode == 0, err
+    assert counted(folder, "--no-timing") == (NUMBER, NUMBER, 0, 0)
     return read_store(folder)
-
-
-def counts(text: str) -> tuple[int, ...]:
-    """Cells in all, run now, and there before; cells timed now."""
-    found = re.search(r"(\d+) cells: (\d+) run now, (\d+) were there; (\d+) timed now", text)
-    assert found, text
-    return tuple(map(int, found.groups()))
-
-
-def parts(folder: Path, table: str) -> int:
-    return len(list((folder / table).glob(f"{table}-*.parquet")))
-
-
-def children(of: int) -> list[psutil.Process]:
-    """The processes that a sweep has started."""
-    return psutil.Process(of).children(recursive=True)
 
 
 def same(one: Stored, other: Stored) -> None:
@@ -71,73 +114,101 @@ def same(one: Stored, other: Stored) -> None:
         assert set(one.trace(key)) == set(other.trace(key))
 
 
-@pytest.mark.parametrize("kill", [0, *SLOW_KILLS])
+@pytest.mark.parametrize("part", few((1, 3, 4, 8), {3}, "one moment shows it; the ends may differ"))
 def test_a_killed_sweep_goes_on_where_it_was(
-    start: Start, whole: Stored, tmp_path: Path, kill: int
+    programs: Start, whole: Stored, tmp_path: Path, part: int
 ) -> None:
     folder = tmp_path / "store"
-    arguments = ("sweep", *GRID, "-o", folder, "--no-timing", "--jobs", "1")
-    running = start(*arguments)
-    until(lambda: parts(folder, "cells") > 0)
-    time.sleep(random.Random(SEED + kill).uniform(0.0, 0.3))
-    started = children(running.pid)
-    running.send_signal(signal.SIGKILL)
-    running.communicate()
-    there = len(read_store(folder).cells)
-    assert 0 < there < NUMBER
-    done = start(*arguments)
-    out, err = done.communicate(timeout=300)
-    assert done.returncode == 0, err
-    assert counts(out) == (NUMBER, NUMBER - there, there, 0)
+    killed = begun(programs, tmp_path, (*CELLS, part), signal.SIGKILL, "--no-timing")
+    killed.communicate()
+    assert killed.returncode == -signal.SIGKILL
+    there = part - 1
+    assert len(stored_keys(folder, "cells")) == there
+    assert list(folder.glob("cells/.*.tmp"))
+    assert counted(folder, "--no-timing") == (NUMBER, NUMBER - there, there, 0)
     same(read_store(folder), whole)
-    until(lambda: not any(child.is_running() for child in started))
+    assert not list(folder.glob("cells/.*.tmp"))
+    children_end(tmp_path)
 
 
-def test_a_third_run_finds_everything_there(start: Start, whole: Stored) -> None:
+def test_a_third_run_finds_everything_there(whole: Stored) -> None:
     before = sorted(path.stat().st_mtime_ns for path in whole.folder.glob("*/*.parquet"))
-    out, _ = start("sweep", *GRID, "-o", whole.folder, "--no-timing").communicate(timeout=300)
-    assert counts(out) == (NUMBER, 0, NUMBER, 0)
+    assert counted(whole.folder, "--no-timing") == (NUMBER, 0, NUMBER, 0)
     assert before
     assert sorted(path.stat().st_mtime_ns for path in whole.folder.glob("*/*.parquet")) == before
 
 
-@pytest.mark.parametrize("timing", [False, True], ids=["finding errors", "timing"])
-def test_ctrl_c_keeps_what_is_done(start: Start, tmp_path: Path, timing: bool) -> None:
-    folder = tmp_path / "store"
-    steps = ",".join(STEPS.split(",")[-FEW // 4 :])
-    options = ("--engine", "pymunk", *(("--turns", "2") if timing else LONG))
-    arguments = ("sweep", GRID[0], "-o", folder, "--steps-per-turn", steps, *options)
-    running = start(*arguments)
-    until(lambda: len(stored_keys(folder, "cells")) >= (FEW if timing else 1))
-    time.sleep(0.1)
-    started = children(running.pid)
-    running.send_signal(signal.SIGINT)
-    _, err = running.communicate(timeout=300)
-    assert running.returncode == 130
+@pytest.mark.parametrize(
+    ("moment", "kept"),
+    [
+        pytest.param((*CELLS, 3), 3, id="finding errors"),
+        slowly((*STARTS, 2), NUMBER, reason="the same way out of timing", id="timing"),
+    ],
+)
+def test_ctrl_c_keeps_what_is_done(
+    programs: Start, tmp_path: Path, moment: tuple[str, str, int], kept: int
+) -> None:
+    """The cell that was about to be kept, too; where its timing starts there is no child."""
+    stopped = begun(programs, tmp_path, moment, signal.SIGINT)
+    _, err = stopped.communicate()
+    assert stopped.returncode == 130
     assert err.splitlines()[-2:] == [
         "what is done is kept; the same command goes on from there",
         "crankcheck: interrupted",
     ]
     assert "Traceback" not in err
-    until(lambda: not any(child.is_running() for child in started))
-    kept = read_store(folder)
-    missing = FEW - len(kept.cells)
-    untimed = missing + int(kept.cells.us_per_step.isna().sum()) if timing else 0
-    assert (missing > 0) != timing
-    assert (untimed > 0) == timing
-    out, _ = start(*arguments).communicate(timeout=300)
-    assert counts(out) == (FEW, missing, len(kept.cells), untimed)
+    if kept < NUMBER:
+        children_end(tmp_path)
+    folder = tmp_path / "store"
+    assert len(read_store(folder).cells) == kept
+    assert counted(folder) == (NUMBER, NUMBER - kept, kept, NUMBER)
     assert not read_store(folder).cells.key.duplicated().any()
 
 
-def test_two_sweeps_into_one_folder_do_not_mix(start: Start, tmp_path: Path) -> None:
-    folder = tmp_path / "store"
-    first = start("sweep", *GRID, "-o", folder, "--jobs", "1")
-    until(lambda: parts(folder, "cells") > 0)
-    second = start("sweep", *GRID, "-o", folder)
-    _, err = second.communicate(timeout=300)
+def test_ctrl_c_keeps_the_timings_of_the_blocks_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    args = ["sweep", *GRID, *STEPS, "-o", str(tmp_path / "store")]
+    blocks: list[int] = []
+
+    def second_stops(isolated: object, cells: Sequence[object], rounds: int, _: object) -> object:
+        assert rounds == 6
+        blocks.append(len(cells))
+        if len(blocks) == 2:
+            raise Stopped(signal.SIGINT)
+        return times(isolated, cells)
+
+    monkeypatch.setattr("reports.sweep.running.BLOCK", 3)
+    with in_this_process() as patch:
+        patch.setattr("reports.sweep.running.timed_in_turns", second_stops)
+        done = CliRunner().invoke(app, args, catch_exceptions=False)
+    assert done.exit_code == 130
+    assert blocks == [3, 3]
+    timed = read_store(tmp_path / "store").cells.dropna(subset="us_per_step")
+    assert list(timed.us_per_step) == [2.0] * 3
+    assert list(timed.us_per_step_a) == [2.0] * 3
+    assert list(timed.us_per_step_b) == [2.25] * 3
+    assert list(timed.us_per_step_median) == [2.375] * 3
+    assert list(timed.s_per_turn) == pytest.approx(list(2e-6 * timed.steps_per_turn))
+    assert counted(tmp_path / "store") == (NUMBER, 0, NUMBER, NUMBER - 3)
+
+
+def test_a_folder_that_another_sweep_writes_to_is_refused(tmp_path: Path) -> None:
+    with FileLock(tmp_path / ".lock"):
+        done = CliRunner().invoke(app, ["sweep", *GRID, *STEPS, "-o", str(tmp_path)])
+    assert done.exit_code == 2
+    assert "another sweep writes there now" in done.stderr
+
+
+@slow("two processes: `make test` holds the lock by itself")
+def test_two_sweeps_into_one_folder_do_not_mix(programs: Start, tmp_path: Path) -> None:
+    first = begun(programs, tmp_path, (*CELLS, 1), signal.SIGSTOP)
+    until(lambda: psutil.Process(first.pid).status() == psutil.STATUS_STOPPED)
+    second = programs(COMMAND, "sweep", *GRID, *STEPS, "-o", tmp_path / "store")
+    _, err = second.communicate()
     first.send_signal(signal.SIGTERM)
-    first.communicate(timeout=300)
+    first.send_signal(signal.SIGCONT)
+    first.communicate()
     assert second.returncode == 2
     assert "another sweep writes there now" in err
     assert first.returncode == 143

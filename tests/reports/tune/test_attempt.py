@@ -1,9 +1,9 @@
-"""One set of settings in a real engine, in a process of its own."""
+"""One set of settings in a real engine."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +13,8 @@ from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.scene import Scene
-from reports.sweep.measured import measured
+from reports.judge.cell import Cell
+from reports.sweep.measured import Repeats, measured
 from reports.tune.attempt import (
     DEARER,
     NONE_KNOWN,
@@ -24,14 +25,16 @@ from reports.tune.attempt import (
     Row,
     error_of,
 )
-from reports.tune.timing import times
-from reports.workers.isolated import Limits
+from reports.tune.timing import GUESS_US, times
+from reports.workers.isolated import Isolated, Limits
 from sim.engine import Settings, SettingValue
 from sim.mujoco.knobs import work
 from sim.mujoco.settings import TUNED
+from tests.reports.tune.conftest import timed
 
 SETTINGS: dict[str, SettingValue] = {name: s.value for name, s in TUNED.settings.items()}
 SCENES = ("fourbar-lecture-1", "slider-crank-excel-210")
+Cells = Sequence[tuple[Cell, float]]
 
 
 def goal_of(*names: str, target: float = 1e-4) -> Goal:
@@ -45,10 +48,8 @@ def bench_of(goal: Goal, limits: Limits | None = None) -> Bench:
 
 
 @pytest.fixture(scope="module")
-def two() -> Iterator[Bench]:
-    bench = bench_of(goal_of(*SCENES))
-    yield bench
-    bench.close()
+def two() -> Bench:
+    return bench_of(goal_of(*SCENES))
 
 
 def error(bench: Bench, index: int, steps: int) -> float:
@@ -91,19 +92,16 @@ def test_settings_are_given_up_where_they_can_not_win(two: Bench) -> None:
     assert found.runs <= 6
 
 
-def test_a_run_that_takes_too_long_costs_one_attempt(two: Bench) -> None:
+def test_a_run_that_takes_too_long_costs_one_attempt() -> None:
     bench = bench_of(goal_of("fourbar-lecture-1"), Limits(time_s=1e-4))
-    try:
-        found = bench.attempt(SETTINGS, None)
-        assert not found.reached
-        assert found.reason == "fourbar-lecture-1: timeout: no end within 0.0001 s"
-        assert found.over(1e-4) == NONE_KNOWN
-        assert found.runs == 1
-        assert found.timed_out
-        with pytest.raises(LostError, match="timeout"):
-            bench.row(bench.goal.scenes[0], SETTINGS, 90)
-    finally:
-        bench.close()
+    found = bench.attempt(SETTINGS, None)
+    assert not found.reached
+    assert found.reason == "fourbar-lecture-1: timeout: no end within 0.0001 s"
+    assert found.over(1e-4) == NONE_KNOWN
+    assert found.runs == 1
+    assert found.timed_out
+    with pytest.raises(LostError, match="timeout"):
+        bench.row(bench.goal.scenes[0], SETTINGS, 90)
 
 
 def test_settings_that_the_engine_refuses_cost_one_attempt(two: Bench) -> None:
@@ -142,18 +140,31 @@ def test_an_engine_that_can_not_hold_the_scene_is_told_before_the_search() -> No
     heavy = load_scene("scotch-yoke")
     massless = {name: replace(slider, mass_kg=0.0) for name, slider in heavy.sliders.items()}
     goal = Goal((replace(heavy, sliders=massless),), "mujoco", "tuned", 1e-4, turns=2.0)
-    bench = Bench(goal, [lambda settings: 1.0], Limits())
-    try:
-        with pytest.raises(CrankcheckError, match=r"scotch-yoke, mujoco, tuned: .*mass"):
-            bench.refuse_unsupported(SETTINGS)
-    finally:
-        bench.close()
+    with pytest.raises(CrankcheckError, match=r"scotch-yoke, mujoco, tuned: .*mass"):
+        Bench(goal, [lambda settings: 1.0], Limits()).refuse_unsupported(SETTINGS)
 
 
-def test_times_are_sums_over_the_scenes_at_the_step_that_was_found(two: Bench) -> None:
-    found = two.attempt(SETTINGS, None)
-    taken = times(two.goal, [found], Limits())
-    assert taken is not None
-    assert taken[0].s_per_turn == pytest.approx(1e-6 * taken[0].us_per_step * found.tried)
-    assert taken[0].noise >= 0.0
-    assert times(two.goal, [found], Limits(time_s=1e-4)) is None
+def test_times_are_sums_over_the_scenes_at_the_step_that_was_found(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The clock counts cells: of the first attempt these are 1 and 2, of the second 3 and 4."""
+    goal = goal_of(*SCENES)
+    attempts = [Attempt(SETTINGS, None, n, 1e-5, "", 1.0, 1) for n in (100, 300)]
+    seen: list[object] = []
+
+    def seen_by(isolated: Isolated[Repeats], cells: Cells, rounds: int) -> list[object]:
+        seen.extend((cell.scene.name, cell.steps_per_turn, us) for cell, us in cells)
+        assert isolated.limits == Limits(7.0)
+        return timed(isolated, cells, rounds)
+
+    monkeypatch.setattr("reports.tune.timing.timed_in_turns", seen_by)
+    first, second = times(goal, attempts, Limits(7.0)) or []
+    assert seen == [(name, pytest.approx(n), GUESS_US) for n in (100, 300) for name in SCENES]
+    assert (first.us_per_step, second.us_per_step) == (1 + 2, 3 + 4)
+    assert first.s_per_turn == pytest.approx(1e-6 * 3 * 100)
+    assert second.s_per_turn == pytest.approx(1e-6 * 7 * 300)
+    assert [each.noise for each in (first, second)] == pytest.approx([0.1, 0.1])
+    monkeypatch.setattr(
+        "reports.tune.timing.timed_in_turns", lambda *asked: [None, *timed(*asked)[1:]]
+    )
+    assert times(goal, attempts, Limits()) is None

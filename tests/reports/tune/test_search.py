@@ -15,6 +15,7 @@ from reports.tune.storage import study_in
 from reports.workers.signals import Stopped
 from sim.engine import Settings
 from sim.tuning import Knob, SearchSpace
+from tests.worlds.tiers import few
 
 PROFILE = {"stiffness": 10.0, "idle": 3, "kind": "slow", "fixed": 7}
 SPACE = SearchSpace(
@@ -61,7 +62,7 @@ def test_the_profile_is_tried_first_so_that_nothing_found_is_dearer() -> None:
     assert best.cost_us <= found[0].cost_us
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", few(range(3), {0}, "luck of a seed"))
 def test_the_search_beats_as_many_guesses(seed: int) -> None:
     best = best_of(done(budget=40, seed=seed))
     assert best is not None
@@ -120,7 +121,7 @@ def interrupted(after: int) -> Try:
     return attempt
 
 
-@pytest.mark.parametrize("at", [0, 7, 12])
+@pytest.mark.parametrize("at", few((0, 7, 12), {12}, "the first trials have less to go on with"))
 def test_a_search_that_was_cut_short_goes_on_to_what_a_whole_one_finds(
     tmp_path: Path, at: int
 ) -> None:
@@ -145,19 +146,19 @@ def test_a_search_that_was_cut_short_goes_on_to_what_a_whole_one_finds(
 
 def test_a_larger_budget_begins_with_the_trials_of_a_smaller_one(tmp_path: Path) -> None:
     path = tmp_path / "kept.db"
-    for budget in (7, 14):
+    for budget in (4, 12):
         with study_in(path, {}) as study:
             found = search(study, plan(budget), known)
             assert len(found) == budget
-    assert found == done(14)
+    assert found == done(12)
     with study_in(path, {}) as study:
-        assert search(study, plan(7), interrupted(0)) == found
+        assert search(study, plan(4), interrupted(0)) == found
 
 
 def test_a_study_is_one_that_optuna_reads_with_its_own_best(tmp_path: Path) -> None:
     path = tmp_path / "kept.db"
     with study_in(path, {}) as study:
-        found = search(study, plan(), known)
+        found = search(study, plan(4), known)
     own = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
     best = best_of(found)
     assert best is not None
@@ -225,7 +226,7 @@ def clocked(*late: int) -> Try:
 
 
 @pytest.mark.parametrize(
-    "late", [(0,), *(pytest.param((k,), marks=pytest.mark.slow) for k in (1, 9)), (0, 5, 13)]
+    "late", few(((0,), (1,), (9,), (0, 5, 13)), {(0, 5, 13)}, "places of a single one")
 )
 def test_what_the_clock_ended_is_not_kept_and_tried_again(
     tmp_path: Path, late: tuple[int, ...]

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
 import re
+import signal
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,24 +18,23 @@ from models.errors import CrankcheckError
 from models.files import shipped
 from reports.cli.commands.tune import run_tune
 from reports.cli.measuring import TuneRequest
+from reports.tune.attempt import Attempt, Bench
+from reports.workers.signals import Stopped
+from sim.engine import Settings
 from sim.mujoco.knobs import EVALUATIONS
 from sim.tuning import Knob, search_space
 from tests.worlds.command import PYTHON, script
-from tests.worlds.in_process import in_this_process
 from tests.worlds.programs import Start
+from tests.worlds.tiers import slow
 from tests.worlds.workshop import mujoco_disturbance
 
 SMALL = TuneRequest(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, timing=False)
-Tell = Callable[[TuneRequest], tuple[int, str]]
 
 
-def told(request: TuneRequest, *, apart: bool = False) -> tuple[int, str]:
-    """Exit code and output, but for the time of day; of runs in a process ``apart``, which the
-    clock may end, or in this one."""
+def told(request: TuneRequest) -> tuple[int, str]:
+    """Exit code and output, but for the time of day."""
     output = io.StringIO()
-    quiet = Console(file=io.StringIO())
-    with contextlib.nullcontext() if apart else in_this_process():
-        code = run_tune(request, Console(file=output, width=100), quiet)
+    code = run_tune(request, Console(file=output, width=100), Console(file=io.StringIO()))
     return code, "\n".join(line for line in output.getvalue().splitlines() if "made" not in line)
 
 
@@ -158,7 +156,7 @@ def test_what_the_clock_ended_is_told_and_not_kept(tmp_path: Path) -> None:
     path = tmp_path / "kept.db"
     request = replace(SMALL, budget=2, limit_s=1e-4, output=path)
     for _ in range(2):
-        code, text = told(request, apart=True)
+        code, text = told(request)
         assert code == 1
         assert "The clock ended 2 of what was tried (--limit-s 0.0001)" in " ".join(text.split())
     study = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
@@ -191,9 +189,10 @@ def test_several_scenes_are_tuned_together() -> None:
 
 
 def test_measured_cost_is_told_beside_that_of_the_profile() -> None:
-    code, text = told(replace(SMALL, timing=True, budget=1), apart=True)
+    code, text = told(replace(SMALL, timing=True, budget=1))
     assert code == 0
-    assert len(line(text, "us per step")) == len(line(text, "ms per turn")) == 2
+    assert line(text, "us per step") == ["1.00", "2.00"]
+    assert len(line(text, "ms per turn")) == 2
     assert "cost of a turn, found over profile tuned: " in text
     assert "A/A noise" in text
 
@@ -256,11 +255,34 @@ if __name__ == "__main__":
     Bench.attempt = attempt
     with guarded():
         install()
-        request = TuneRequest(("fourbar-lecture-1",), "mujoco", 1e-5, budget=1000, output=path)
+        request = TuneRequest(("fourbar-lecture-1",), "pymunk", 1e-2, budget=1000, output=path)
         run_tune(request, terminal(), terminal(stderr=True))
 """
 
 
+def test_a_search_that_is_stopped_says_what_it_keeps(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, progress, real, calls = tmp_path / "kept.db", io.StringIO(), Bench.attempt, []
+
+    def attempt(bench: Bench, settings: Settings, best: Attempt | None) -> Attempt:
+        calls.append(settings)
+        if len(calls) == 3:
+            raise Stopped(signal.SIGINT)
+        return real(bench, settings, best)
+
+    monkeypatch.setattr(Bench, "attempt", attempt)
+    with pytest.raises(Stopped):
+        run_tune(replace(SMALL, output=path), Console(quiet=True), Console(file=progress))
+    kept = f"2 of 6 trials are kept in {path}; the same command goes on from there\n"
+    assert progress.getvalue() == kept
+    calls.clear()
+    with pytest.raises(Stopped):
+        run_tune(replace(SMALL, output=path), Console(quiet=True), Console(file=progress))
+    assert progress.getvalue() == kept + kept.replace("2 of 6", "4 of 6")
+
+
+@slow("a process with children, that imports Optuna: `make test` stops a search in its own")
 @pytest.mark.skipif(sys.platform == "win32", reason="signals to a group are POSIX")
 def test_ctrl_c_keeps_the_trials_and_leaves_no_process(programs: Start, tmp_path: Path) -> None:
     path, program = tmp_path / "kept.db", tmp_path / "run.py"

@@ -1,0 +1,43 @@
+"""Searches in the process of the tests, with made-up clocks, that run each cell once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import ClassVar
+
+import pytest
+
+from reports.judge.cell import Cell
+from reports.workers.isolated import Lost
+from tests.worlds.in_process import Here
+
+TOO_SHORT_S = 1e-3
+"""A limit that no run keeps."""
+
+
+class Remembering(Here[object]):
+    """Answers once for all tests: that an engine does the same twice is tested elsewhere."""
+
+    answers: ClassVar[dict[str, object]] = {}
+
+    def call(self, function: Callable[..., object], *arguments: object) -> object:
+        if self.limits.time_s < TOO_SHORT_S:
+            return Lost("timeout", f"no end within {self.limits.time_s:g} s")
+        key = f"{function.__name__} {arguments}"
+        if key not in self.answers:
+            self.answers[key] = function(*arguments)
+        return self.answers[key]
+
+
+def timed(_: object, cells: Sequence[tuple[Cell, float]], rounds: int) -> list[object]:
+    """In place of a clock: a cell takes as many microseconds as there are cells up to it."""
+    assert rounds > 1
+    return [((n + 9.0, float(n)), (1.1 * n, 2.0 * n)) for n, _ in enumerate(cells, 1)]
+
+
+@pytest.fixture(autouse=True, scope="package")
+def _in_this_process() -> object:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("reports.tune.attempt.Isolated", Remembering)
+        patch.setattr("reports.tune.timing.timed_in_turns", timed)
+        yield
