@@ -2,6 +2,7 @@
 #
 #   make verify       compare the engines with the reference on all shipped scenes
 #   make test         lint, types and tests
+#   make quick        the tests that reach what differs from main, or FILES="reports/page"
 #   make report       run the shipped study into out/, with its page, figures and summary
 #   make hard         hard cases, graded, into out/hard
 #   make slow         the long checks that `make test` leaves out
@@ -15,7 +16,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: verify test lint pytest browser report hard slow docs benchmarks models format clean
+.PHONY: verify test lint pytest quick record browser report hard slow docs benchmarks models format clean
 
 verify: $(VENV)/crankcheck
 	$(BIN)/crankcheck verify
@@ -33,12 +34,18 @@ lint: | $(VENV)/test
 
 # One thread for each of the two processes: with more, those of large products wait for a processor
 # and burn it meanwhile, which took a fifth of the time of what is let go for ten thousand steps.
-pytest slow: export OPENBLAS_NUM_THREADS := 1
+pytest slow quick record: export OPENBLAS_NUM_THREADS := 1
 
 # Stolen work keeps both processes busy to the end, and the tests of a folder, which share what is
 # made for them, mostly in one of them.
 pytest: | $(VENV)/test
 	$(BIN)/python -m pytest -q -n 2 --dist worksteal -m "not slow and not long" $(PYTEST)
+
+quick: $(VENV)/test browser
+	$(BIN)/python -m tests.recorded.quick $(FILES)
+
+record: $(VENV)/test browser
+	$(BIN)/python -m tests.recorded.quick record
 
 # The page of `crankcheck report` is tested in a real browser: installed where that can be done
 # without asking (as root on Debian); elsewhere its tests are skipped and say how to install it.
@@ -80,7 +87,7 @@ format: $(VENV)/test
 	$(BIN)/ruff format .
 
 clean:
-	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .recorded
 
 $(BIN)/python:
 	$(PYTHON) -c 'import sys; v = sys.version_info; sys.exit(v < (3, 11) and f"crankcheck needs Python 3.11 or later; {sys.executable} is {v[0]}.{v[1]}. Try: make PYTHON=python3.12")'

@@ -39,9 +39,9 @@ _lru_cache = functools.lru_cache
 _kill = subprocess.Popen.kill
 
 
-def settings(folder: Path, files: Iterable[str] = ()) -> Path:
-    """Write the settings of coverage into the folder, for all product files or these alone."""
-    include = "".join(f"\n    {ROOT / file}" for file in files or (f"{p}/*" for p in PACKAGES))
+def settings(folder: Path, root: Path = ROOT, files: Iterable[str] = ()) -> Path:
+    """Write the settings of coverage into the folder, for all our files of a checkout, or these."""
+    include = "".join(f"\n    {root / file}" for file in files or (f"{each}/*" for each in OURS))
     path = folder / "settings.ini"
     path.write_text(
         f"[run]\nparallel = True\nsigterm = True\ndata_file = {folder / '.coverage'}\n"
