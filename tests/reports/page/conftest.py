@@ -5,12 +5,11 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, ConsoleMessage, Page, Request, sync_playwright
+from playwright.sync_api import Browser, sync_playwright
 from rich.console import Console
 
 from reports.cli.commands import sweep as command
@@ -19,6 +18,7 @@ from reports.page.build import page, stability_page
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored, read_store
 from tests.reports.page import hard_runs
+from tests.reports.page.tab import PHONE, WIDE, Tab
 from tests.worlds.in_process import in_this_process
 
 STUDY = """
@@ -51,7 +51,6 @@ FLAGS = (
     "--disable-component-update",
     "--disable-sync",
 )
-WIDE, PHONE = {"width": 1280, "height": 900}, {"width": 390, "height": 844}
 
 
 @pytest.fixture(scope="session")
@@ -73,11 +72,21 @@ def small(small_folder: Path) -> Stored:
 
 
 @pytest.fixture(scope="session")
-def small_page(small: Stored, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def written(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Writes a page into a file of its own."""
+
+    def write(text: str) -> Path:
+        path = tmp_path_factory.mktemp("page") / "report.html"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+@pytest.fixture(scope="session")
+def small_page(small: Stored, written: Callable[[str], Path]) -> Path:
     """The page of the small store, as a file."""
-    path = tmp_path_factory.mktemp("page") / "report.html"
-    path.write_text(page(small), encoding="utf-8")
-    return path
+    return written(page(small))
 
 
 @pytest.fixture(scope="session")
@@ -87,64 +96,9 @@ def hard_matrix() -> Matrix:
 
 
 @pytest.fixture(scope="session")
-def hard_page(hard_matrix: Matrix, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def hard_page(hard_matrix: Matrix, written: Callable[[str], Path]) -> Path:
     """The page of the hard cases alone, as a file."""
-    path = tmp_path_factory.mktemp("hard") / "stability.html"
-    path.write_text(stability_page(hard_matrix), encoding="utf-8")
-    return path
-
-
-@dataclass
-class Opened:
-    """A page in the browser, with all that it said and asked for."""
-
-    page: Page
-    said: list[str] = field(default_factory=list)
-    asked: list[str] = field(default_factory=list)
-    first: object = None
-
-    def watch(self) -> None:
-        def on_console(message: ConsoleMessage) -> None:
-            self.said.append(f"{message.type}: {message.text}")
-
-        def on_request(request: Request) -> None:
-            self.asked.append(request.url)
-
-        self.page.on("console", on_console)
-        self.page.on("pageerror", lambda error: self.said.append(f"error: {error}"))
-        self.page.on("request", on_request)
-
-    def show(self, section: str) -> None:
-        """Scroll to a section and wait for its diagrams."""
-        self.page.locator(f"#{section}").scroll_into_view_if_needed()
-        for chart in self.page.locator(f"#{section} .chart").all():
-            chart.scroll_into_view_if_needed()
-            chart.locator(".main-svg").first.wait_for()
-
-    def remember(self) -> None:
-        """Note how all choices and switches stand."""
-        self.first = self.page.evaluate(STATE)
-
-    def restore(self) -> None:
-        """Put all choices and switches back to where they stood."""
-        self.page.evaluate(RESTORE, self.first)
-
-
-STATE = """() => ({
-  choices: [...document.querySelectorAll('select')].map(each => [each.id, each.value]),
-  boxes: [...document.querySelectorAll('[data-item]')].map(
-    each => [each.closest('.legend').id, each.dataset.item, each.checked]),
-})"""
-RESTORE = """({choices, boxes}) => {
-  for (const [id, value] of choices) {
-    const each = document.getElementById(id);
-    if (each.value !== value) { each.value = value; each.dispatchEvent(new Event('change')); }
-  }
-  for (const [legend, item, checked] of boxes) {
-    const each = document.querySelector(`#${legend} [data-item="${item}"]`);
-    if (each.checked !== checked) each.click();
-  }
-}"""
+    return written(stability_page(hard_matrix))
 
 
 def chromium() -> str:
@@ -166,23 +120,14 @@ def browser() -> Iterator[Browser]:
         started.close()
 
 
-@pytest.fixture(scope="module")
-def open_page(browser: Browser) -> Iterator[Callable[..., Opened]]:
-    """Opens a file with the network off: ``open_page(path, phone=..., **options)``."""
-    contexts = []
+@pytest.fixture(scope="session")
+def wide(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Tab:
+    """The tab of a computer: `open` or `visit` a page in it."""
+    return Tab.of(browser, tmp_path_factory.mktemp("wide"), viewport=WIDE)
 
-    def opened(path: Path, phone: bool = False, **options: object) -> Opened:
-        options = {"reduced_motion": "reduce", "viewport": PHONE if phone else WIDE, **options}
-        if phone:
-            options |= {"has_touch": True, "is_mobile": True}
-        context = browser.new_context(offline=True, **options)
-        contexts.append(context)
-        found = Opened(context.new_page())
-        found.watch()
-        found.page.goto(path.as_uri())
-        found.remember()
-        return found
 
-    yield opened
-    for context in contexts:
-        context.close()
+@pytest.fixture(scope="session")
+def phone(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Tab:
+    """The tab of a phone."""
+    folder = tmp_path_factory.mktemp("phone")
+    return Tab.of(browser, folder, viewport=PHONE, has_touch=True, is_mobile=True)

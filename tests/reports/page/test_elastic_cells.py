@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 
 import pandas as pd
 import pytest
-from playwright.sync_api import Browser
 from rich.console import Console
 
 from reports.cli.commands import sweep as command
@@ -27,8 +27,7 @@ from reports.results.recommend import ELASTIC_TARGETS, Recommendation, recommend
 from reports.results.table import recommendation_table
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store
-from tests.reports.page.conftest import PHONE, WIDE, Opened
-from tests.reports.page.test_browser import OUT
+from tests.reports.page.tab import OUT, Tab
 from tests.worlds.in_process import in_this_process
 
 SCENE = "fourbar-elastic"
@@ -54,6 +53,11 @@ def bent(tmp_path_factory: pytest.TempPathFactory) -> Stored:
     return read_store(folder)
 
 
+@pytest.fixture(scope="module")
+def bent_path(bent: Stored, written: Callable[[str], Path]) -> Path:
+    return written(page(bent))
+
+
 def sections(text: str) -> list[str]:
     return re.findall(r'<section[^>]* id="([^"]+)"', text)
 
@@ -70,8 +74,8 @@ def beside(small: Stored, bent: Stored) -> Stored:
     )
 
 
-def test_elastic_cells_have_a_section_with_their_own_heads(bent: Stored) -> None:
-    text = page(bent)
+def test_elastic_cells_have_a_section_with_their_own_heads(bent_path: Path) -> None:
+    text = bent_path.read_text(encoding="utf-8")
     assert sections(text) == ["verdict", "elastic", "stability", "fairness", "provenance"]
     told = text[: text.index('id="provenance"')]
     assert "closed form" not in told
@@ -118,26 +122,19 @@ def test_settings_are_recommended_by_the_deflection(small: Stored, bent: Stored)
     assert "/ D" in both
 
 
-@pytest.mark.parametrize("viewport", [WIDE, PHONE], ids=["wide", "phone"])
+@pytest.mark.parametrize("size", ["wide", "phone"])
 def test_the_section_draws_and_keeps_within_the_window(
-    browser: Browser, bent: Stored, tmp_path: Path, viewport: dict[str, int]
+    bent_path: Path, size: str, request: pytest.FixtureRequest
 ) -> None:
-    """A real browser alone finds what a script does wrong: some 2 s."""
-    path = tmp_path / "elastic.html"
-    path.write_text(page(bent), encoding="utf-8")
-    context = browser.new_context(offline=True, viewport=viewport)  # type: ignore[arg-type]
-    opened = Opened(context.new_page())
-    opened.watch()
-    opened.page.goto(path.as_uri())
-    opened.show("elastic")
-    opened.page.locator("#elastic-course").select_option("error")
-    opened.page.locator("#elastic-error").select_option("segments_pure")
+    tab: Tab = request.getfixturevalue(size)
+    page = tab.open(bent_path, "elastic").page
+    page.locator("#elastic-course").select_option("error")
+    page.locator("#elastic-error").select_option("segments_pure")
     names = "() => document.getElementById('elastic-chart').data.map(each => each.name)"
-    assert any("mujoco tuned, 4 segments" in name for name in opened.page.evaluate(names))
-    if viewport is PHONE:
-        assert not opened.page.evaluate(OUT)
-    assert not opened.said
-    context.close()
+    assert any("mujoco tuned, 4 segments" in name for name in page.evaluate(names))
+    if size == "phone":
+        assert not page.evaluate(OUT)
+    assert not tab.said
 
 
 def test_figures_of_elastic_cells_say_what_their_errors_are_of(bent: Stored) -> None:

@@ -23,7 +23,7 @@ from reports.cli import app
 from reports.cli.commands.figures import run_figures
 from reports.results.overview import Report
 from reports.store.reader import read_store
-from tests.reports.page.conftest import Opened
+from tests.reports.page.tab import Tab
 from tests.worlds.fuzzing import COMMANDS, attempt
 from tests.worlds.scene_files import toml
 
@@ -174,11 +174,11 @@ def test_the_page_shows_the_source_as_text(page: Path) -> None:
     assert found.tags == Tags(built(plain)).tags
 
 
-def test_a_browser_runs_nothing_of_it(open_page: Callable[..., Opened], page: Path) -> None:
-    opened = open_page(page)
-    assert opened.page.evaluate("typeof window.hacked") == "undefined"
-    expect(opened.page.locator(".note", has_text="window.hacked").first).to_be_attached()
-    assert opened.said == []
+def test_a_browser_runs_nothing_of_it(wide: Tab, page: Path) -> None:
+    wide.open(page)
+    assert wide.page.evaluate("typeof window.hacked") == "undefined"
+    expect(wide.page.locator(".note", has_text="window.hacked").first).to_be_attached()
+    assert wide.said == []
 
 
 def test_the_summary_in_markdown_starts_no_tag(store: Path) -> None:

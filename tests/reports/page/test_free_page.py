@@ -17,10 +17,9 @@ from reports.page.sections.section import PageReport
 from reports.results.recommend import recommendations
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store
-from tests.reports.page.conftest import Opened
+from tests.reports.page.tab import Tab
 from tests.worlds.free_store import SCENE
 
-Open = Callable[..., Opened]
 FREE = ["verdict", "free", "stability", "fairness", "provenance"]
 
 
@@ -30,10 +29,8 @@ def free(free_store: Path) -> Stored:
 
 
 @pytest.fixture(scope="module")
-def path(free: Stored, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("page") / "free.html"
-    path.write_text(page(free), encoding="utf-8")
-    return path
+def path(free: Stored, written: Callable[[str], Path]) -> Path:
+    return written(page(free))
 
 
 def sections(text: str) -> list[str]:
@@ -96,10 +93,8 @@ def test_columns_of_stability_stand_under_their_engines(free: Stored) -> None:
     assert [look.engine for look in section.words["looks"]] == ["mujoco"] * 2 + ["pymunk"] * 2
 
 
-def test_a_free_run_is_drawn_and_every_choice_has_curves(open_page: Open, path: Path) -> None:
-    opened = open_page(path)
-    opened.show("free")
-    seen = opened.page
+def test_a_free_run_is_drawn_and_every_choice_has_curves(wide: Tab, path: Path) -> None:
+    seen = wide.open(path, "free").page
     for course in ("phase_judged", "phase", "energy", "speed", "angle", "portrait"):
         seen.select_option("#free-course", course)
         seen.wait_for_function(
@@ -109,16 +104,12 @@ def test_a_free_run_is_drawn_and_every_choice_has_curves(open_page: Open, path: 
             "() => document.getElementById('free-chart').layout.yaxis.title.text"
         )
         assert titles
-    place = seen.locator("#free-picture .overlays path").first
-    before = place.get_attribute("d")
-    seen.evaluate(
-        "() => { const s = document.getElementById('free-slider'); s.value = 300;"
-        " s.dispatchEvent(new Event('input')); }"
-    )
-    assert place.get_attribute("d") != before
+    before = wide.drawn("#free-picture .overlays path")[0]
+    wide.slide("free-slider", 300)
+    assert wide.drawn("#free-picture .overlays path")[0] != before
     assert "0.417 s" in seen.locator("#free-angle").inner_text()
-    assert opened.said == []
-    assert opened.asked == [path.as_uri()] or all(x.startswith("file") for x in opened.asked)
+    assert wide.said == []
+    assert wide.asked == [wide.file.as_uri()] or all(x.startswith("file") for x in wide.asked)
 
 
 def test_settings_of_free_motion_are_to_be_copied(free: Stored) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,12 +15,11 @@ from reports.drawing.packed import packed
 from reports.page.build import page, stability_page
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored
-from tests.reports.page.conftest import Opened
-from tests.reports.page.test_browser import CONTROLS, NAMELESS, OUT, SHIFTED, VISIT
+from tests.reports.page.tab import OUT, Tab
 from tests.reports.page.test_hard import evil, one_case
 
-SHORT_MS = 5000
-Open = Callable[..., Opened]
+TRUTH, RUN = "#hard-picture .reference .link", "#hard-picture .overlays .link"
+Write = Callable[[str], Path]
 CONTRASTS = """() => {
   const parts = (text) => {
     const numbers = text.match(/[\\d.]+/g).map(Number);
@@ -44,39 +43,19 @@ def cell(page: Page, number: int) -> Locator:
     return page.locator(f"#hard-map button[data-run='{number}']")
 
 
-def shapes(page: Page, layer: str) -> str:
-    """How the links of the truth (reference) or of the run (overlays) are drawn at the moment."""
-    paths = page.locator(f"#hard-picture .{layer} .link").all()
-    return " ".join(path.get_attribute("d") or "" for path in paths)
-
-
-def wide(found: Opened) -> Opened:
-    """The page as it was when it was opened."""
-    found.page.emulate_media(reduced_motion="reduce", color_scheme="light")
-    found.page.evaluate("() => scrollTo(0, 0)")
-    found.page.select_option("#hard-failures", index=1)
-    found.page.select_option("#hard-factor", "1")
-    found.said.clear()
-    return found
-
-
-@pytest.fixture(scope="module")
-def desktop(open_page: Open, hard_page: Path) -> Opened:
-    found = open_page(hard_page)
-    found.page.set_default_timeout(SHORT_MS)
-    return found
-
-
-@pytest.fixture(scope="module")
-def phone(open_page: Open, hard_page: Path) -> Opened:
-    found = open_page(hard_page, phone=True)
-    found.page.set_default_timeout(SHORT_MS)
-    return found
+def as_opened(tab: Tab, path: Path) -> Tab:
+    """The page as it was when it was opened: its first failure is shown."""
+    tab.visit(path)
+    tab.page.evaluate("() => scrollTo(0, 0)")
+    tab.page.select_option("#hard-failures", index=1)
+    tab.page.select_option("#hard-factor", "1")
+    return tab
 
 
 @pytest.fixture
-def opened(desktop: Opened) -> Opened:
-    return wide(desktop)
+def opened(wide: Tab, hard_page: Path) -> Iterator[Tab]:
+    yield as_opened(wide, hard_page)
+    assert wide.said == []
 
 
 def first(matrix: Matrix, outcome: str) -> int:
@@ -84,21 +63,15 @@ def first(matrix: Matrix, outcome: str) -> int:
     return next(n for n, run in enumerate(matrix.runs) if run.grid and run.outcome == outcome)
 
 
-@pytest.mark.parametrize("name", ["desktop", "phone"])
+@pytest.mark.parametrize("size", ["wide", "phone"])
 def test_no_error_and_no_request_in_a_whole_visit(
-    name: str, request: pytest.FixtureRequest
+    size: str, hard_page: Path, request: pytest.FixtureRequest
 ) -> None:
-    found: Opened = request.getfixturevalue(name)
-    assert found.page.evaluate(SHIFTED) < 0.05, "what is read should stay where it is"
-    found.page.evaluate(VISIT)
-    found.page.evaluate(
-        "() => document.querySelectorAll('#hard-map button').forEach(b => b.click())"
-    )
-    assert found.said == []
-    assert [url for url in found.asked if not url.startswith(("file:", "data:"))] == []
+    tab: Tab = request.getfixturevalue(size)
+    tab.open(hard_page).no_error_and_no_request()
 
 
-def test_the_map_is_one_stop_of_tab_and_arrows_go_from_cell_to_cell(opened: Opened) -> None:
+def test_the_map_is_one_stop_of_tab_and_arrows_go_from_cell_to_cell(opened: Tab) -> None:
     stops = (
         "() => [...document.querySelectorAll('#hard-map [data-run]')].filter(b => b.tabIndex === 0)"
     )
@@ -116,7 +89,7 @@ def test_the_map_is_one_stop_of_tab_and_arrows_go_from_cell_to_cell(opened: Open
 
 
 def test_a_cell_shows_its_run_by_keyboard_and_gives_the_focus_back(
-    opened: Opened, hard_matrix: Matrix
+    opened: Tab, hard_matrix: Matrix
 ) -> None:
     number = first(hard_matrix, "diverged")
     run = hard_matrix.runs[number]
@@ -149,21 +122,21 @@ def test_a_cell_shows_its_run_by_keyboard_and_gives_the_focus_back(
     assert opened.page.locator("[aria-expanded=true]").count() == 0
 
 
-def test_a_cell_that_is_chosen_again_is_closed(opened: Opened) -> None:
+def test_a_cell_that_is_chosen_again_is_closed(opened: Tab) -> None:
     cell(opened.page, 0).click()
     assert opened.page.locator("#hard-row").is_visible()
     cell(opened.page, 0).click()
     assert not opened.page.locator("#hard-row").is_visible()
 
 
-def test_a_run_that_holds_has_numbers_and_no_picture(opened: Opened) -> None:
+def test_a_run_that_holds_has_numbers_and_no_picture(opened: Tab) -> None:
     cell(opened.page, 0).click()
     assert opened.page.locator("#hard-numbers").is_visible()
     assert not opened.page.locator("#hard-figure").is_visible()
     assert "of failures only" in opened.page.locator("#hard-note").inner_text()
 
 
-def test_a_cell_stays_under_the_finger_that_chose_it(opened: Opened) -> None:
+def test_a_cell_stays_under_the_finger_that_chose_it(opened: Tab) -> None:
     # Not all browsers hold a page in place by themselves where something above it goes away.
     opened.page.add_style_tag(content="html { overflow-anchor: none; padding-bottom: 60rem; }")
     target = cell(opened.page, 22)  # below the row that is opened
@@ -174,7 +147,7 @@ def test_a_cell_stays_under_the_finger_that_chose_it(opened: Opened) -> None:
     assert target.bounding_box() == pytest.approx(before, abs=1.5)
 
 
-def test_what_was_opened_is_brought_into_the_window(opened: Opened, hard_matrix: Matrix) -> None:
+def test_what_was_opened_is_brought_into_the_window(opened: Tab, hard_matrix: Matrix) -> None:
     target = cell(opened.page, first(hard_matrix, "diverged"))
     target.evaluate("each => scrollBy(0, each.getBoundingClientRect().bottom - innerHeight + 20)")
     target.click()
@@ -185,7 +158,7 @@ def test_what_was_opened_is_brought_into_the_window(opened: Opened, hard_matrix:
     assert row["y"] + row["height"] <= 900
 
 
-def test_the_failures_are_gone_through_one_by_one(opened: Opened, hard_matrix: Matrix) -> None:
+def test_the_failures_are_gone_through_one_by_one(opened: Tab, hard_matrix: Matrix) -> None:
     failed = [str(n) for n, run in enumerate(hard_matrix.runs) if run.outcome != "ok"]
     value = "() => document.getElementById('hard-failures').value"
     before, after = opened.page.locator("#hard-before"), opened.page.locator("#hard-after")
@@ -205,7 +178,7 @@ def test_the_failures_are_gone_through_one_by_one(opened: Opened, hard_matrix: M
 
 
 def test_what_the_bisection_looked_at_is_chosen_in_the_panel(
-    opened: Opened, hard_matrix: Matrix
+    opened: Tab, hard_matrix: Matrix
 ) -> None:
     number = next(n for n, run in enumerate(hard_matrix.runs) if not run.grid)
     chip = opened.page.locator(f"#hard-between [data-near='{number}']")
@@ -218,51 +191,52 @@ def test_what_the_bisection_looked_at_is_chosen_in_the_panel(
     assert opened.page.evaluate("() => document.activeElement.dataset.near") == str(number)
 
 
-def test_the_picture_moves_beside_the_truth_and_stops(opened: Opened, hard_matrix: Matrix) -> None:
+def test_the_picture_moves_beside_the_truth_and_stops(opened: Tab, hard_matrix: Matrix) -> None:
     opened.page.select_option("#hard-failures", str(first(hard_matrix, "diverged")))
-    still = shapes(opened.page, "overlays")
+    still = opened.drawn(RUN)
     assert still
-    assert shapes(opened.page, "reference") != still
-    opened.page.wait_for_timeout(150)
-    assert shapes(opened.page, "overlays") == still  # reduced motion is wanted: it waits
+    assert opened.drawn(TRUTH) != still
+    opened.elapse(150)
+    assert opened.drawn(RUN) == still  # reduced motion is wanted: it waits
     play = opened.page.locator("#hard-play")
     play.click()
     assert play.inner_text() == "Pause"
-    opened.page.wait_for_timeout(250)
-    truth = shapes(opened.page, "reference")
-    assert shapes(opened.page, "overlays") != still
-    opened.page.wait_for_timeout(150)
-    assert shapes(opened.page, "reference") != truth
+    opened.elapse(250)
+    truth = opened.drawn(TRUTH)
+    assert opened.drawn(RUN) != still
+    opened.elapse(150)
+    assert opened.drawn(TRUTH) != truth
     play.click()
-    stopped = shapes(opened.page, "overlays")
-    opened.page.wait_for_timeout(150)
-    assert shapes(opened.page, "overlays") == stopped
+    stopped = opened.drawn(RUN)
+    opened.elapse(150)
+    assert opened.drawn(RUN) == stopped
     assert opened.page.locator("#hard-picture .trail").count() > 0
 
 
 def test_the_picture_moves_by_itself_where_motion_is_welcome(
-    opened: Opened, hard_matrix: Matrix
+    opened: Tab, hard_matrix: Matrix
 ) -> None:
     opened.page.emulate_media(reduced_motion="no-preference")
+    opened.elapse(0)
     cell(opened.page, first(hard_matrix, "diverged")).click()
     assert opened.page.locator("#hard-play").inner_text() == "Pause"
-    before = shapes(opened.page, "overlays")
-    opened.page.wait_for_timeout(200)
-    assert shapes(opened.page, "overlays") != before
+    before = opened.drawn(RUN)
+    opened.elapse(200)
+    assert opened.drawn(RUN) != before
     cell(opened.page, 0).click()
     assert opened.page.locator("#hard-play").text_content() == "Play"
 
 
-def test_an_error_can_be_magnified(opened: Opened, hard_matrix: Matrix) -> None:
+def test_an_error_can_be_magnified(opened: Tab, hard_matrix: Matrix) -> None:
     opened.page.select_option("#hard-failures", str(first(hard_matrix, "degraded")))
     assert opened.page.input_value("#hard-factor") == "1"
-    true = shapes(opened.page, "overlays")
+    true = opened.drawn(RUN)
     opened.page.select_option("#hard-factor", "10")
-    assert shapes(opened.page, "overlays") != true
+    assert opened.drawn(RUN) != true
     assert "m." in opened.page.locator("#hard-readout").inner_text()
 
 
-def test_the_command_is_copied(opened: Opened) -> None:
+def test_the_command_is_copied(opened: Tab) -> None:
     opened.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     opened.page.locator(".repeat .copy").click()
     opened.page.locator(".repeat .copy", has_text="Copied").wait_for()
@@ -272,15 +246,8 @@ def test_the_command_is_copied(opened: Opened) -> None:
     )
 
 
-@pytest.mark.parametrize("opened_up", [False, True])
-def test_nothing_runs_out_of_a_phone(phone: Opened, opened_up: bool) -> None:
-    wide(phone)
-    phone.page.evaluate(
-        "open => document.querySelectorAll('details').forEach(each => { each.open = open; })",
-        opened_up,
-    )
-    assert phone.page.evaluate(OUT) == []
-    assert phone.page.evaluate("() => document.documentElement.scrollWidth") <= 390
+def test_nothing_runs_out_of_a_phone(phone: Tab, hard_page: Path) -> None:
+    as_opened(phone, hard_page).nothing_runs_out()
     frame = "each => [each.scrollWidth, each.clientWidth]"
     inner, outer = phone.page.locator("#hard .map").evaluate(frame)
     assert inner > outer  # the map scrolls in its own box
@@ -291,7 +258,7 @@ def test_nothing_runs_out_of_a_phone(phone: Opened, opened_up: bool) -> None:
     phone.page.locator("#hard .map").evaluate("each => { each.scrollLeft = 0; }")
 
 
-def test_a_wide_page_needs_no_sideways_scrolling(opened: Opened) -> None:
+def test_a_wide_page_needs_no_sideways_scrolling(opened: Tab) -> None:
     assert opened.page.evaluate("() => document.documentElement.scrollWidth") <= 1280
     inner, outer = opened.page.locator("#hard .map").evaluate(
         "each => [each.scrollWidth, each.clientWidth]"
@@ -300,50 +267,44 @@ def test_a_wide_page_needs_no_sideways_scrolling(opened: Opened) -> None:
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_signs_and_values_can_be_read_in_both_themes(opened: Opened, scheme: str) -> None:
+def test_signs_and_values_can_be_read_in_both_themes(opened: Tab, scheme: str) -> None:
     opened.page.emulate_media(color_scheme=scheme)
     ratios = opened.page.evaluate(CONTRASTS)
     assert len(ratios) > 90
     assert min(ratios) >= 4.5
 
 
-def test_every_control_has_a_name(opened: Opened) -> None:
-    assert opened.page.evaluate(NAMELESS, CONTROLS) == []
+def test_every_control_has_a_name(opened: Tab) -> None:
+    opened.every_control_has_a_name()
 
 
-def test_hostile_text_does_nothing(open_page: Open, hard_matrix: Matrix, tmp_path: Path) -> None:
-    path = tmp_path / "evil.html"
-    path.write_text(stability_page(evil(hard_matrix)), encoding="utf-8")
-    found = open_page(path)
-    found.page.evaluate(
+def test_hostile_text_does_nothing(wide: Tab, hard_matrix: Matrix, written: Write) -> None:
+    wide.open(written(stability_page(evil(hard_matrix))))
+    wide.page.evaluate(
         "() => document.querySelectorAll('#hard-map button').forEach(b => b.click())"
     )
-    found.page.select_option("#hard-failures", index=1)
-    assert found.page.evaluate("() => window.hacked") is None
-    assert found.page.locator("main img").count() == 0
-    assert "{{ 7 * 7 }}" in found.page.locator("#hard-told").inner_text()
-    assert found.said == []
+    wide.page.select_option("#hard-failures", index=1)
+    assert wide.page.evaluate("() => window.hacked") is None
+    assert wide.page.locator("main img").count() == 0
+    assert "{{ 7 * 7 }}" in wide.page.locator("#hard-told").inner_text()
+    assert wide.said == []
 
 
 def test_a_page_without_pictures_and_with_what_is_not_known_works(
-    open_page: Open, hard_matrix: Matrix, tmp_path: Path
+    phone: Tab, hard_matrix: Matrix, written: Write
 ) -> None:
     lost = dict.fromkeys(("error", "gap", "drive", "sine", "dt_s", "wall_s"), float("nan"))
-    path = tmp_path / "one.html"
-    path.write_text(
-        stability_page(one_case(hard_matrix, outcome="exploded", reason="bang " * 400, **lost)),
-        encoding="utf-8",
-    )
-    found = open_page(path, phone=True)
-    cell(found.page, 0).click()
-    assert "exploded" in found.page.locator("#hard-told").inner_text()
-    assert "no moving picture" in found.page.locator("#hard-note").inner_text()
-    assert found.page.evaluate(OUT) == []
-    assert found.said == []
+    one = one_case(hard_matrix, outcome="exploded", reason="bang " * 400, **lost)
+    phone.open(written(stability_page(one)))
+    cell(phone.page, 0).click()
+    assert "exploded" in phone.page.locator("#hard-told").inner_text()
+    assert "no moving picture" in phone.page.locator("#hard-note").inner_text()
+    assert phone.page.evaluate(OUT) == []
+    assert phone.said == []
 
 
 def test_a_run_and_a_truth_with_missing_samples_are_drawn_as_far_as_they_go(
-    open_page: Open, hard_matrix: Matrix, tmp_path: Path
+    wide: Tab, hard_matrix: Matrix, written: Write
 ) -> None:
     picture = copy.deepcopy(hard_matrix.pictures[0])
     samples = len(np.asarray(picture.drawing["told"]["at"]))
@@ -353,28 +314,23 @@ def test_a_run_and_a_truth_with_missing_samples_are_drawn_as_far_as_they_go(
     exact[:, samples - 5 :] = np.nan
     drawing = {**picture.drawing, "places": packed(exact)}
     broken = replace(picture, drawing=drawing, rows=packed(rows))
-    path = tmp_path / "broken.html"
-    path.write_text(stability_page(replace(hard_matrix, pictures=(broken,))), encoding="utf-8")
-    found = open_page(path)
-    slider = found.page.locator("#hard-slider")
-    slider.focus()
+    wide.open(written(stability_page(replace(hard_matrix, pictures=(broken,)))))
+    wide.page.locator("#hard-slider").focus()
     for key, truth, run in (("Home", 3, 3), ("End", 0, 0)):
-        found.page.keyboard.press(key)
-        assert found.page.locator("#hard-picture .reference .link").count() == truth
-        assert found.page.locator("#hard-picture .overlays .link").count() == run
-    assert found.said == []
+        wide.page.keyboard.press(key)
+        assert wide.page.locator(TRUTH).count() == truth
+        assert wide.page.locator(RUN).count() == run
+    assert wide.said == []
 
 
 def test_hard_cases_work_in_the_report_beside_its_other_sections(
-    open_page: Open, small: Stored, hard_matrix: Matrix, tmp_path: Path
+    wide: Tab, small: Stored, hard_matrix: Matrix, written: Write
 ) -> None:
-    path = tmp_path / "report.html"
-    path.write_text(page(small, hard_matrix), encoding="utf-8")
-    found = open_page(path)
-    found.show("motion")
-    cell(found.page, first(hard_matrix, "diverged")).click()
-    found.page.locator("#hard-play").click()
-    found.page.wait_for_timeout(100)
-    assert found.page.locator("#motion-play").inner_text() == "Play"
-    assert "diverged" in found.page.locator("#hard-told").inner_text()
-    assert found.said == []
+    wide.open(written(page(small, hard_matrix)), "motion")
+    cell(wide.page, first(hard_matrix, "diverged")).click()
+    wide.elapse(0)
+    wide.page.locator("#hard-play").click()
+    wide.elapse(100)
+    assert wide.page.locator("#motion-play").inner_text() == "Play"
+    assert "diverged" in wide.page.locator("#hard-told").inner_text()
+    assert wide.said == []

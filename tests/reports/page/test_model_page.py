@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,13 +15,12 @@ from reports.own_model.judged import JudgedModel, judged_model
 from reports.page.build import _plotly
 from reports.page.model_page import model_page
 from sim.own_models import Disturbance
-from tests.reports.page.conftest import Opened
-from tests.reports.page.test_browser import CONTROLS, NAMELESS, OUT
+from tests.reports.page.tab import OUT, Tab
 from tests.reports.page.test_log_page import NASTY, embedded, words
 from tests.reports.page.test_page import Outline
 from tests.worlds.own_models import ACTUATORS, CROWDED, FACTS, SLIDER_CRANK, judged
 
-Open = Callable[..., Opened]
+Write = Callable[[str], Path]
 SECTIONS = ["verdict", "lines", "motion", "disturbing", "recommended", "made"]
 MEGABYTE = 1_000_000
 
@@ -110,17 +109,17 @@ def test_nothing_of_a_file_acts_on_the_page(rubbing: JudgedModel) -> None:
 
 
 @pytest.fixture(scope="module")
-def opened(open_page: Open, text: str, tmp_path_factory: pytest.TempPathFactory) -> Opened:
-    path = tmp_path_factory.mktemp("model") / "page.html"
-    path.write_text(text, encoding="utf-8")
-    found = open_page(path)
-    found.page.set_default_timeout(5000)
-    found.show("lines")
-    found.show("motion")
-    return found
+def path(written: Write, text: str) -> Path:
+    return written(text)
 
 
-def test_the_scripts_draw_every_line_and_say_nothing(opened: Opened) -> None:
+@pytest.fixture
+def opened(wide: Tab, path: Path) -> Iterator[Tab]:
+    yield wide.visit(path, "lines", "motion")
+    assert wide.said == []
+
+
+def test_the_scripts_draw_every_line_and_say_nothing(opened: Tab) -> None:
     page = opened.page
     drawn = page.evaluate("document.getElementById('lines-course').data.map(each => each.name)")
     assert drawn == ["as-written", "contacts-off", "recommended", "limit"]
@@ -130,12 +129,11 @@ def test_the_scripts_draw_every_line_and_say_nothing(opened: Opened) -> None:
     assert low < -6.0 < -2.0 < high
     assert page.locator("#motion-picture .run").count() == 3
     assert "as-written" in page.locator("#motion-readout").inner_text()
-    assert opened.said == []
     assert all(url.startswith("file:") for url in opened.asked)
-    assert page.evaluate(NAMELESS, CONTROLS) == []
+    opened.every_control_has_a_name()
 
 
-def test_a_line_that_is_switched_off_is_drawn_nowhere(opened: Opened) -> None:
+def test_a_line_that_is_switched_off_is_drawn_nowhere(opened: Tab) -> None:
     page = opened.page
     page.locator("#motion-legend [data-item='0']").click()
     page.locator("#lines-legend [data-item='0']").click()
@@ -146,25 +144,20 @@ def test_a_line_that_is_switched_off_is_drawn_nowhere(opened: Opened) -> None:
     low, high = page.evaluate("document.getElementById('lines-steps').layout.yaxis.range")
     assert high - low >= 1.0
     assert "gap" in page.evaluate("document.getElementById('lines-course').layout.yaxis.title.text")
-    opened.restore()
 
 
 def test_without_finer_steps_there_is_no_diagram_of_them(
-    open_page: Open, rubbing: JudgedModel, tmp_path: Path
+    wide: Tab, rubbing: JudgedModel, written: Write
 ) -> None:
     request = replace(rubbing.account.request, converge=False)
     one = replace(rubbing, account=replace(rubbing.account, request=request))
-    (tmp_path / "page.html").write_text(model_page(one, FACTS), encoding="utf-8")
-    found = open_page(tmp_path / "page.html")
-    found.show("lines")
-    assert found.page.locator(".chart").count() == 1
-    assert found.said == []
+    wide.open(written(model_page(one, FACTS)), "lines")
+    assert wide.page.locator(".chart").count() == 1
+    assert wide.said == []
 
 
-def test_it_fits_a_phone(open_page: Open, text: str, tmp_path: Path) -> None:
-    (tmp_path / "page.html").write_text(text, encoding="utf-8")
-    found = open_page(tmp_path / "page.html", phone=True, color_scheme="dark")
-    found.show("lines")
-    assert found.page.evaluate("document.documentElement.scrollWidth") <= 390
-    assert found.said == []
-    assert found.page.evaluate(OUT) == []
+def test_it_fits_a_phone(phone: Tab, path: Path) -> None:
+    phone.open(path, "lines", color_scheme="dark")
+    assert phone.page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert phone.said == []
+    assert phone.page.evaluate(OUT) == []

@@ -9,34 +9,32 @@ import pytest
 
 from analytic.synthesis.design import Proposal
 from reports.sheets.constructions.construction_page import construction_page
-from tests.reports.page.conftest import Opened
+from tests.reports.page.tab import Tab
 from tests.reports.sheets.constructions.constructed import (
     burmester_curves,
     far_pole,
     rocker_by_angle,
     three_positions,
 )
+from tests.worlds.tiers import slowly
 
 PLACE, PICTURE, PLAY = "#construction-place", "#construction-picture", "#construction-play"
 LINES = f"{PICTURE} .lines > g:not([hidden])"
+Write = Callable[[str], Path]
 
 
-@pytest.fixture
-def show(tmp_path: Path, open_page: Callable[..., Opened]) -> Callable[..., Opened]:
-    def shown(proposal: Proposal, **options: object) -> Opened:
-        path = tmp_path / "construction.html"
-        path.write_text(construction_page(proposal), encoding="utf-8")
-        return open_page(path, **options)
-
-    return shown
+@pytest.fixture(scope="module")
+def three(written: Write) -> Path:
+    return written(construction_page(three_positions()))
 
 
-def test_keys_lead_from_step_to_step_and_through_the_positions(
-    show: Callable[..., Opened],
-) -> None:
-    """A real browser alone finds what a script does wrong: some 2 s each."""
-    opened = show(three_positions())
-    page = opened.page
+@pytest.fixture(scope="module")
+def rocker(written: Write) -> Path:
+    return written(construction_page(rocker_by_angle()))
+
+
+def test_keys_lead_from_step_to_step_and_through_the_positions(wide: Tab, three: Path) -> None:
+    page = wide.open(three).page
     seen = []
     for _ in range(5):
         seen.append((page.locator(PLACE).inner_text(), page.locator(LINES).count()))
@@ -56,12 +54,13 @@ def test_keys_lead_from_step_to_step_and_through_the_positions(
         assert page.locator(f"{PICTURE} .poses .met").count() == 1
         page.keyboard.press("ArrowRight")
     assert [words.split(", ")[1] for words in told] == [f"position {k} of 3" for k in (1, 2, 3)]
-    assert not opened.said
+    assert not wide.said
 
 
-def test_the_mechanism_covers_the_pose_that_it_is_in(show: Callable[..., Opened]) -> None:
-    page = show(three_positions()).page
-    for _ in range(3):
+def test_the_mechanism_covers_the_pose_that_it_is_in(wide: Tab, three: Path) -> None:
+    page = wide.visit(three).page
+    wide.slide("construction-slider", 0)
+    for _ in range(7):
         page.keyboard.press("ArrowRight")
     assert "position 3" in page.locator(PLACE).inner_text()
     ends = """each => each.getAttribute('d').match(/-?[\\d.]+/g).slice(0, 4).map(Number)"""
@@ -70,9 +69,8 @@ def test_the_mechanism_covers_the_pose_that_it_is_in(show: Callable[..., Opened]
     assert min(max(abs(a - b) for a, b in zip(pose, one, strict=True)) for one in links) < 0.5
 
 
-def test_buttons_the_slider_and_the_words_go_to_a_step(show: Callable[..., Opened]) -> None:
-    opened = show(rocker_by_angle())
-    page = opened.page
+def test_buttons_the_slider_and_the_words_go_to_a_step(wide: Tab, rocker: Path) -> None:
+    page = wide.open(rocker).page
     page.locator("#construction-steps button").nth(1).click()
     assert page.locator(PLACE).inner_text() == "Step 2 of 5"
     assert page.locator("[aria-current=step]").inner_text() == "The line B1 B2, and its extension."
@@ -81,19 +79,18 @@ def test_buttons_the_slider_and_the_words_go_to_a_step(show: Callable[..., Opene
     assert page.locator(PLACE).inner_text() == "Step 4 of 5"
     page.locator("#construction-back").click()
     assert page.locator(PLACE).inner_text() == "Step 3 of 5"
-    page.evaluate("""() => { const range = document.getElementById('construction-slider');
-      range.value = range.max; range.dispatchEvent(new Event('input')); }""")
+    wide.slide("construction-slider", float(page.get_attribute("#construction-slider", "max") or 0))
     assert page.locator(PLACE).inner_text().startswith("crank at")
-    assert not opened.said
+    assert not wide.said
 
 
-def test_those_who_want_no_motion_get_whole_steps(show: Callable[..., Opened]) -> None:
-    page = show(rocker_by_angle()).page
-    page.clock.install()
+def test_those_who_want_no_motion_get_whole_steps(wide: Tab, rocker: Path) -> None:
+    page = wide.open(rocker).page
+    wide.elapse(0)
     page.locator(PLAY).click()
     seen = [page.locator(PLACE).inner_text()]
     for _ in range(7):
-        page.clock.run_for(2500)
+        wide.elapse(2500)
         seen.append(page.locator(PLACE).inner_text())
         assert page.locator(f"{PICTURE} .lines path:not([stroke-dasharray=none])").count() == (
             page.locator(f"{PICTURE} .lines > g[hidden] path").count()
@@ -103,33 +100,42 @@ def test_those_who_want_no_motion_get_whole_steps(show: Callable[..., Opened]) -
     assert page.locator(PLAY).inner_text() == "Play"
 
 
-def test_it_plays_by_itself_once_where_motion_is_welcome(show: Callable[..., Opened]) -> None:
-    opened = show(rocker_by_angle(), reduced_motion="no-preference")
-    page = opened.page
+def test_it_plays_by_itself_once_where_motion_is_welcome(wide: Tab, rocker: Path) -> None:
+    page = wide.open(rocker, reduced_motion="no-preference").page
     page.wait_for_function(
         "() => document.querySelector('#construction-play').innerText == 'Pause'"
     )
     page.keyboard.press(" ")
     assert page.locator(PLAY).inner_text() == "Play"
-    page.clock.install()
+    wide.elapse(0)
     page.keyboard.press(" ")
-    page.clock.run_for(1000)
+    wide.elapse(1000)
     assert page.locator(PLAY).inner_text() == "Pause"
-    page.clock.run_for(17_000)
+    wide.elapse(17_000)
     assert page.locator(PLACE).inner_text().startswith("crank at")
-    assert not opened.said
+    assert not wide.said
 
 
-@pytest.mark.parametrize("phone", [False, True], ids=["wide", "phone"])
-@pytest.mark.parametrize("make", [burmester_curves, far_pole])
+OTHER = "each size and each figure is read once: what one has with the other is slow"
+
+
+@pytest.mark.parametrize(
+    ("make", "size"),
+    [
+        (burmester_curves, "phone"),
+        (far_pole, "wide"),
+        slowly(burmester_curves, "wide", reason=OTHER),
+        slowly(far_pole, "phone", reason=OTHER),
+    ],
+)
 def test_it_can_be_read_without_scrolling_aside(
-    make: Callable[[], Proposal], phone: bool, show: Callable[..., Opened]
+    make: Callable[[], Proposal], size: str, written: Write, request: pytest.FixtureRequest
 ) -> None:
-    opened = show(make(), phone=phone)
-    page = opened.page
+    tab: Tab = request.getfixturevalue(size)
+    page = tab.open(written(construction_page(make()))).page
     width = page.evaluate("[document.documentElement.scrollWidth, innerWidth]")
     assert width[0] <= width[1]
-    assert page.locator("#construction-words").is_visible() == phone
+    assert page.locator("#construction-words").is_visible() == (size == "phone")
     far = page.locator("#construction-far").inner_text()
     assert far.startswith("Off the picture: P12 at (-4.95, 25) m") == (make is far_pole)
     letters = page.locator(f"{PICTURE} .dots text").evaluate_all(
@@ -152,5 +158,5 @@ def test_it_can_be_read_without_scrolling_aside(
                 other[1] + 5 < bottom,
             )
             assert not all(inner)
-    assert not opened.said
-    assert all(asked.startswith("file:") for asked in opened.asked)
+    assert not tab.said
+    assert all(asked.startswith("file:") for asked in tab.asked)

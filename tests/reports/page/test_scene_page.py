@@ -2,62 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser
 
 from analytic.free.release import release
 from models.files import load_scene
 from reports.face.scene_report import free_page_of, page_of
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
-from tests.reports.page.conftest import Opened
+from tests.reports.page.tab import Tab
 
-STEP = """at => { const slider = document.getElementById('motion-slider');
-  slider.value = at; slider.dispatchEvent(new Event('input')); }"""
+Write = Callable[[str], Path]
 
 
-def test_a_page_moves_with_its_forces_and_says_nothing_wrong(
-    browser: Browser, tmp_path: Path
-) -> None:
-    """A real browser alone finds what a script does wrong: some 2 s."""
-    path = tmp_path / "shaper.html"
-    path.write_text(page_of(load_scene("shaper"), with_forces=True), encoding="utf-8")
-    context = browser.new_context(offline=True)
-    opened = Opened(context.new_page())
-    opened.watch()
-    opened.page.goto(path.as_uri())
+def test_a_page_moves_with_its_forces_and_says_nothing_wrong(wide: Tab, written: Write) -> None:
+    path = written(page_of(load_scene("shaper"), with_forces=True))
+    wide.open(path)
     seen = []
     for at in (0, 61):
-        opened.page.evaluate(STEP, at)
-        arrows = opened.page.locator("#motion-picture .force path").all()
-        told = opened.page.locator("#motion-torque").inner_text()
-        seen.append(([each.get_attribute("d") for each in arrows], told))
-    context.close()
-    assert not opened.said
-    assert opened.asked == [path.as_uri()]
+        wide.slide("motion-slider", at)
+        told = wide.page.locator("#motion-torque").inner_text()
+        seen.append((wide.drawn("#motion-picture .force path"), told))
+    assert not wide.said
+    assert wide.asked == [wide.file.as_uri()]
     assert seen[0] != seen[1]
     assert all(len(arrows) >= 6 for arrows, _ in seen)
     assert "Driving torque here: 1.93 N m." in seen[0][1]
 
 
-def test_a_free_motion_moves_and_tells_the_time(browser: Browser, tmp_path: Path) -> None:
-    """As above: some 2 s."""
-    path = tmp_path / "swing.html"
-    path.write_text(free_page_of(release(load_scene("fourbar-swing"), 0.5)), encoding="utf-8")
-    context = browser.new_context(offline=True)
-    opened = Opened(context.new_page())
-    opened.watch()
-    opened.page.goto(path.as_uri())
+def test_a_free_motion_moves_and_tells_the_time(wide: Tab, written: Write) -> None:
+    wide.open(written(free_page_of(release(load_scene("fourbar-swing"), 0.5))))
     seen = []
     for at in (0, 60):
-        opened.page.evaluate(STEP, at)
-        links = opened.page.locator("#motion-picture .reference path").all()
-        shape = [each.get_attribute("d") for each in links]
-        seen.append((shape, opened.page.locator("#motion-angle").inner_text()))
-    context.close()
-    assert not opened.said
+        wide.slide("motion-slider", at)
+        shape = wide.drawn("#motion-picture .reference path")
+        seen.append((shape, wide.page.locator("#motion-angle").inner_text()))
+    assert not wide.said
     assert seen[0][0] != seen[1][0]
     assert (seen[0][1], seen[1][1]) == ("0.00 s", "0.250 s")
 
