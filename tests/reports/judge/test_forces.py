@@ -15,6 +15,7 @@ from reports.judge.rows import FORCE_COLUMNS, cell_row
 from reports.judge.rules import FORCES
 from reports.judge.tolerance import DEFAULTS, default, in_passage
 from reports.quantities.places import WITHIN_A_STEP
+from tests.worlds.tiers import slowly
 
 ENGINES = ["mujoco", "pymunk", "exudyn"]
 
@@ -26,7 +27,7 @@ def _checked(name: str, engine: str, steps: int, **options: object) -> Checked:
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("steps", [90, 1440])
+@pytest.mark.parametrize("steps", [90, slowly(1440, reason="whether a budget is of that order")])
 @pytest.mark.parametrize("name", ["fourbar-lecture-1", "shaper", "slider-crank-excel-210"])
 def test_forces_of_tuned_engines_take_under_six_tenths_of_their_limits(
     name: str, steps: int, engine: str
