@@ -6,7 +6,7 @@ import math
 import os
 import pickle
 import re
-import time
+import sys
 from pathlib import Path
 
 import pytest
@@ -279,10 +279,9 @@ def test_key_of_very_many_parts_is_a_fault_before_it_fills_memory(head: str, par
 
 @pytest.mark.parametrize("text", ['"\\' * 90_000, "x." * 9 + "\n", "a" + " " * 190_000], ids=len)
 def test_a_file_without_a_deep_key_is_looked_through_at_once(text: str) -> None:
-    began = time.process_time()
+    """A search that went back over them would be at it for minutes or for ever."""
     with pytest.raises(SceneError, match="not valid TOML"):
         parse_scene(text, "file.toml")
-    assert time.process_time() - began < 1.0
 
 
 def test_very_many_faults_are_counted() -> None:
@@ -298,12 +297,23 @@ def test_very_many_faults_are_counted() -> None:
     ("head", "most"), [("[links.many.points]", 100), ("[ground.points]", 1000)]
 )
 def test_more_points_than_can_be_compared_are_a_fault(head: str, most: int) -> None:
+    """In calls that grow as the points do, and not as their pairs."""
     text = GOOD.replace("[ground]\npoints =", "#") if "ground" in head else GOOD
-    points = "".join(f"P{i} = [{i}.0, 0.0]\n" for i in range(8000))
-    began = time.process_time()
-    with pytest.raises(SceneError, match=rf"points: found .* at most {most} items"):
-        parse_scene(f"{text}\n{head}\n{points}", "file.toml")
-    assert time.process_time() - began < 2.0
+    calls: list[int] = []
+
+    def called(*_: object) -> None:
+        calls[-1] += 1
+
+    for count in (1500, 3000):
+        points = "".join(f"P{i} = [{i}.0, 0.0]\n" for i in range(count))
+        calls.append(0)
+        sys.setprofile(called)
+        try:
+            with pytest.raises(SceneError, match=rf"points: found .* at most {most} items"):
+                parse_scene(f"{text}\n{head}\n{points}", "file.toml")
+        finally:
+            sys.setprofile(None)
+    assert calls[1] < 2.5 * calls[0]
 
 
 @pytest.mark.parametrize("acting", ["\u202e", "\x1b[2J", "\ufeff", "\x9b", "\u2028", "\ud800"])

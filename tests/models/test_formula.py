@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import random
-import time
 
 import numpy as np
 import pytest
@@ -88,7 +87,6 @@ def test_no_text_does_anything_but_be_read_or_refused() -> None:
     rng = random.Random(7)
     parts = ["x", "2", "1.5", "(", ")", "+", "-", "*", "/", "^", "**", "sin(", "e", " ", "pi", "?"]
     read = 0
-    start = time.perf_counter()
     for _ in range(3000):
         text = "".join(rng.choices(parts, k=rng.randrange(1, 25)))
         try:
@@ -98,4 +96,3 @@ def test_no_text_does_anything_but_be_read_or_refused() -> None:
         assert formula.at(X).shape == X.shape
         read += 1
     assert read > 50
-    assert time.perf_counter() - start < 30.0

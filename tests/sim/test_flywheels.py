@@ -19,6 +19,7 @@ from models.loads import Load
 from models.released import Released
 from models.scene import Driver, Scene
 from sim.run import run
+from tests.worlds.tiers import slow, slowly
 
 DELTA = 0.02
 WITHIN, WITHIN_DEG = 0.01, 0.5
@@ -69,22 +70,27 @@ def holds(one: Measured, cycle: SteadyCycle) -> None:
     ("name", "engine"),
     [
         ("engine-four-stroke", "mujoco"),
-        pytest.param("compressor", "mujoco", marks=pytest.mark.slow),
-        pytest.param("toggle-press", "mujoco", marks=pytest.mark.slow),
-        pytest.param("compressor", "pymunk", marks=pytest.mark.slow),
+        *(
+            slowly(*case, reason="2 s each: another machine's cycle has the same sides")
+            for case in (
+                ("compressor", "mujoco"),
+                ("toggle-press", "mujoco"),
+                ("compressor", "pymunk"),
+            )
+        ),
     ],
 )
 def test_an_engine_runs_the_cycle_that_the_flywheel_is_for(name: str, engine: str) -> None:
     """The drive a constant torque, two cycles: nothing settles, so that the second is as the
     first. Some 2 s each, as loads that hang on the angle are asked for at every stage of a step."""
     cycle = wanted(load_scene(name)).cycle
-    found = measured(cycle_scene(cycle, 2.05), engine, cycle, 2800)
+    found = measured(cycle_scene(cycle, 2.05), engine, cycle, 1400)
     assert len(found) == 2
     for one in found:
         holds(one, cycle)
 
 
-@pytest.mark.slow
+@slow("40,000 steps: what settles falls to a seventh in every cycle")
 def test_an_engine_settles_in_the_cycle_of_a_motor() -> None:
     """From 5 % above it: what is left of that falls to a seventh in every cycle."""
     scene = load_scene("compressor")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import subprocess
 import sys
@@ -35,22 +36,34 @@ def recipe(name: str, scene: Scene) -> str:
     return force_recipe(name, scene, solve(scene, np.zeros(1)).state(), settings, 720.0)
 
 
-def printed(text: str, folder: Path) -> dict[str, np.ndarray]:
-    """The columns that a program prints, in a Python to which nothing of ours is shown."""
+def elsewhere(text: str, folder: Path) -> str:
+    """What a program prints in a Python to which nothing of ours is shown."""
     program = folder / "recipe.py"
     program.write_text(text, encoding="utf-8")
     done = subprocess.run(
-        [sys.executable, "-I", program.name],
+        [sys.executable, "-I", "-W", "error", program.name],
         check=False,
         cwd=folder,
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=600,
     )
     assert done.returncode == 0, done.stderr
-    head = done.stdout.splitlines()[0].split(",")
-    rows = np.loadtxt(io.StringIO(done.stdout), delimiter=",", skiprows=1)
-    return dict(zip(head, rows.T, strict=True))
+    return done.stdout
+
+
+def printed(program: str) -> str:
+    """What it prints in this process."""
+    out = io.StringIO()
+    with contextlib.redirect_stdout(out):
+        exec(program, {})
+    return out.getvalue()
+
+
+def columns_of(text: str) -> dict[str, np.ndarray]:
+    """The columns of numbers that were printed."""
+    rows = np.loadtxt(io.StringIO(text), delimiter=",", skiprows=1)
+    return dict(zip(text.splitlines()[0].split(","), rows.T, strict=True))
 
 
 def off(scene: Scene, columns: dict[str, np.ndarray]) -> float:
@@ -76,19 +89,23 @@ def test_a_recipe_runs_without_us_and_has_the_forces_of_the_reference(
     for ours in ("crankcheck", "models", "analytic", "sim.", "reports"):
         assert f"import {ours}" not in text
         assert f"from {ours}" not in text
-    columns = printed(text, tmp_path)
+    columns = columns_of(elsewhere(text, tmp_path))
+    assert [*columns][0] == "time_s"
+    assert [*columns][-1] == "torque_n_m"
+    assert {"C.rocker.x_n", "C.rocker.y_n"} < set(columns)
+    assert len(columns["time_s"]) in (720, 721)
     turn = columns["time_s"][-1] - columns["time_s"][0]
     assert turn == pytest.approx(FOURBAR.driver.law.period_s, rel=0.01)
     assert off(FOURBAR, columns) < WITHIN.get(name, 1e-3)
 
 
-def test_that_of_mujoco_reads_past_loads_friction_and_sliders(tmp_path: Path) -> None:
+def test_that_of_mujoco_reads_past_loads_friction_and_sliders() -> None:
     weight = Load("weight", "coupler", "C", Constant(5.0), direction_rad=-0.5 * np.pi)
     rubbing = {"A": ConstantFriction("A", 0.05)}
     loaded = replace(FOURBAR, loads={"weight": weight}, friction=rubbing)
-    assert off(loaded, printed(recipe("mujoco", loaded), tmp_path)) < 1e-4
+    assert off(loaded, columns_of(printed(recipe("mujoco", loaded)))) < 1e-4
     engine_like = load_scene("slider-crank-excel-210")
-    assert off(engine_like, printed(recipe("mujoco", engine_like), tmp_path)) < 1e-4
+    assert off(engine_like, columns_of(printed(recipe("mujoco", engine_like)))) < 1e-4
 
 
 def test_that_of_mujoco_is_refused_where_a_file_does_not_hold_what_drives_or_loads() -> None:

@@ -15,6 +15,7 @@ from sim.registry import engine, offering
 from sim.run import run
 from sim.settings import profile_of, resolved
 from sim.tuning import Knob, rungs, search_space
+from tests.worlds.tiers import slowly
 
 TUNABLE = offering("knobs")
 
@@ -45,13 +46,14 @@ def test_the_values_of_a_knob_stand_in_order_once_each(name: str) -> None:
             assert list(knob.values) == sorted(knob.values, key=float)
 
 
+@pytest.mark.parametrize("every", [4, slowly(1, reason="each of a hundred values of a knob")])
 @pytest.mark.parametrize("name", TUNABLE)
-def test_the_engine_takes_every_value_and_holds_it(name: str) -> None:
+def test_the_engine_takes_every_value_and_holds_it(name: str, every: int) -> None:
     scene = load_scene("fourbar-lecture-1")
     state = solve(scene, np.zeros(1)).state()
     space = search_space(name).around(tuned(name))
     for knob in space.knobs:
-        for value in knob.values:
+        for value in knob.values[::every]:
             settings = space.settings(tuned(name), {**space.starts[0], knob.name: value})
             done = run(scene, state, name, dt_s=1e-3, steps=1, settings=settings)
             assert [done.asked[each] for each in knob.targets] == [value] * len(knob.targets)

@@ -39,14 +39,14 @@ def ran(
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_sample_times_are_multiples_of_the_step(name: str) -> None:
-    result = ran(engine=name, steps=9001, every=3)
+    result = ran(engine=name, steps=2401, every=3)
     assert result.motion is not None
-    np.testing.assert_array_equal(result.motion.time_s, 1e-3 * (3.0 * np.arange(3001)))
+    np.testing.assert_array_equal(result.motion.time_s, 1e-3 * (3.0 * np.arange(801)))
     assert result.stopped_at_s == result.motion.time_s[-1]
     assert result.cost is not None
-    assert result.cost.steps == 9001
+    assert result.cost.steps == 2401
     assert result.cost.logged
-    assert 0.05 < result.cost.us_per_step < 500.0
+    assert result.cost.us_per_step == pytest.approx(1e6 * result.cost.wall_s / 2401)
 
 
 @pytest.mark.parametrize("name", ENGINES)

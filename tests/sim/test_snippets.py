@@ -16,14 +16,19 @@ from sim.snippets import Stepping, frame_snippet, snippet
 from sim.tuning import search_space
 from tests.worlds.bare import BARE, measured_as_we_did
 from tests.worlds.bare_exudyn import measured_in_exudyn
+from tests.worlds.tiers import slowly
 from tests.worlds.workshop import DISTURBANCE, mujoco_disturbance
 
 SAME = 1e-9
 """m, rad: what a solver leaves that stops at 1e-12."""
 COARSEST = 1.0
 """rad, above which no target is."""
-STEPS = (90.0, pytest.param(360.0, marks=pytest.mark.slow))
-"""A snippet at another step has other numbers in it, and the same words."""
+STEPS = (
+    (90.0, 6),
+    slowly(90.0, 1, reason="each of some forty texts of an engine: 1 s"),
+    slowly(360.0, 1, reason="at another step other numbers stand in it, and the same words"),
+)
+"""Steps per turn, and of how many texts one is tried."""
 ENGINES = offering("snippet")
 OTHER: dict[str, SettingValue] = {
     "integrator": "RK4",
@@ -71,16 +76,18 @@ def test_every_engine_that_writes_snippets_is_looked_at() -> None:
     assert set(DISTURBANCE) == set(ENGINES)
 
 
-@pytest.mark.parametrize("steps", STEPS)
+@pytest.mark.parametrize(("steps", "every"), STEPS)
 @pytest.mark.parametrize("name", ENGINES)
-def test_box_and_free_body_do_beside_a_snippet_what_they_did(name: str, steps: float) -> None:
+def test_box_and_free_body_do_beside_a_snippet_what_they_did(
+    name: str, steps: float, every: int
+) -> None:
     texts = {
         snippet(name, settings, steps, drive=drive)
         for settings in settings_of(name)
         for drive in get_args(Drive)
     }
     assert len(texts) > 20
-    for text in sorted(texts):
+    for text in sorted(texts)[::every]:
         disturbed = DISTURBANCE[name](text).worst
         # Settings with which the mechanism alone comes apart are what nothing advises.
         assert disturbed < SAME or BARE[name](text, round(steps), 10.0) > COARSEST, text

@@ -23,6 +23,7 @@ from sim.engine import Run
 from sim.exudyn.engine import ENGINE
 from sim.run import run
 from sim.settings import resolved
+from tests.worlds.tiers import slowly
 
 
 def still(*, start_rad: float = 0.0, **changes: float) -> Scene:
@@ -52,7 +53,7 @@ def numbers(scene: Scene) -> tuple[float, float]:
     return sag, rod.bending_rad_s(length, density)
 
 
-@pytest.mark.parametrize("count", [2, 5, 8])
+@pytest.mark.parametrize("count", [2, 5, slowly(8, reason="as five")])
 def test_a_straight_rod_swings_about_its_sag_with_its_first_frequency(count: int) -> None:
     """Its middle: -sag and, of the modes of an even load, those that ring."""
     scene = still()
@@ -113,7 +114,7 @@ def test_a_link_counts_its_turns_from_stretch_to_stretch() -> None:
     ground = {"A": (0.0, 0.0), "D": (-1.0, 0.0)}
     mirrored = replace(scene, ground=ground, branch={"C": -1})
     own = BeamedScene(mirrored, 8)
-    state = node_start(own, "periodic")
+    state = node_start(own, "quasi-static")
     period = scene.driver.law.period_s
     done = run(own.given, state, ENGINE, dt_s=period / 360, steps=720)
     assert done.motion is not None
@@ -152,7 +153,7 @@ def test_reading_a_state_changes_nothing() -> None:
     scene = load_scene("fourbar-elastic")
     own = BeamedScene(scene, 4)
     settings = resolved(ENGINE.profiles["tuned"], {})
-    session = ENGINE.open(own.given, node_start(own, "periodic"), settings, 1e-3, "prescribed")
+    session = ENGINE.open(own.given, node_start(own, "straight"), settings, 1e-3, "prescribed")
     first, second = (session.read().bodies["coupler-node-4"].theta[0] for _ in range(2))
     assert first == second
 
@@ -204,7 +205,10 @@ def test_a_crank_that_speeds_up_starts_links_that_bend_with_their_own_accelerati
     law = Oscillating(1.57, 0.6, 7.4, 0.4)
     scene = replace(scene, driver=replace(scene.driver, law=law))
     if beams:
-        given, state = BeamedScene(scene, 8).given, node_start(BeamedScene(scene, 8), "periodic")
+        given, state = (
+            BeamedScene(scene, 8).given,
+            node_start(BeamedScene(scene, 8), "quasi-static"),
+        )
     else:
         own = SegmentedScene(scene, 4)
         given, state = own.given, segment_start(own, "periodic")

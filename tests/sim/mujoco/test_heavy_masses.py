@@ -9,6 +9,7 @@ import pytest
 from models.files import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check
+from tests.worlds.tiers import slowly
 
 
 def rod_over_block(ratio: float) -> Scene:
@@ -35,7 +36,7 @@ def worst(checked: Checked) -> float:
     return max(e.pure for name in ("position", "gap") if (e := checked.errors.worst(name)))
 
 
-@pytest.mark.parametrize("steps", [360, 1440, 5760])
+@pytest.mark.parametrize("steps", [360, 1440, slowly(5760, reason="as with 1440")])
 def test_a_rod_of_ten_thousand_times_the_mass_of_its_block(steps: int) -> None:
     heavy, alike = (turned(rod_over_block(ratio), steps) for ratio in (1e4, 1.0))
     assert worst(heavy) < 1.2 * worst(alike)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
@@ -114,6 +115,7 @@ def test_other_integrators_are_given_the_load_of_each_step() -> None:
     assert np.abs(omega - omega[0] - speed).max() < 0.03
 
 
+@cache
 def ends(steps: int, stages: str) -> Array:
     """The angles of a four-bar after 0.6 s, with loops whose stiffness is not the step's."""
     own = {"free_timeconst_steps": 0, "solref_timeconst_steps": 0, "solref_timeconst_s": 0.005}

@@ -9,6 +9,7 @@ from analytic.free.release import release
 from models.files import load_scene, parse_scene
 from sim.mujoco.stroke_shares import forward_parts
 from sim.run import run
+from tests.worlds.tiers import slowly
 
 TURNING = """
 name = "turning"
@@ -60,7 +61,9 @@ def test_a_step_that_does_not_turn_back_is_whole(speed: float, change: float, wh
     assert forward_parts(speed, change) == (whole, whole, whole)
 
 
-@pytest.mark.parametrize("stroke", ["forward", "backward"])
+@pytest.mark.parametrize(
+    "stroke", ["forward", slowly("backward", reason="the parts of a step are tested for both")]
+)
 def test_steps_keep_their_order_where_a_slider_turns_back(stroke: str) -> None:
     """Three times in 0.8 s; with stages that looked at their own speed the error was 2e-4 rad at
     1e-3 s, and of first order."""
@@ -79,12 +82,17 @@ def test_steps_keep_their_order_where_a_slider_turns_back(stroke: str) -> None:
     assert off[1] < 1.25e-6
 
 
-def test_a_load_that_ends_at_a_dead_centre_costs_no_phase() -> None:
+@pytest.mark.parametrize(
+    ("until_s", "within"),
+    [(1.0, 1.0), slowly(4.0, 1.5e-4, reason="its phase goes astray by and by: a second")],
+)
+def test_a_load_that_ends_at_a_dead_centre_costs_no_phase(until_s: float, within: float) -> None:
     """There it has no lever; with the same share in all stages of the step the error was 3e-4."""
     scene = load_scene("press-motor")
-    motion = release(scene, 4.0)
+    motion = release(scene, until_s)
     start = motion.at(np.zeros(1)).state()
-    done = run(scene, start, "mujoco", dt_s=1e-3, steps=4000, every=4000, drive="free")
+    steps = round(until_s / 1e-3)
+    done = run(scene, start, "mujoco", dt_s=1e-3, steps=steps, every=steps, drive="free")
     assert done.motion is not None
     true = motion.at(done.motion.time_s, bound=False).links["crank"].theta
-    assert abs(done.motion.links["crank"].theta[-1] - true[-1]) < 1.5e-4
+    assert abs(done.motion.links["crank"].theta[-1] - true[-1]) < within

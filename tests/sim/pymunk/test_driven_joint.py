@@ -19,7 +19,7 @@ def test_a_driven_pin_of_two_moving_links_converges_as_its_profile_does(
     scene = load_scene("fourbar-by-coupler")
     start = solve(scene, np.zeros(1)).state()
     errors = []
-    for steps in (720, 1440, 2880):
+    for steps in (720, 2880):
         dt_s = scene.driver.law.period_s / steps
         done = run(scene, start, "pymunk", profile, dt_s=dt_s, steps=2 * steps)
         assert done.status == "ok", done.reason

@@ -285,7 +285,7 @@ def test_a_load_of_a_stroke_counts_with_its_share_of_the_step_that_turns_back() 
     state = begin(scene)
     angles = [
         angle(run(scene, state, ENGINE, dt_s=dt_s, steps=n, every=every, drive="free"))
-        for dt_s, n, every in ((1e-3, 1000, 8), (2.5e-4, 4000, 32), (6.25e-5, 16000, 128))
+        for dt_s, n, every in ((1e-3, 400, 8), (2.5e-4, 1600, 32), (6.25e-5, 6400, 128))
     ]
     rough, fine = (np.abs(one - angles[-1]).max() for one in angles[:2])
     assert rough / fine > 10.0
