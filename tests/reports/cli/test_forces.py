@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
 import pytest
-from typer.testing import CliRunner, Result
 
 from models.files import scene_texts
-from reports.cli import app
 from reports.stability.matrix import FILE, Graded, Matrix, read_matrix, to_json
 from reports.store.reader import read_store
 from sim import registry
+from tests.worlds.command_line import crank
 
-Crank = Callable[..., Result]
 SCENE = "fourbar-lecture-1"
 FAST = [
     "--jobs",
@@ -33,18 +30,11 @@ FAST = [
 ]
 
 
-@pytest.fixture
-def crank() -> Crank:
-    """Run the command with arguments."""
-    runner = CliRunner()
-    return lambda *args: runner.invoke(app, list(args), catch_exceptions=False)
-
-
 def flat(text: str) -> str:
     return " ".join(text.replace("│", " ").split())
 
 
-def test_verify_has_a_table_of_forces_of_its_own(crank: Crank, tmp_path: Path) -> None:
+def test_verify_has_a_table_of_forces_of_its_own(tmp_path: Path) -> None:
     asked = crank("verify", SCENE, "--engine", "mujoco", *FAST, "--forces", "-o", str(tmp_path))
     plain = crank("verify", SCENE, "--engine", "mujoco", *FAST, "-o", str(tmp_path / "plain"))
     assert (asked.exit_code, plain.exit_code) == (0, 0), asked.output
@@ -60,7 +50,7 @@ def test_verify_has_a_table_of_forces_of_its_own(crank: Crank, tmp_path: Path) -
     assert {"CC120", "CC123", "CC124"} <= {finding["rule"] for finding in findings}
 
 
-def test_convergence_of_forces_is_told_with_its_floor(crank: Crank) -> None:
+def test_convergence_of_forces_is_told_with_its_floor() -> None:
     fast = [word for word in FAST if word != "--no-convergence"]
     result = crank("verify", SCENE, "--engine", "mujoco", *fast, "--forces")
     assert "levels off floor" in flat(result.output) or "does not shrink floor" in flat(
@@ -69,7 +59,7 @@ def test_convergence_of_forces_is_told_with_its_floor(crank: Crank) -> None:
 
 
 def test_an_engine_without_forces_is_unsupported_where_it_is_named_and_a_note_else(
-    crank: Crank, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     deaf = replace(registry.engine("mujoco"), forces_of="nothing")
     monkeypatch.setattr("sim.mujoco.engine.ENGINE", deaf)
@@ -82,7 +72,7 @@ def test_an_engine_without_forces_is_unsupported_where_it_is_named_and_a_note_el
 
 
 @pytest.mark.parametrize("verb", ["verify", "sweep"])
-def test_a_scene_without_mass_is_refused(crank: Crank, verb: str, tmp_path: Path) -> None:
+def test_a_scene_without_mass_is_refused(verb: str, tmp_path: Path) -> None:
     text = scene_texts([SCENE])[SCENE]
     text = text.replace("{ bar", "{ mass_kg = 0.0, inertia_kg_m2 = 0.0, bar")
     path = tmp_path / "light.toml"
@@ -94,9 +84,7 @@ def test_a_scene_without_mass_is_refused(crank: Crank, verb: str, tmp_path: Path
     assert "Traceback" not in result.output
 
 
-def test_a_sweep_keeps_forces_beside_cells_without_and_reports_them(
-    crank: Crank, tmp_path: Path
-) -> None:
+def test_a_sweep_keeps_forces_beside_cells_without_and_reports_them(tmp_path: Path) -> None:
     folder = str(tmp_path / "out")
     common = ["--profile", "tuned", "--turns", "1", "--no-timing", "--jobs", "1", "-o", folder]
     some = ["sweep", SCENE, "--steps-per-turn", "90,180", *common]
@@ -113,7 +101,7 @@ def test_a_sweep_keeps_forces_beside_cells_without_and_reports_them(
     assert crank("diff", folder, folder).exit_code == 0
 
 
-def test_stability_tells_what_forces_are_off_by_and_grades_as_before(crank: Crank) -> None:
+def test_stability_tells_what_forces_are_off_by_and_grades_as_before() -> None:
     told = ["stability", "heavy-rocker", "--at", "10", "--engine", "mujoco", "--profile", "tuned"]
     asked, plain = crank(*told, "--forces"), crank(*told)
     assert (asked.exit_code, plain.exit_code) == (0, 0)
@@ -133,7 +121,7 @@ def test_a_matrix_keeps_forces_where_they_are_known(tmp_path: Path) -> None:
     assert math.isnan(second.force)
 
 
-def test_selftest_plants_faults_of_forces_where_it_is_asked(crank: Crank) -> None:
+def test_selftest_plants_faults_of_forces_where_it_is_asked() -> None:
     result = crank("selftest", "--fault", "torque-off", "--engine", "mujoco", "--jobs", "1")
     assert result.exit_code == 0, result.output
     assert "1 of 1 fault caught by the named rule" in result.output

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner, Result
+from typer.testing import Result
 
 from models.scheme_files import SCHEMES, shipped_schemes
 from models.touching import CONTACTS, shipped_contacts
-from reports.cli import app
+from tests.worlds.command_line import crank
 
-Crank = Callable[..., Result]
 FOURBAR = (SCHEMES / "four-bar.toml").read_text(encoding="utf-8")
 GEARS = (SCHEMES / "gear-pair.toml").read_text(encoding="utf-8")
 CAM = (SCHEMES / "cam-flat-follower.toml").read_text(encoding="utf-8")
@@ -21,22 +19,11 @@ SHAFTS = (SCHEMES / "cardan-shaft.toml").read_text(encoding="utf-8")
 LINE = (CONTACTS / "line-contact.toml").read_text(encoding="utf-8")
 
 
-@pytest.fixture
-def crank() -> Crank:
-    """Run the command with arguments."""
-    runner = CliRunner()
-
-    def run(*args: str) -> Result:
-        return runner.invoke(app, list(args))
-
-    return run
-
-
 def words(result: Result) -> str:
     return " ".join(result.output.split())
 
 
-def test_a_joint_is_told_by_its_contact_and_by_its_guides(crank: Crank) -> None:
+def test_a_joint_is_told_by_its_contact_and_by_its_guides() -> None:
     said = words(crank("joint", "crossed-cylinders"))
     assert "touches point: a higher pair" in said
     assert "alone class 1, leaves Qx, Qy, Qz, Ty, Tz; a force must keep the two together" in said
@@ -44,7 +31,7 @@ def test_a_joint_is_told_by_its_contact_and_by_its_guides(crank: Crank) -> None:
     assert "joint class 5, leaves Qz Q:" in words(crank("joint", "revolute"))
 
 
-def test_a_scheme_is_told_by_count_and_rank_with_names(crank: Crank) -> None:
+def test_a_scheme_is_told_by_count_and_rank_with_names() -> None:
     said = words(crank("mobility", "parallelogram-third-crank"))
     assert "count W = 3 n - 2 p5 - p4 = 3*4 - 2*6 - 1*0 = 0, with n = 4 moving links" in said
     assert "rank 11 of 12 constraints are independent" in said
@@ -57,13 +44,13 @@ def test_a_scheme_is_told_by_count_and_rank_with_names(crank: Crank) -> None:
     assert "gives back: the scheme shakes" in words(crank("mobility", "stretched-bars"))
 
 
-def test_all_that_ships_is_listed(crank: Crank) -> None:
+def test_all_that_ships_is_listed() -> None:
     joints, schemes = words(crank("joint")).split(), words(crank("mobility")).split()
     assert set(shipped_contacts()) <= set(joints)
     assert set(shipped_schemes()) <= set(schemes)
 
 
-def test_a_scheme_with_lower_pairs_alone_is_shown_and_written(crank: Crank, tmp_path: Path) -> None:
+def test_a_scheme_with_lower_pairs_alone_is_shown_and_written(tmp_path: Path) -> None:
     path = tmp_path / "lower.toml"
     result = crank("mobility", "cam-flat-follower", "--replace", "-o", str(path))
     assert result.exit_code == 0
@@ -75,9 +62,7 @@ def test_a_scheme_with_lower_pairs_alone_is_shown_and_written(crank: Crank, tmp_
     assert (again.exit_code, "no higher pair" in again.output) == (2, True)
 
 
-def test_what_the_file_says_of_the_mobility_is_held_against_it(
-    crank: Crank, tmp_path: Path
-) -> None:
+def test_what_the_file_says_of_the_mobility_is_held_against_it(tmp_path: Path) -> None:
     path = tmp_path / "wrong.toml"
     path.write_text(FOURBAR.replace("mobility = 1", "mobility = 2"), encoding="utf-8")
     assert "mobility W = 1; the file says 2" in words(crank("mobility", str(path)))
@@ -112,9 +97,7 @@ def test_what_the_file_says_of_the_mobility_is_held_against_it(
         (CAM.replace("[0.04, inf]", "[0.04, nan]"), "radii_m"),
     ],
 )
-def test_a_faulty_scheme_is_refused_with_one_message(
-    crank: Crank, tmp_path: Path, text: str, says: str
-) -> None:
+def test_a_faulty_scheme_is_refused_with_one_message(tmp_path: Path, text: str, says: str) -> None:
     path = tmp_path / "faulty.toml"
     path.write_text(text, encoding="utf-8")
     result = crank("mobility", str(path))
@@ -135,9 +118,7 @@ def test_a_faulty_scheme_is_refused_with_one_message(
         (LINE.partition("[[")[0], "contacts: missing"),
     ],
 )
-def test_a_faulty_joint_is_refused_with_one_message(
-    crank: Crank, tmp_path: Path, text: str, says: str
-) -> None:
+def test_a_faulty_joint_is_refused_with_one_message(tmp_path: Path, text: str, says: str) -> None:
     path = tmp_path / "faulty.toml"
     path.write_text(text, encoding="utf-8")
     result = crank("joint", str(path))
@@ -158,6 +139,6 @@ def test_a_faulty_joint_is_refused_with_one_message(
         (("joint", "."), "a folder"),
     ],
 )
-def test_what_can_not_be_asked_is_refused(crank: Crank, asked: tuple[str, ...], says: str) -> None:
+def test_what_can_not_be_asked_is_refused(asked: tuple[str, ...], says: str) -> None:
     result = crank(*asked)
     assert (result.exit_code, says in words(result)) == (2, True), result.output

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import math
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,29 +14,15 @@ import pytest
 from matplotlib.axes import Axes
 from PIL import Image
 from rich.console import Console
-from typer.testing import CliRunner, Result
 
 from analytic.kinematics import solve
 from models.files import kinds, load_scene, shipped
 from models.laws import Oscillating
 from models.scene import Scene
-from reports.cli import app
-
-Crank = Callable[..., Result]
+from tests.worlds.command_line import crank
 
 
-@pytest.fixture
-def crank() -> Crank:
-    """Run the command with arguments."""
-    runner = CliRunner()
-
-    def run(*args: str) -> Result:
-        return runner.invoke(app, list(args), catch_exceptions=False)
-
-    return run
-
-
-def test_the_lecture_example_at_90_degrees_shows_the_lectures_numbers(crank: Crank) -> None:
+def test_the_lecture_example_at_90_degrees_shows_the_lectures_numbers() -> None:
     result = crank("solve", "fourbar-lecture-1", "--at-deg", "90")
     assert result.exit_code == 0
     rows = {line.split()[0]: line.split() for line in result.output.splitlines() if line.strip()}
@@ -56,9 +41,7 @@ def test_the_lecture_example_at_90_degrees_shows_the_lectures_numbers(crank: Cra
         ("slider-crank-central", ["C: stroke 0.2 m, time ratio 1"]),
     ],
 )
-def test_the_heading_says_what_kind_of_mechanism_it_is(
-    crank: Crank, name: str, parts: list[str]
-) -> None:
+def test_the_heading_says_what_kind_of_mechanism_it_is(name: str, parts: list[str]) -> None:
     output = crank("solve", name).output
     assert all(part in output for part in parts), output
 
@@ -81,14 +64,14 @@ def test_a_four_bar_driven_at_its_rocker_is_called_that(fourbar: Scene) -> None:
     assert facts(scene(0.1, 0.2), analyse(fourbar))[0].startswith("crank-rocker (s + l")
 
 
-def test_numbers_that_are_0_within_their_bound_are_shown_as_0(crank: Crank) -> None:
+def test_numbers_that_are_0_within_their_bound_are_shown_as_0() -> None:
     result = crank("solve", "fourbar-lecture-1", "--at-deg", "90")
     (place, _) = [line.split() for line in result.output.splitlines() if line.startswith("B ")]
     assert place[1] == "0.0000000"
 
 
 @pytest.mark.parametrize("name", list(shipped()))
-def test_every_shipped_scene_is_solved_and_drawn_as_a_table(crank: Crank, name: str) -> None:
+def test_every_shipped_scene_is_solved_and_drawn_as_a_table(name: str) -> None:
     result = crank("solve", name)
     assert result.exit_code == 0
     assert "mobility 1" in result.output
@@ -105,7 +88,7 @@ READERS = {
 
 @pytest.mark.parametrize("ending", list(READERS))
 def test_a_motion_written_to_a_file_is_read_back_to_the_last_bit(
-    crank: Crank, tmp_path: Path, ending: str
+    tmp_path: Path, ending: str
 ) -> None:
     path = tmp_path / f"out{ending}"
     result = crank("solve", "slider-crank-offset", "--turns", "2", "-o", str(path))
@@ -120,7 +103,7 @@ def test_a_motion_written_to_a_file_is_read_back_to_the_last_bit(
     assert frame["time_s"].iloc[-1] == pytest.approx(2 * scene.driver.law.period_s)
 
 
-def test_the_workbook_says_where_its_numbers_come_from(crank: Crank, tmp_path: Path) -> None:
+def test_the_workbook_says_where_its_numbers_come_from(tmp_path: Path) -> None:
     path = tmp_path / "out.xlsx"
     crank("solve", "tangent", "-o", str(path))
     origin = pd.read_excel(path, sheet_name="source")
@@ -141,7 +124,7 @@ def test_a_workbook_holds_a_name_that_a_workbook_can_not_hold(
     assert "bell \ufffd" in pd.read_excel(path, sheet_name="source")["value"].tolist()
 
 
-def test_an_oscillating_driver_is_taken_on_its_way_up(crank: Crank) -> None:
+def test_an_oscillating_driver_is_taken_on_its_way_up() -> None:
     result = crank("solve", "tangent", "--at-deg", "0")
     (lever,) = [line.split() for line in result.output.splitlines() if line.startswith("lever")]
     amplitude = math.radians(40.0)
@@ -149,13 +132,13 @@ def test_an_oscillating_driver_is_taken_on_its_way_up(crank: Crank) -> None:
     assert float(lever[4]) == 0.0
 
 
-def test_an_oscillating_driver_is_drawn_back_to_its_centre(crank: Crank) -> None:
+def test_an_oscillating_driver_is_drawn_back_to_its_centre() -> None:
     result = crank("solve", "tangent", "--at-deg", "20")
     (lever,) = [line.split() for line in result.output.splitlines() if line.startswith("lever")]
     assert float(lever[4]) == pytest.approx(-100.0 * math.radians(20.0), rel=1e-7)
 
 
-def test_a_swinging_driver_is_taken_on_its_way_back_when_told(crank: Crank) -> None:
+def test_a_swinging_driver_is_taken_on_its_way_back_when_told() -> None:
     result = crank("solve", "tangent", "--at-deg", "20", "--clockwise")
     (lever,) = [line.split() for line in result.output.splitlines() if line.startswith("lever")]
     speed = 10.0 * math.sqrt(math.radians(40.0) ** 2 - math.radians(20.0) ** 2)
@@ -168,7 +151,7 @@ def links(output: str) -> dict[str, list[str]]:
     return {row[0]: row for row in rows if len(row) == 5 and row[0] != "x"}
 
 
-def test_a_crank_may_be_asked_for_turning_clockwise(crank: Crank) -> None:
+def test_a_crank_may_be_asked_for_turning_clockwise() -> None:
     """Velocities are turned round, accelerations are not."""
     forth = links(crank("solve", "fourbar-lecture-1", "--at-deg", "30").output)
     back = links(crank("solve", "fourbar-lecture-1", "--at-deg", "30", "--clockwise").output)
@@ -178,9 +161,7 @@ def test_a_crank_may_be_asked_for_turning_clockwise(crank: Crank) -> None:
         assert (other[2], other[4]) == (one[2], one[4])
 
 
-def test_a_crank_of_steady_acceleration_has_the_speed_of_the_angle(
-    crank: Crank, tmp_path: Path
-) -> None:
+def test_a_crank_of_steady_acceleration_has_the_speed_of_the_angle(tmp_path: Path) -> None:
     path = tmp_path / "faster.toml"
     text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
     law = 'law = "accelerating"\nspeed_rad_s = 10.0\nacceleration_rad_s2 = 5.0'
@@ -195,7 +176,7 @@ def test_a_crank_of_steady_acceleration_has_the_speed_of_the_angle(
     assert "never comes there; it comes to the same driver angle at 440 deg" in result.stderr
 
 
-def test_stroke_time_ratio_and_extreme_speeds_are_shown(crank: Crank) -> None:
+def test_stroke_time_ratio_and_extreme_speeds_are_shown() -> None:
     output = crank("solve", "slotted-lever", "--along", "E:0").output
     assert "lever: swing 38.9424 deg, time ratio 1.55215" in output
     assert re.search(r"E along 0 deg: stroke 0\.\d+ m, time ratio 1\.55215", output)
@@ -203,7 +184,7 @@ def test_stroke_time_ratio_and_extreme_speeds_are_shown(crank: Crank) -> None:
     assert re.search(r"E along 0 deg +-?\d.* m/s at \d", output)
 
 
-def test_extreme_speeds_are_of_the_way_the_driver_turns(crank: Crank) -> None:
+def test_extreme_speeds_are_of_the_way_the_driver_turns() -> None:
     output = crank("solve", "whitworth", "--at-deg", "90", "--clockwise").output
     assert "extreme speeds, driver at -10 rad/s" in output
     assert re.search(r"lever +-6\.66667 rad/s at 90 deg, -20 rad/s at 270 deg", output)
@@ -213,7 +194,7 @@ def test_extreme_speeds_are_of_the_way_the_driver_turns(crank: Crank) -> None:
     assert re.findall(".* at .* deg", output) == re.findall(".* at .* deg", forth)  # it does both
 
 
-def test_a_point_without_a_stroke_says_why(crank: Crank, tmp_path: Path) -> None:
+def test_a_point_without_a_stroke_says_why(tmp_path: Path) -> None:
     output = crank("solve", "whitworth", "--along", "A:30").output
     assert output.count("A along 30 deg") == 1
     assert "\nA along 30 deg: does not move\n" in output
@@ -227,7 +208,7 @@ def test_a_point_without_a_stroke_says_why(crank: Crank, tmp_path: Path) -> None
     assert "\nC along 30 deg: no stroke: the driver goes through no whole cycle, or" in output
 
 
-def test_the_coriolis_component_is_shown_of_blocks_on_moving_guides(crank: Crank) -> None:
+def test_the_coriolis_component_is_shown_of_blocks_on_moving_guides() -> None:
     output = crank("solve", "shaper", "--at-deg", "30").output
     lever = float(links(output)["lever"][3])
     sliders = output.split("Coriolis")[-1].splitlines()
@@ -237,9 +218,7 @@ def test_the_coriolis_component_is_shown_of_blocks_on_moving_guides(crank: Crank
     assert "Coriolis" not in crank("solve", "slider-crank-central", "--at-deg", "30").output
 
 
-def test_two_links_that_stand_still_are_solved_and_called_nothing(
-    crank: Crank, tmp_path: Path
-) -> None:
+def test_two_links_that_stand_still_are_solved_and_called_nothing(tmp_path: Path) -> None:
     path = tmp_path / "still.toml"
     text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
     path.write_text(text.replace('bar = ["B", "C"]', 'bar = ["A", "C"]'), encoding="utf-8")
@@ -297,7 +276,7 @@ MISTAKES = {
 
 @pytest.mark.parametrize("name", list(MISTAKES))
 def test_a_mistake_ends_with_2_and_a_message_that_names_place_fault_and_cure(
-    crank: Crank, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     locks = tmp_path / "locks.toml"
@@ -313,7 +292,7 @@ def test_a_mistake_ends_with_2_and_a_message_that_names_place_fault_and_cure(
 
 @pytest.mark.parametrize("name", list(shipped()))
 def test_the_exported_model_compiles_alone_and_its_keyframe_closes_the_loops(
-    crank: Crank, tmp_path: Path, name: str
+    tmp_path: Path, name: str
 ) -> None:
     mujoco = pytest.importorskip("mujoco")
     path = tmp_path / "scene.xml"
@@ -325,13 +304,13 @@ def test_the_exported_model_compiles_alone_and_its_keyframe_closes_the_loops(
     assert np.max(np.abs(state.efc_pos[: state.ne]), initial=0.0) < 1e-12
 
 
-def test_export_without_a_file_prints_the_model(crank: Crank) -> None:
+def test_export_without_a_file_prints_the_model() -> None:
     result = crank("export", "tangent")
     assert result.output.startswith("<mujoco")
     assert result.output.rstrip().endswith("</mujoco>")
 
 
-def test_scenes_lists_every_shipped_scene_under_its_kind_with_its_groups(crank: Crank) -> None:
+def test_scenes_lists_every_shipped_scene_under_its_kind_with_its_groups() -> None:
     output = crank("scenes").output
     places = [output.index(f"{kind}: ") for kind in kinds()]
     for kind, start, end in zip(kinds(), places, [*places[1:], None], strict=True):
@@ -339,7 +318,7 @@ def test_scenes_lists_every_shipped_scene_under_its_kind_with_its_groups(crank: 
     assert "RPR + RRP" in output
 
 
-def test_engines_lists_versions_profiles_and_settings_with_reasons(crank: Crank) -> None:
+def test_engines_lists_versions_profiles_and_settings_with_reasons() -> None:
     plain, full = crank("engines").output, crank("engines", "--settings").output
     assert "mujoco" in plain
     assert "tuned" in plain
@@ -348,7 +327,7 @@ def test_engines_lists_versions_profiles_and_settings_with_reasons(crank: Crank)
 
 
 def test_an_engine_that_is_missing_shows_the_command_that_installs_it(
-    crank: Crank, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     from reports.cli.commands import listing
     from sim.registry import Availability
@@ -358,9 +337,7 @@ def test_an_engine_that_is_missing_shows_the_command_that_installs_it(
     assert "not installed: pip install mujoco" in crank("engines").output
 
 
-def test_view_with_a_screen_opens_the_assembled_model(
-    crank: Crank, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_view_with_a_screen_opens_the_assembled_model(monkeypatch: pytest.MonkeyPatch) -> None:
     viewer = pytest.importorskip("sim.mujoco.viewer")
     shown: list[int] = []
     monkeypatch.setattr(viewer.mujoco.viewer, "launch", lambda model, _: shown.append(model.nkey))
@@ -369,7 +346,7 @@ def test_view_with_a_screen_opens_the_assembled_model(
     assert shown == [1]
 
 
-def test_export_closes_the_loop_where_it_is_told(crank: Crank) -> None:
+def test_export_closes_the_loop_where_it_is_told() -> None:
     assert 'site1="coupler.C"' in crank("export", "fourbar-lecture-1").output
     told = crank("export", "fourbar-lecture-1", "--close", "B").output
     assert 'site1="crank.B"' in told
@@ -381,7 +358,7 @@ def moves(frames: list[np.ndarray[tuple[int, ...], np.dtype[np.uint8]]]) -> bool
 
 
 def test_view_without_a_screen_draws_an_animation_that_moves(
-    crank: Crank, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from reports.drawing import gif as picture
 

@@ -3,35 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-from typer.testing import CliRunner, Result
 
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve_driven
 from models.files import load_scene, shipped
 from models.scene import Scene
 from models.scene_text import scene_text
-from reports.cli import app
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
-
-Crank = Callable[..., Result]
-
-
-@pytest.fixture
-def crank() -> Crank:
-    """Run the command with arguments."""
-    runner = CliRunner()
-
-    def run(*args: str) -> Result:
-        return runner.invoke(app, list(args), catch_exceptions=False)
-
-    return run
+from tests.worlds.command_line import crank
 
 
 def written(scene: Scene, folder: Path) -> str:
@@ -41,7 +26,7 @@ def written(scene: Scene, folder: Path) -> str:
     return str(path)
 
 
-def test_an_angle_shows_what_newton_has_for_the_block(crank: Crank) -> None:
+def test_an_angle_shows_what_newton_has_for_the_block() -> None:
     """m a of the block along its line is the rod's force, and the guide takes the rest."""
     scene = load_scene("slider-crank-offset")
     motion = solve_driven(scene, np.radians([90.0]), np.array([10.0]), np.array([0.0]))
@@ -62,7 +47,7 @@ def test_an_angle_shows_what_newton_has_for_the_block(crank: Crank) -> None:
 
 
 @pytest.mark.parametrize("name", ["shaper", "tangent", "sixbar-watt"])
-def test_forces_over_a_turn_fit_the_page_and_tell_the_largest(crank: Crank, name: str) -> None:
+def test_forces_over_a_turn_fit_the_page_and_tell_the_largest(name: str) -> None:
     result = crank("solve", name, "--forces")
     assert result.exit_code == 0
     assert max(len(line.rstrip()) for line in result.output.splitlines()) <= 100
@@ -77,7 +62,7 @@ def test_forces_over_a_turn_fit_the_page_and_tell_the_largest(crank: Crank, name
         assert f"slider {slider}, normal" in result.output
 
 
-def test_a_file_has_every_force_to_the_last_bit(crank: Crank, tmp_path: Path) -> None:
+def test_a_file_has_every_force_to_the_last_bit(tmp_path: Path) -> None:
     path = tmp_path / "out.csv"
     assert crank("solve", "shaper", "--forces", "-o", str(path)).exit_code == 0
     frame = pd.read_csv(path)
@@ -94,7 +79,7 @@ def test_a_file_has_every_force_to_the_last_bit(crank: Crank, tmp_path: Path) ->
     assert list(plain) == list(frame)[: len(plain.columns)]  # what has no forces is as it was
 
 
-def test_couples_that_are_0_in_a_dead_centre_are_as_certain_as_the_forces(crank: Crank) -> None:
+def test_couples_that_are_0_in_a_dead_centre_are_as_certain_as_the_forces() -> None:
     """Torque and moments are 0 there, and what rounding leaves is little at the links' arms."""
     output = " ".join(
         crank("solve", "slider-crank-central", "--at-deg", "0", "--forces").output.split()
@@ -103,13 +88,13 @@ def test_couples_that_are_0_in_a_dead_centre_are_as_certain_as_the_forces(crank:
     assert "dead point" not in output
 
 
-def test_dead_points_of_a_turn_are_left_out_and_told(crank: Crank, tmp_path: Path) -> None:
+def test_dead_points_of_a_turn_are_left_out_and_told(tmp_path: Path) -> None:
     scene = written(replace(parallelogram(1), name="flat"), tmp_path)
     output = " ".join(crank("solve", scene, "--forces").output.split())
     assert "Dead point, crank at 0 deg and 180 deg: the driving torque and the" in output
 
 
-def test_redundant_links_leave_the_torque_and_say_why(crank: Crank, tmp_path: Path) -> None:
+def test_redundant_links_leave_the_torque_and_say_why(tmp_path: Path) -> None:
     propped = replace(with_strut(parallelogram(1), "B0", "B1"), name="propped")
     result = crank("solve", written(propped, tmp_path), "--forces", "--figures", str(tmp_path))
     assert result.exit_code == 0
@@ -149,7 +134,7 @@ MISTAKES = {
 
 @pytest.mark.parametrize("name", list(MISTAKES))
 def test_a_mistake_ends_with_2_one_message_and_nothing_written(
-    crank: Crank, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     pulse = """

@@ -3,36 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 from PIL import Image
-from typer.testing import CliRunner, Result
 
 from analytic.free.release import release
 from models.files import load_scene
-from reports.cli import app
+from tests.worlds.command_line import crank
 from tests.worlds.let_go import EVERYTHING
 
-Crank = Callable[..., Result]
 SHORT = ("solve", "fourbar-swing", "--duration", "0.5")
 
 
-@pytest.fixture
-def crank() -> Crank:
-    """Run the command with arguments."""
-    runner = CliRunner()
-
-    def run(*args: str) -> Result:
-        return runner.invoke(app, list(args), catch_exceptions=False)
-
-    return run
-
-
-def test_the_free_motion_is_told_with_its_energy_and_how_sure_it_is(crank: Crank) -> None:
+def test_the_free_motion_is_told_with_its_energy_and_how_sure_it_is() -> None:
     result = crank(*SHORT, "--steps", "4")
     assert result.exit_code == 0
     said = " ".join(result.output.split())
@@ -48,7 +34,7 @@ def test_the_free_motion_is_told_with_its_energy_and_how_sure_it_is(crank: Crank
     assert work == 0.0
 
 
-def test_limits_and_instants_on_the_way_are_told(crank: Crank, tmp_path: Path) -> None:
+def test_limits_and_instants_on_the_way_are_told(tmp_path: Path) -> None:
     result = crank("solve", "fourbar-double-rocker-swing", "--duration", "0.5", "--steps", "2")
     said = " ".join(result.output.split())
     assert "Limits in which driver turns back: -92.866 deg at 0.415855 s (C)." in said
@@ -58,9 +44,7 @@ def test_limits_and_instants_on_the_way_are_told(crank: Crank, tmp_path: Path) -
     assert re.search(r"What acts is not smooth at \d+ instants: 0.1, .*0.25.* s\.", said)
 
 
-def test_a_file_has_the_motion_the_energies_and_the_sensitivity(
-    crank: Crank, tmp_path: Path
-) -> None:
+def test_a_file_has_the_motion_the_energies_and_the_sensitivity(tmp_path: Path) -> None:
     path = tmp_path / "swing.csv"
     assert crank(*SHORT, "-o", str(path)).exit_code == 0
     frame = pd.read_csv(path)
@@ -76,7 +60,7 @@ def test_a_file_has_the_motion_the_energies_and_the_sensitivity(
     assert {"potential_j", "work_j", "error_rad"} <= set(frame)
 
 
-def test_figures_and_a_page_are_written(crank: Crank, tmp_path: Path) -> None:
+def test_figures_and_a_page_are_written(tmp_path: Path) -> None:
     page, folder = tmp_path / "page.html", tmp_path / "figures"
     result = crank(*SHORT, "--figures", str(folder), "-o", str(page))
     assert result.exit_code == 0
@@ -88,7 +72,7 @@ def test_figures_and_a_page_are_written(crank: Crank, tmp_path: Path) -> None:
     assert "Sensitivity" in text
 
 
-def test_a_picture_shows_it_moving(crank: Crank, tmp_path: Path) -> None:
+def test_a_picture_shows_it_moving(tmp_path: Path) -> None:
     path = tmp_path / "pulse.png"
     result = crank("view", "fourbar-pulse", "-o", str(path))
     assert result.exit_code == 0
@@ -120,7 +104,7 @@ REFUSED = {
 
 @pytest.mark.parametrize("line", REFUSED)
 def test_what_makes_no_sense_of_a_free_motion_is_refused(
-    line: str, crank: Crank, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     result = crank(*line.split())
@@ -136,7 +120,7 @@ SHORT_OF = {
 
 
 @pytest.mark.parametrize("fault", SHORT_OF)
-def test_what_shows_on_the_way_is_one_message(fault: str, crank: Crank, tmp_path: Path) -> None:
+def test_what_shows_on_the_way_is_one_message(fault: str, tmp_path: Path) -> None:
     old, new, said = SHORT_OF[fault]
     assert old in EVERYTHING
     path = tmp_path / "scene.toml"
@@ -147,7 +131,7 @@ def test_what_shows_on_the_way_is_one_message(fault: str, crank: Crank, tmp_path
     assert result.stderr.startswith("crankcheck: ")
 
 
-def test_of_several_freedoms_the_mobility_is_told(crank: Crank) -> None:
+def test_of_several_freedoms_the_mobility_is_told() -> None:
     result = crank("solve", "double-pendulum", "--duration", "0.1", "--steps", "2")
     assert result.exit_code == 0
     said = " ".join(result.output.split())

@@ -4,35 +4,21 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-from typer.testing import CliRunner, Result
 
 import crankcheck
 from models.files import load_scene, shipped
 from models.friction import CoulombFriction
 from models.scene import Scene
 from models.scene_text import scene_text
-from reports.cli import app
+from tests.worlds.command_line import crank
 
-Crank = Callable[..., Result]
 LOCKING = "slider-crank-self-locking"
-
-
-@pytest.fixture
-def crank() -> Crank:
-    """Run the command with arguments."""
-    runner = CliRunner()
-
-    def run(*args: str) -> Result:
-        return runner.invoke(app, list(args), catch_exceptions=False)
-
-    return run
 
 
 def helped() -> Scene:
@@ -57,7 +43,7 @@ def row(output: str, start: str) -> list[float]:
     return [float(each) for each in words.split() if each != "-"]
 
 
-def test_an_angle_tells_what_friction_takes_of_the_power(crank: Crank) -> None:
+def test_an_angle_tells_what_friction_takes_of_the_power() -> None:
     output = crank("solve", LOCKING, "--at-deg", "60", "--forces").output
     drive, taken, efficiency = row(output[output.index("power of") :], "crank")
     force, watts = row(output, "piston block ground")[-2:]
@@ -71,7 +57,7 @@ def test_an_angle_tells_what_friction_takes_of_the_power(crank: Crank) -> None:
     assert "from 80.5961 to 99.4039 deg and from 260.596 to 279.404 deg: there no finite" in told
 
 
-def test_an_angle_that_is_locked_is_refused_in_one_message(crank: Crank) -> None:
+def test_an_angle_that_is_locked_is_refused_in_one_message() -> None:
     result = crank("solve", LOCKING, "--at-deg", "90", "--forces")
     assert result.exit_code == 2
     assert result.stdout == ""
@@ -80,7 +66,7 @@ def test_an_angle_that_is_locked_is_refused_in_one_message(crank: Crank) -> None
     assert result.stderr.count("crankcheck:") == 1
 
 
-def test_locked_instants_of_a_turn_are_told_and_have_no_mean(crank: Crank) -> None:
+def test_locked_instants_of_a_turn_are_told_and_have_no_mean() -> None:
     output = crank("solve", LOCKING, "--forces").output
     assert "Dead point" not in output
     assert "Locked, crank at 81 deg, 81.5 deg, 82 deg" in output
@@ -89,7 +75,7 @@ def test_locked_instants_of_a_turn_are_told_and_have_no_mean(crank: Crank) -> No
     assert "in or near a dead point" not in output
 
 
-def test_where_it_may_jam_the_numbers_stay_without_a_bound(crank: Crank, tmp_path: Path) -> None:
+def test_where_it_may_jam_the_numbers_stay_without_a_bound(tmp_path: Path) -> None:
     output = crank("solve", written(helped(), tmp_path), "--at-deg", "90", "--forces").output
     assert abs(row(output, "piston block ground")[-2]) > 100.0
     told = " ".join(output.split())
@@ -98,7 +84,7 @@ def test_where_it_may_jam_the_numbers_stay_without_a_bound(crank: Crank, tmp_pat
     assert "no useful work is done in it, so it has no efficiency." in told
 
 
-def test_a_cycle_has_an_efficiency(crank: Crank, tmp_path: Path) -> None:
+def test_a_cycle_has_an_efficiency(tmp_path: Path) -> None:
     scene = load_scene(LOCKING)
     rubbing = {"piston": CoulombFriction("piston", 0.1), "B": CoulombFriction("B", 0.1, 0.02)}
     path = written(replace(scene, name="rubbing", friction=rubbing), tmp_path)
@@ -119,7 +105,7 @@ def test_a_cycle_has_an_efficiency(crank: Crank, tmp_path: Path) -> None:
     np.testing.assert_array_equal(frame["B_friction_n_m"], solution.forces.friction["B"])
 
 
-def test_without_friction_nothing_is_said_of_it(crank: Crank) -> None:
+def test_without_friction_nothing_is_said_of_it() -> None:
     output = crank("solve", "shaper", "--forces").output.lower()
     assert "friction" not in output
     assert "efficiency" not in output
@@ -147,7 +133,7 @@ FAULTS = {
 @pytest.mark.parametrize("name", FAULTS)
 @pytest.mark.parametrize("command", [["solve", "--forces"], ["verify", "--forces"]])
 def test_a_fault_of_friction_ends_with_2_and_one_message(
-    crank: Crank, name: str, command: list[str], tmp_path: Path
+    name: str, command: list[str], tmp_path: Path
 ) -> None:
     friction, words = FAULTS[name]
     text = shipped("forces")[LOCKING].read_text(encoding="utf-8").replace("mu = 0.3", friction)
@@ -160,7 +146,7 @@ def test_a_fault_of_friction_ends_with_2_and_one_message(
     assert result.stderr.count("crankcheck:") == 1
 
 
-def test_engines_are_not_given_what_rubs_with_mu(crank: Crank) -> None:
+def test_engines_are_not_given_what_rubs_with_mu() -> None:
     result = crank("verify", LOCKING, "--forces", "--no-convergence", "--profile", "tuned")
     assert result.exit_code == 2
     told = " ".join(result.stderr.split())

@@ -12,29 +12,17 @@ from xml.etree import ElementTree as Xml
 import pandas as pd
 import pytest
 from rich.console import Console
-from typer.testing import CliRunner, Result
+from typer.testing import Result
 
 from models.errors import CrankcheckError, EngineError
 from models.files import scene_texts, shipped
-from reports.cli import app
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands import verify as command
 from reports.judge.rules import RULES
+from tests.worlds.command_line import crank
 
 FAST = ["--steps-per-turn", "360", "--turns", "1", "--no-convergence"]
 ONE = ["verify", "fourbar-lecture-1", *FAST]
-Crank = Callable[..., Result]
-
-
-@pytest.fixture
-def crank() -> Crank:
-    """Run the command with arguments."""
-    runner = CliRunner()
-
-    def run(*args: str) -> Result:
-        return runner.invoke(app, list(args), catch_exceptions=False)
-
-    return run
 
 
 def refused(result: Result, *parts: str) -> None:
@@ -46,16 +34,14 @@ def refused(result: Result, *parts: str) -> None:
         assert part in flat, flat
 
 
-def test_a_scene_within_tolerance_ends_with_0(crank: Crank) -> None:
+def test_a_scene_within_tolerance_ends_with_0() -> None:
     result = crank(*ONE, "--engine", "mujoco", "--profile", "tuned")
     assert result.exit_code == 0
     assert "WITHIN TOLERANCE: 1 cell (1 scene x 1 engine)" in result.output
     assert "mujoco 4" in " ".join(result.output.split())
 
 
-def test_a_scene_out_of_tolerance_ends_with_1_failures_first_with_their_cure(
-    crank: Crank,
-) -> None:
+def test_a_scene_out_of_tolerance_ends_with_1_failures_first_with_their_cure() -> None:
     result = crank(*ONE, "--engine", "mujoco", "--profile", "tuned", "--tol", "angle=1e-12")
     assert result.exit_code == 1
     assert "OUT OF TOLERANCE: 1 of 1 cell (1 scene x 1 engine)" in result.output
@@ -65,7 +51,7 @@ def test_a_scene_out_of_tolerance_ends_with_1_failures_first_with_their_cure(
     assert "cure:" in head
 
 
-def test_by_default_as_shipped_is_shown_and_does_not_count(crank: Crank) -> None:
+def test_by_default_as_shipped_is_shown_and_does_not_count() -> None:
     result = crank(*ONE, "--engine", "mujoco")
     assert result.exit_code == 0
     assert "profile tuned (gated)" in result.output
@@ -73,27 +59,27 @@ def test_by_default_as_shipped_is_shown_and_does_not_count(crank: Crank) -> None
     assert "OUT fourbar-lecture-1" in result.output
 
 
-def test_a_profile_that_is_named_is_gated(crank: Crank) -> None:
+def test_a_profile_that_is_named_is_gated() -> None:
     result = crank(*ONE, "--engine", "mujoco", "--profile", "as-shipped")
     assert result.exit_code == 1
     assert "profile as-shipped (gated)" in result.output
 
 
 @pytest.mark.parametrize("dt", ["1e-3", "1e-4"])
-def test_the_table_says_that_mujoco_as_shipped_does_not_shrink(crank: Crank, dt: str) -> None:
+def test_the_table_says_that_mujoco_as_shipped_does_not_shrink(dt: str) -> None:
     result = crank("verify", "fourbar-lecture-1", "--engine", "mujoco", "--profile",
                    "as-shipped", "--dt", dt, "--turns", "1")  # fmt: skip
     assert result.exit_code == 1
     assert "does not shrink" in result.output.partition("profile as-shipped")[2]
 
 
-def test_no_line_is_wider_than_a_hundred_columns(crank: Crank) -> None:
+def test_no_line_is_wider_than_a_hundred_columns() -> None:
     result = crank("verify", "slider-crank-excel-350", "--turns", "1")
     assert max(len(line.rstrip()) for line in result.output.splitlines()) <= 100
     assert "slider-crank-excel-350" in result.output.partition("profile tuned")[2]
 
 
-def test_a_scene_may_be_a_path(crank: Crank, tmp_path: Path) -> None:
+def test_a_scene_may_be_a_path(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
     path.write_text(text.replace('"fourbar-lecture-1"', '"mine"'), encoding="utf-8")
@@ -102,9 +88,7 @@ def test_a_scene_may_be_a_path(crank: Crank, tmp_path: Path) -> None:
     assert "mine" in result.output
 
 
-def test_all_files_of_a_folder_are_written_and_hold_the_same_cells(
-    crank: Crank, tmp_path: Path
-) -> None:
+def test_all_files_of_a_folder_are_written_and_hold_the_same_cells(tmp_path: Path) -> None:
     folder = tmp_path / "out"
     assert crank(*ONE, "-o", str(folder), "--engine", "mujoco").exit_code == 0
     assert sorted(path.name for path in folder.iterdir()) == [
@@ -127,7 +111,7 @@ def test_all_files_of_a_folder_are_written_and_hold_the_same_cells(
     assert [case.get("name") for case in suite.iter("testcase")] == ["fourbar-lecture-1"] * 2
 
 
-def test_a_second_run_replaces_the_files_of_the_first(crank: Crank, tmp_path: Path) -> None:
+def test_a_second_run_replaces_the_files_of_the_first(tmp_path: Path) -> None:
     for tolerance in ("1e-12", "1e-1"):
         crank(*ONE, "-o", str(tmp_path), "--engine", "mujoco", "--tol", f"angle={tolerance}")
     cells = pd.read_csv(tmp_path / "verify.csv")
@@ -135,7 +119,7 @@ def test_a_second_run_replaces_the_files_of_the_first(crank: Crank, tmp_path: Pa
     assert len(list(tmp_path.iterdir())) == 4
 
 
-def test_junit_names_the_failure_and_skips_what_is_not_gated(crank: Crank, tmp_path: Path) -> None:
+def test_junit_names_the_failure_and_skips_what_is_not_gated(tmp_path: Path) -> None:
     path = tmp_path / "j.xml"
     result = crank(*ONE, "--engine", "mujoco", "--tol", "angle=1e-12", "--junit", str(path))
     assert result.exit_code == 1
@@ -150,7 +134,7 @@ def test_junit_names_the_failure_and_skips_what_is_not_gated(crank: Crank, tmp_p
     assert "cure" in (failure.text or "")
 
 
-def test_outputs_are_written_even_when_out_of_tolerance(crank: Crank, tmp_path: Path) -> None:
+def test_outputs_are_written_even_when_out_of_tolerance(tmp_path: Path) -> None:
     path = tmp_path / "cells.csv"
     result = crank(*ONE, "--engine", "pymunk", "--tol", "drive=1e-30", "--csv", str(path))
     assert result.exit_code == 1
@@ -158,7 +142,7 @@ def test_outputs_are_written_even_when_out_of_tolerance(crank: Crank, tmp_path: 
 
 
 def test_a_disk_that_fills_up_costs_the_file_and_not_the_table(
-    crank: Crank, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(self: Path, target: Path) -> None:
         raise OSError(28, "No space left on device")
@@ -222,7 +206,7 @@ MISTAKES = {
 
 @pytest.mark.parametrize("name", list(MISTAKES))
 def test_a_mistake_ends_with_2_and_a_message_that_names_place_fault_and_cure(
-    crank: Crank, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     args, parts = MISTAKES[name]
@@ -231,7 +215,7 @@ def test_a_mistake_ends_with_2_and_a_message_that_names_place_fault_and_cure(
 
 
 def test_an_engine_that_is_not_installed_names_the_command_that_installs_it(
-    crank: Crank, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     import reports.plan.chosen as names
 
@@ -242,7 +226,7 @@ def test_an_engine_that_is_not_installed_names_the_command_that_installs_it(
     refused(crank(*ONE), "engine mujoco: not installed", "pip install mujoco")
 
 
-def test_two_files_with_one_name_are_refused(crank: Crank, tmp_path: Path) -> None:
+def test_two_files_with_one_name_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "other.toml"
     text = shipped()["fourbar-crossed"].read_text(encoding="utf-8")
     text = text.replace('"fourbar-crossed"', '"fourbar-lecture-1"')
@@ -250,7 +234,7 @@ def test_two_files_with_one_name_are_refused(crank: Crank, tmp_path: Path) -> No
     refused(crank(*ONE, str(path)), "a second scene called fourbar-lecture-1", "rename one")
 
 
-def test_a_fault_of_the_scene_is_told_before_anything_runs(crank: Crank, tmp_path: Path) -> None:
+def test_a_fault_of_the_scene_is_told_before_anything_runs(tmp_path: Path) -> None:
     path = tmp_path / "bad.toml"
     text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
     path.write_text(text + "\n[tolerance]\nangel = 1e-3\n", encoding="utf-8")
@@ -268,23 +252,19 @@ def edited(tmp_path: Path, name: str, *changes: tuple[str, str]) -> str:
     return str(path)
 
 
-def test_a_loop_that_can_not_follow_its_driver_is_told_with_its_range(
-    crank: Crank, tmp_path: Path
-) -> None:
+def test_a_loop_that_can_not_follow_its_driver_is_told_with_its_range(tmp_path: Path) -> None:
     path = edited(tmp_path, "fourbar-lecture-1", ("0.25", "0.17"))
     refused(crank("verify", path), "crank can stand at", "deg")
 
 
-def test_a_loop_that_never_closes_says_by_how_much(crank: Crank, tmp_path: Path) -> None:
+def test_a_loop_that_never_closes_says_by_how_much(tmp_path: Path) -> None:
     path = edited(
         tmp_path, "fourbar-lecture-1", ("0.25", "0.01"), ("length_m = 0.2 ", "length_m = 0.05 ")
     )
     refused(crank("verify", path), "cannot be assembled", "open by", "change a length")
 
 
-def test_a_massless_link_is_refused_by_the_engine_that_needs_its_mass(
-    crank: Crank, tmp_path: Path
-) -> None:
+def test_a_massless_link_is_refused_by_the_engine_that_needs_its_mass(tmp_path: Path) -> None:
     path = edited(
         tmp_path, "fourbar-lecture-1", ("length_m = 0.25", "length_m = 0.25, mass_kg = 0.0")
     )
@@ -293,7 +273,7 @@ def test_a_massless_link_is_refused_by_the_engine_that_needs_its_mass(
     assert "unsupported" in result.output
 
 
-def test_ctrl_c_ends_with_130_and_one_line(crank: Crank, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_ends_with_130_and_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: object) -> object:
         raise KeyboardInterrupt
 
@@ -304,7 +284,7 @@ def test_ctrl_c_ends_with_130_and_one_line(crank: Crank, monkeypatch: pytest.Mon
 
 
 def test_a_scene_that_no_engine_can_hold_is_a_row_and_exit_2(
-    crank: Crank, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     import reports.judge.cell as cell
 
@@ -432,9 +412,7 @@ def test_a_bad_baseline_is_refused_before_the_run(
             against(**asked)
 
 
-def test_a_failing_cell_is_told_what_was_tried_and_a_sweep_takes_it(
-    crank: Crank, tmp_path: Path
-) -> None:
+def test_a_failing_cell_is_told_what_was_tried_and_a_sweep_takes_it(tmp_path: Path) -> None:
     text = scene_texts(["slider-crank-offset"])["slider-crank-offset"]
     path = tmp_path / "heavy.toml"
     path.write_text(text.replace("mass_kg = 0.5", "mass_kg = 3e3"))

@@ -3,38 +3,28 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
 import pytest
-from typer.testing import CliRunner, Result
 
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.scene_text import scene_text
-from reports.cli import app
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands.verify import plan
 from reports.store.reader import read_store
+from tests.worlds.command_line import crank
 
-Crank = Callable[..., Result]
 SCENE = "fourbar-swing"
 SHORT = ["--duration", "0.1", "--jobs", "1", "--profile", "tuned"]
-
-
-@pytest.fixture
-def crank() -> Crank:
-    """Run the command with arguments."""
-    runner = CliRunner()
-    return lambda *args: runner.invoke(app, list(args), catch_exceptions=False)
 
 
 def flat(text: str) -> str:
     return " ".join(text.replace("│", " ").split())
 
 
-def test_what_is_let_go_is_within_and_has_a_table_of_its_own(crank: Crank, tmp_path: Path) -> None:
+def test_what_is_let_go_is_within_and_has_a_table_of_its_own(tmp_path: Path) -> None:
     result = crank("verify", SCENE, *SHORT, "-o", str(tmp_path))
     assert result.exit_code == 0, result.output
     text = flat(result.output)
@@ -55,7 +45,7 @@ def test_what_is_let_go_is_within_and_has_a_table_of_its_own(crank: Crank, tmp_p
     assert "NOT WORSE" in again.output
 
 
-def test_a_limit_that_is_not_kept_ends_with_1(crank: Crank) -> None:
+def test_a_limit_that_is_not_kept_ends_with_1() -> None:
     result = crank("verify", SCENE, *SHORT, "--engine", "pymunk", "--tol", "phase=1e-9")
     assert result.exit_code == 1
     assert "CC127 phase: driver crank:" in flat(result.output)
@@ -80,9 +70,7 @@ def test_a_limit_that_is_not_kept_ends_with_1(crank: Crank) -> None:
         (["--mjcf", "x.xml", "--free"], ["--mjcf and --free"]),
     ],
 )
-def test_what_can_not_be_is_one_message_and_2(
-    crank: Crank, arguments: list[str], parts: list[str]
-) -> None:
+def test_what_can_not_be_is_one_message_and_2(arguments: list[str], parts: list[str]) -> None:
     result = crank("verify", *arguments)
     assert result.exit_code == 2, result.output
     for part in parts:
@@ -111,7 +99,7 @@ def test_a_scene_without_a_mass_that_moves_is_refused_before_anything_runs(tmp_p
         plan(VerifyRequest((str(path),)))
 
 
-def test_a_sweep_of_what_is_let_go_is_kept_shown_and_compared(crank: Crank, tmp_path: Path) -> None:
+def test_a_sweep_of_what_is_let_go_is_kept_shown_and_compared(tmp_path: Path) -> None:
     store, page = tmp_path / "store", tmp_path / "page.html"
     options = ["--free", "--dt", "1e-3,5e-4", "--duration", "0.1", "--profile", "tuned"]
     swept = crank("sweep", SCENE, "-o", str(store), *options, "--no-timing", "--jobs", "1")
@@ -138,7 +126,7 @@ def test_a_sweep_of_what_is_let_go_is_kept_shown_and_compared(crank: Crank, tmp_
     ],
 )
 def test_a_sweep_that_can_not_be_is_one_message_and_2(
-    crank: Crank, tmp_path: Path, arguments: list[str], part: str
+    tmp_path: Path, arguments: list[str], part: str
 ) -> None:
     result = crank("sweep", *arguments, "-o", str(tmp_path / "store"))
     assert result.exit_code == 2, result.output

@@ -1,0 +1,26 @@
+"""The command line, in the process of the tests."""
+
+from __future__ import annotations
+
+from typer.testing import CliRunner, Result
+
+from reports.cli import app
+
+
+def crank(*arguments: object) -> Result:
+    """What comes of the command `crankcheck`; an exception that it lets out is raised here."""
+    return CliRunner().invoke(app, [str(each) for each in arguments], catch_exceptions=False)
+
+
+def flat(text: str) -> str:
+    """The text in one line, without the frames of tables, whatever the width that it is set to."""
+    return " ".join(text.replace("│", " ").split())
+
+
+def refused(result: Result, *parts: str) -> None:
+    """The command ended with exit code 2 and one message, which has all the parts."""
+    assert result.exit_code == 2, result.output
+    assert "Traceback" not in result.output
+    message = flat(result.stderr)
+    assert message.count("crankcheck: ") <= 1  # what the options' reader refuses has none
+    assert [part for part in parts if part not in message] == [], message
