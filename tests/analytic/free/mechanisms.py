@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
+from functools import cache
 
+from analytic.free.free_motion import FreeMotion
+from analytic.free.release import release
 from models.files import parse_scene
-from models.scene import Scene
+from models.scene import Scene, as_bytes
 
 FOURBAR = """
 name = "{name}"
@@ -44,6 +48,16 @@ start_deg = {start_deg}
 speed_rad_s = {speed_rad_s}
 duration_s = 10.0
 """
+
+
+def released(scene: Scene, until_s: float) -> FreeMotion:
+    """Its free motion, integrated once for all tests."""
+    return _released(as_bytes(scene), until_s)
+
+
+@cache
+def _released(pickled: bytes, until_s: float) -> FreeMotion:
+    return release(pickle.loads(pickled), until_s)
 
 
 def fourbar(

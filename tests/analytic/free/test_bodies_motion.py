@@ -18,7 +18,7 @@ from models.files import load_scene
 from models.motion import Motion
 from tests.analytic.multibody.scenes import DOUBLE_PENDULUM, scene
 
-END_S = 0.3
+END_S = 0.15
 
 
 @pytest.fixture(scope="module")

@@ -7,13 +7,12 @@ import pytest
 
 from analytic.free.doubt import _moved
 from analytic.free.machine_motion import MachineMotion
-from analytic.free.release import release
-from tests.analytic.free.mechanisms import past_limits
+from tests.analytic.free.mechanisms import past_limits, released
 
 
 def test_a_state_is_the_same_in_the_chart_of_another_limit() -> None:
     """Its acceleration too, so that no difference of that goes unseen where charts change."""
-    free = release(past_limits(), 1.0)
+    free = released(past_limits(), 0.9)
     assert isinstance(free, MachineMotion)
     history = free.history
     changes = [first for _, first, _ in history.legs()][1:]

@@ -7,13 +7,14 @@ import pytest
 
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.period import period
-from analytic.free.release import release
 from analytic.free.window_chain import ChainMotion
 from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
 from models.files import load_scene, shipped
 from models.window_chain import Chain
+from tests.analytic.free.mechanisms import released
 from tests.analytic.free.second_method import driver_by_steps
+from tests.worlds.tiers import slowly
 
 SHORT_S = {"engine-flywheel": 0.004, "squeezer": 0.03, "fourbar-double-rocker-swing": 0.35}
 SHARES = np.array([0.137, 0.359, 0.611, 0.829, 1.0])
@@ -26,25 +27,37 @@ STEADY = 100.0
 TOO_LONG = {"engine-flywheel": 1.0, "squeezer": 1.0}
 """A second of the engine has 1320 kinks of its table, and costs a minute; its own time is 0.12 s.
 The squeezer's is 1 s: in ten its motor spins it up, which takes minutes to integrate."""
-LONG = [
-    pytest.param(name, until_s, marks=pytest.mark.slow)
-    for name in NAMES
-    for until_s in (1.0, 10.0)
-    if until_s <= TOO_LONG.get(name, until_s)
-]
-BRIEF = [(name, SHORT_S.get(name, 0.12)) for name in NAMES]
+
+
+def brief_and_long(*quick: str) -> list[object]:
+    """Each scene for a short time, of which some are ``quick``, and for as long as it may last."""
+    brief = [(name, SHORT_S.get(name, 0.12)) for name in NAMES]
+    return [
+        *(
+            case if case[0] in quick else slowly(*case, reason="the others show each kind of force")
+            for case in brief
+        ),
+        *(
+            slowly(name, until_s, reason="errors that grow over many swings")
+            for name in NAMES
+            for until_s in (1.0, 10.0)
+            if until_s <= TOO_LONG.get(name, until_s)
+        ),
+    ]
 
 
 def steady(name: str, until_s: float) -> tuple[MachineMotion, Array]:
     """A shipped scene that is let go, and instants up to where its sensitivity is too large."""
-    free = release(load_scene(name), until_s)
+    free = released(load_scene(name), until_s)
     assert isinstance(free, MachineMotion)
     looks = np.linspace(0.0, until_s, 2001)
     known = looks[free.sensitivity(looks) < STEADY]
     return free, SHARES * known[-1]
 
 
-@pytest.mark.parametrize(("name", "until_s"), [*BRIEF, *LONG])
+@pytest.mark.parametrize(
+    ("name", "until_s"), brief_and_long("fourbar-swing", "engine-flywheel", "press-motor")
+)
 def test_two_methods_agree_at_any_time(name: str, until_s: float) -> None:
     free, time_s = steady(name, until_s)
     theta, omega = driver_by_steps(free, time_s)
@@ -55,7 +68,10 @@ def test_two_methods_agree_at_any_time(name: str, until_s: float) -> None:
     assert np.all(free.error_rad(time_s) <= allowed)
 
 
-@pytest.mark.parametrize(("name", "until_s"), [*BRIEF, *LONG])
+@pytest.mark.parametrize(
+    ("name", "until_s"),
+    brief_and_long("fourbar-double-rocker-swing", "engine-flywheel", "slider-crank-spring"),
+)
 def test_the_multibody_form_agrees_with_every_link(name: str, until_s: float) -> None:
     if name == "engine-flywheel":
         until_s = min(until_s, load_scene(name).driver.law.period_s)
@@ -68,16 +84,16 @@ def test_the_multibody_form_agrees_with_every_link(name: str, until_s: float) ->
         assert np.all(off <= 1e-9 * grown), link
 
 
-@pytest.mark.parametrize(("name", "until_s"), [*BRIEF, *LONG])
+@pytest.mark.parametrize(("name", "until_s"), brief_and_long(*NAMES))
 def test_energy_balances_at_any_time(name: str, until_s: float) -> None:
-    energy = release(load_scene(name), until_s).energy(np.linspace(0.0, until_s, 1999))
+    energy = released(load_scene(name), until_s).energy(np.linspace(0.0, until_s, 1999))
     off = np.abs(energy.balance - energy.balance[0])
     assert off.max() <= 1e-11 * energy.kinetic.max()
 
 
-@pytest.mark.parametrize("until_s", [1.0, pytest.param(10.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("until_s", [0.5, slowly(10.0, reason="many turns")])
 def test_the_chain_goes_as_its_closed_form_says(until_s: float) -> None:
-    free, time_s = release(load_scene("fourbar-chain"), until_s), np.linspace(0.0, until_s, 333)
+    free, time_s = released(load_scene("fourbar-chain"), until_s), np.linspace(0.0, until_s, 333)
     off = np.abs(free.law.at(time_s)[0] - ChainMotion(Chain(2)).at(time_s)[0])
     assert off.max() <= (1e-11 if until_s <= 1.0 else 1e-9)
     assert np.all(off <= free.error_rad(time_s) + 1e-13)
@@ -89,10 +105,10 @@ def test_the_period_of_the_chain_is_that_of_its_closed_form() -> None:
     assert one.time_s == pytest.approx(ChainMotion(Chain(2)).period_s, abs=1e-12)
 
 
-@pytest.mark.parametrize("until_s", [2.5, pytest.param(10.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("until_s", [1.2, slowly(10.0, reason="many swings")])
 def test_the_swing_is_back_at_rest_after_its_periods(until_s: float) -> None:
     scene = load_scene("fourbar-swing")
-    one, free = period(scene), release(scene, until_s)
+    one, free = period(scene), released(scene, until_s)
     time_s = one.time_s * np.arange(1, int(until_s / one.time_s) + 1)
     theta, omega, alpha = free.law.at(time_s)
     assert np.abs(theta - scene.driver.law.start_rad).max() < 1e-11
