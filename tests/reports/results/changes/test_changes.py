@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from models.errors import CrankcheckError
@@ -37,6 +37,7 @@ def made(content: dict[tuple[str, float], tuple[str, dict[str, float]]]) -> Stor
     )
 
 
+@settings(max_examples=30, deadline=None)
 @given(runs)
 def test_a_run_against_itself_is_all_equal(content: dict[object, object]) -> None:
     found = made(content)  # type: ignore[arg-type]
@@ -46,6 +47,7 @@ def test_a_run_against_itself_is_all_equal(content: dict[object, object]) -> Non
     assert diff.code(strict=True) == 0
 
 
+@settings(max_examples=30, deadline=None)
 @given(runs, runs, st.floats(1.0, 10.0))
 def test_old_and_new_exchanged_exchange_better_and_worse(
     one: dict[object, object], two: dict[object, object], factor: float

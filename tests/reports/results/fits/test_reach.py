@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
@@ -9,16 +10,22 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reports.results.fits.line import fit_line
+from reports.results.fits.line import LineFit, fit_line
 from reports.results.fits.reach import interpolate, reach
 
 STEPS = 1e-2 / 2.0 ** np.arange(6)
 
 
+@functools.cache
+def parabola(floor: float) -> LineFit:
+    """The fit of errors of second order over a floor."""
+    return fit_line(STEPS, floor + 10.0 * STEPS**2)
+
+
 @settings(max_examples=30, deadline=None, derandomize=True, database=None)
 @given(at=st.floats(STEPS[-1] * 1.001, STEPS[0] * 0.999), floor=st.sampled_from([0.0, 1e-5, 1e-3]))
 def test_the_step_of_a_target_has_the_target_for_its_error(at: float, floor: float) -> None:
-    fit = fit_line(STEPS, floor + 10.0 * STEPS**2)
+    fit = parabola(floor)
     target = fit.error_at(at)
     assert target is not None
     assert target == pytest.approx(floor + 10.0 * at**2, rel=1e-3)
@@ -28,8 +35,7 @@ def test_the_step_of_a_target_has_the_target_for_its_error(at: float, floor: flo
 
 
 def test_nothing_is_extrapolated() -> None:
-    errors = 10.0 * STEPS**2
-    fit = fit_line(STEPS, errors)
+    errors, fit = 10.0 * STEPS**2, parabola(0.0)
     assert fit.dt_for(1.01 * errors[0]) is None
     assert fit.dt_for(0.99 * errors[-1]) is None
     assert fit.error_at(1.01 * STEPS[0]) is None
@@ -38,7 +44,7 @@ def test_nothing_is_extrapolated() -> None:
 
 
 def test_no_step_reaches_what_is_below_the_floor() -> None:
-    fit = fit_line(STEPS, 1e-3 + 10.0 * STEPS**2)
+    fit = parabola(1e-3)
     assert fit.dt_for(0.9e-3) is None
     assert fit.dt_for(1.2e-3) == pytest.approx(math.sqrt(2e-5), rel=0.01)
 
