@@ -90,8 +90,8 @@ def test_a_recipe_runs_without_us_and_has_the_forces_of_the_reference(
         assert f"import {ours}" not in text
         assert f"from {ours}" not in text
     columns = columns_of(elsewhere(text, tmp_path))
-    assert [*columns][0] == "time_s"
-    assert [*columns][-1] == "torque_n_m"
+    first, *_, last = columns
+    assert (first, last) == ("time_s", "torque_n_m")
     assert {"C.rocker.x_n", "C.rocker.y_n"} < set(columns)
     assert len(columns["time_s"]) in (720, 721)
     turn = columns["time_s"][-1] - columns["time_s"][0]

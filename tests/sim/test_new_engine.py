@@ -54,10 +54,12 @@ SCRIPT = """
 import json, sys
 from typer.testing import CliRunner
 from reports.cli import app
+from tests.worlds.in_process import in_this_process
 
-for name, arguments in json.loads(sys.argv[1]).items():
-    ended = CliRunner().invoke(app, arguments, catch_exceptions=False)
-    print(json.dumps([name, ended.exit_code, ended.output]), flush=True)
+with in_this_process():
+    for name, arguments in json.loads(sys.argv[1]).items():
+        ended = CliRunner().invoke(app, arguments, catch_exceptions=False)
+        print(json.dumps([name, ended.exit_code, ended.output]), flush=True)
 """
 Told = dict[str, tuple[int, str]]
 
@@ -82,7 +84,7 @@ def told(house: Path) -> Told:
     done = subprocess.run(
         [sys.executable, "-c", SCRIPT, json.dumps(COMMANDS)],
         cwd=house,
-        env=os.environ | {"PYTHONPATH": str(house), "COLUMNS": "200"},
+        env=os.environ | {"PYTHONPATH": f"{house}:{ROOT}", "COLUMNS": "200"},
         capture_output=True,
         text=True,
         timeout=600,
