@@ -13,6 +13,7 @@ import crankcheck
 from crankcheck import engine, testing
 from tests.worlds.documents import blocks, scripts
 from tests.worlds.pages import faults_of
+from tests.worlds.tiers import few
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGES = {
@@ -27,21 +28,13 @@ MADE = {"forces": "figs", "elastic": "figs", "how-to/own-model": "out"}
 """Folders that a page has made, and names all files of."""
 
 
-KINEMATICS = {
-    f"theory/{chapter}"
-    for chapter in ("positions", "velocities", "accelerations", "graphs", "centres")
-}
-"""Chapters whose sheets are tried always, and cost a second each."""
+SHORT = ("index", *(f"theory/{chapter}" for chapter in ("positions", "velocities", "centres")))
+"""Pages whose commands take some tenths of a second each."""
 
 
-def tried(name: str) -> object:
-    """Pages of engines, by task, and of what is not kinematics have studies of their own, seconds
-    of processor time each: `make docs` and `make slow` try them."""
-    often = "/" not in name or name in KINEMATICS
-    return pytest.param(name, marks=[] if often else [pytest.mark.slow])
-
-
-@pytest.mark.parametrize("name", [tried(name) for name in WITH_EXAMPLES])
+@pytest.mark.parametrize(
+    "name", few(WITH_EXAMPLES, SHORT, "studies of seconds each; `make docs` runs them too")
+)
 def test_what_a_page_shows_is_what_is_printed(name: str, tmp_path: Path) -> None:
     """All that stands on pages: of some 100 commands nothing else says that they print it."""
     page = PAGES[name]

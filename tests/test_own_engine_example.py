@@ -18,6 +18,7 @@ from reports.selftest.trial import sites
 from sim.registry import engine
 from tests.test_architecture import ROOT
 from tests.worlds.own_engines import CODE, EXAMPLE, fresh, installed, with_faults
+from tests.worlds.tiers import slow
 
 Crank = Callable[..., Result]
 THREE_FAULTS = {
@@ -129,7 +130,7 @@ def test_faults_are_planted_where_it_holds_the_scene(crank: Crank) -> None:
     assert sites([FAULTS["row-lost"]], ["penalty"]) == [("fourbar-lecture-1", "penalty")]
 
 
-@pytest.mark.slow
+@slow("pip and a whole contract in 8 s; without it, each clause is checked in the process")
 def test_pip_installs_it_from_its_folder_and_it_holds_the_contract(tmp_path: Path) -> None:
     source = tmp_path / "source"
     source.mkdir()

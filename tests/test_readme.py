@@ -16,20 +16,27 @@ from reports.selftest.all_faults import FAULTS
 from reports.stability.catalogue import CATALOGUE
 from tests.worlds.command import PYTHON
 from tests.worlds.documents import blocks, commands, follows, ran, same, threads, words
+from tests.worlds.tiers import slowly
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SCRIPTS = blocks(README, "python")
 THREADS = threads([command for command, _, _ in commands(README)], SCRIPTS)
-TABLE_OF_FAULTS = "crankcheck selftest"
-"""Takes 26 s of processor time, most of them for the smallest sizes that are caught. That every
-fault is caught, `tests/reports/selftest/test_faults.py` says in half the time."""
+LONG: dict[str, str] = {
+    "crankcheck selftest": "26 s: every fault is planted by tests/reports/selftest",
+    "crankcheck stability grashof-excess n-fourbar": "10 s: every case runs in tests/reports",
+    "crankcheck advise --dt 1/60 --speed 10 --target 1e-3": "6 s: tests/reports/advise",
+    "crankcheck verify --free fourbar-pulse --profile tuned": "3 s: tests/reports/cli",
+    "crankcheck solve shaper-cutting --forces --figures figs": "2 s: tests/reports/figures",
+}
+"""Commands that take their time, and where else what they do is tested."""
 
 
 def _thread(steps: list[str]) -> object:
     """Commands and scripts that use what earlier ones of them leave."""
-    long = [pytest.mark.slow] if steps == [TABLE_OF_FAULTS] else []
-    return pytest.param(steps, marks=long, id=re.sub(r"\s+", " ", steps[0])[:60])
+    name = re.sub(r"\s+", " ", steps[0])[:60]
+    reason = LONG.get(steps[0])
+    return slowly(steps, reason=reason, id=name) if reason else pytest.param(steps, id=name)
 
 
 @pytest.mark.parametrize("steps", [_thread(steps) for steps in THREADS])
@@ -58,7 +65,7 @@ def test_every_command_of_the_readme_is_tried_once() -> None:
     tried = sorted(step for steps in THREADS for step in steps)
     assert tried == sorted([*(command for command, _, _ in commands(README)), *SCRIPTS])
     assert len(set(tried)) == len(tried)
-    assert [TABLE_OF_FAULTS] in THREADS
+    assert not set(LONG) - {steps[0] for steps in THREADS}
 
 
 def test_the_readme_counts_all_faults_that_are_planted() -> None:

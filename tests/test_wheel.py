@@ -16,18 +16,11 @@ from hatchling.build import build_editable
 
 from hatch_build import RelocationError, relocated
 from tests.worlds.command import VARIABLE, shadows
+from tests.worlds.tiers import slow, slowly
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("models", "analytic", "sim", "reports")
 COMMANDS = [
-    "tests/test_face.py",
-    "tests/reports/cli/test_ending.py::test_an_import_that_ctrl_c_cut_short_is_no_missing_engine",
-    "tests/reports/history/test_history.py::"
-    "test_packages_of_our_names_in_the_working_folder_change_nothing",
-    "tests/reports/sweep/test_faults.py::test_what_stands_in_the_working_folder_is_not_imported",
-]
-"""Of the tests that start the command as a process, some of each kind."""
-ALL_COMMANDS = [
     "tests/test_face.py",
     "tests/test_readme.py",
     "tests/reports/cli/test_ending.py",
@@ -60,7 +53,7 @@ def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(home)], check=True)
     python = home / "bin" / "python"
     pip = [sys.executable, "-m", "pip", "--python", str(python), "install", "--quiet"]
-    subprocess.run([*pip, "--no-deps", "--no-index", str(wheel)], check=True)
+    subprocess.run([*pip, "--no-compile", "--no-deps", "--no-index", str(wheel)], check=True)
     (site,) = home.glob("lib/python*/site-packages")
     borrowed = [path for path in sys.path if Path(path).name in ("site-packages", "dist-packages")]
     (site / "borrowed.pth").write_text("\n".join(borrowed) + "\n", encoding="utf-8")
@@ -114,6 +107,7 @@ def test_but_for_our_names_the_code_is_letter_for_letter_that_of_the_checkout(wh
     assert changed > 100
 
 
+@slow("two more builds, of which a release needs the first")
 def test_the_archive_of_the_sources_builds_the_same_wheel(wheel: Path, tmp_path: Path) -> None:
     with tarfile.open(built(ROOT, tmp_path / "sdist", "sdist")) as archive:
         archive.extractall(tmp_path, filter="data")
@@ -132,7 +126,9 @@ def test_an_editable_install_is_the_checkout(
         assert archive.read("_crankcheck.pth").decode().strip() == str(ROOT)
 
 
-@pytest.mark.parametrize("module", [False, True], ids=["crankcheck", "python -m crankcheck"])
+@pytest.mark.parametrize(
+    "module", [False, slowly(True, reason="a second start: `python -m` looks into the folder")]
+)
 def test_packages_of_our_names_in_the_users_folder_hide_nothing(
     installed: Path, mine: Path, module: bool
 ) -> None:
@@ -175,7 +171,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.slow  # ten seconds of mypy; that types are right in the checkout, `make lint` says
+@slow("ten seconds of mypy; that types are right in the checkout, `make lint` says")
 def test_a_type_checker_sees_through_the_wheel(installed: Path, mine: Path) -> None:
     lines = [*(f"reveal_type(cc.{call})" for call in TYPED), *(f"cc.{call}" for call in REFUSED)]
     head = "from pathlib import Path\nimport numpy as np, crankcheck as cc\n"
@@ -251,23 +247,14 @@ def test_a_project_with_packages_of_our_names_asserts_with_the_wheel(
     assert [line for line in told if line.startswith("OUT rocker_rad")]
 
 
+@slow("a minute: all tests that start the command as a process, once more with that of the wheel")
 def test_tests_of_the_command_pass_against_that_of_the_wheel(installed: Path) -> None:
-    against(installed, *COMMANDS)
-
-
-@pytest.mark.slow
-def test_all_tests_of_the_command_pass_against_that_of_the_wheel(installed: Path) -> None:
-    against(installed, *ALL_COMMANDS)
-
-
-def against(installed: Path, *tests: str) -> None:
-    """Run tests that take the command from `tests.worlds.command` with that of the wheel."""
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *tests]
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *COMMANDS]
     done = ran(*command, cwd=ROOT, **{VARIABLE: str(installed / "crankcheck")})
     assert done.returncode == 0, done.stdout
 
 
-@pytest.mark.slow
+@slow("pip, a contract and a sweep in 12 s; what only it finds is an engine beside the wheel")
 def test_an_engine_that_pip_installs_beside_the_wheel_holds_the_contract(
     installed: Path, mine: Path
 ) -> None:

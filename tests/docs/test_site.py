@@ -14,8 +14,9 @@ from playwright.sync_api import BrowserContext, TimeoutError, sync_playwright
 from docs.site.building import build
 from docs.site.staging import ROOT, pages
 from tests.reports.page.conftest import FLAGS, PHONE, WIDE, chromium
+from tests.worlds.tiers import slow
 
-pytestmark = pytest.mark.slow
+pytestmark = slow("the site is built twice and read in a browser; `make docs` builds it as well")
 SIDEWAYS = "() => document.documentElement.scrollWidth - document.documentElement.clientWidth"
 
 
