@@ -252,7 +252,6 @@ def test_forces_of_a_wrong_kind_are_told_with_what_they_have_to_be(
     sound = with_faults({"\n    def read(self):": FORCES, **declared})
     (folder / "sound_penalty.py").write_text(sound.replace('*("penalty"', '*("sound"'))
     given = run(FOURBAR, START, "sound_penalty:ENGINE", dt_s=1e-3, steps=20, with_forces=True)
-    assert given.motion is not None
     assert given.motion.forces is not None
     (folder / "faulty_penalty.py").write_text(sound.replace(old, new))
     with pytest.raises(BrokenContractError, match=words):

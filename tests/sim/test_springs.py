@@ -123,7 +123,6 @@ def test_what_the_engine_holds_of_a_spring_is_held_to_the_scene(fake_engine: Mod
 
 def test_the_end_of_a_spring_is_on_a_body_that_carries_its_point() -> None:
     across = FOURBAR.springs["across"]
-    assert isinstance(across, LineSpring)
     (ground, place), (body, at) = line_ends(FOURBAR, across)
     assert (ground, place) == (GROUND, FOURBAR.ground["A"])
     assert (body, at) == ("coupler", FOURBAR.links["coupler"].points["C"])

@@ -57,13 +57,10 @@ def opened(
 ) -> ExudynSession:
     state = solve(scene, np.array([start_s])).state()
     asked = resolved(ENGINE.profiles["tuned"], settings)
-    session = ENGINE.open(scene, state, asked, scene.driver.law.period_s / steps, drive)
-    assert isinstance(session, ExudynSession)
-    return session
+    return ENGINE.open(scene, state, asked, scene.driver.law.period_s / steps, drive)
 
 
 def acting(log: Log) -> Forces:
-    assert log.forces is not None
     return log.forces
 
 

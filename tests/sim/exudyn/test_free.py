@@ -98,7 +98,6 @@ SCENES = {
 
 def start(scene: Scene) -> State:
     law = scene.driver.law
-    assert isinstance(law, Released)
     theta, omega = np.array([law.start_rad]), np.array([law.speed_rad_s])
     alpha = Machine(scene).acceleration(np.zeros(1), theta, omega)
     return solve_driven(scene, theta, omega, alpha, np.zeros(1), bound=False).state()
@@ -109,7 +108,6 @@ def exact(name: str) -> tuple[Array, Array]:
     """Instants, and the driver's angle at them, integrated from jump to jump."""
     scene = SCENES[name]
     machine, law = Machine(scene), scene.driver.law
-    assert isinstance(law, Released)
 
     def rates(time_s: float, state: Array) -> Sequence[float]:
         now = np.array([time_s])
@@ -146,7 +144,6 @@ def ran(scene: Scene, dt_s: float, settings: Settings | None = None) -> Run:
 
 def off(name: str, dt_s: float) -> float:
     done = ran(SCENES[name], dt_s)
-    assert done.motion is not None
     return float(np.abs(done.motion.links[SCENES[name].driver.link].theta - exact(name)[1]).max())
 
 
@@ -168,7 +165,6 @@ def test_the_start_has_the_accelerations_of_what_acts() -> None:
     for name in ("springs", "steep motor", "spring of a block without mass"):
         scene = SCENES[name]
         done = ran(scene, 2e-3)
-        assert done.motion is not None
         for link, alpha in start(scene).alpha.items():
             scale = max(abs(each) for each in start(scene).alpha.values())
             assert done.motion.links[link].alpha[0] == pytest.approx(alpha, abs=1e-6 * scale)
@@ -178,7 +174,6 @@ def test_what_damps_is_less_where_nothing_drives_and_loses_less_energy() -> None
     scene, lost = SCENES["gravity"], []
     for radius in (0.9, 0.4):
         done = ran(scene, 1e-3, {"free_spectral_radius": radius})
-        assert done.energy is not None
         assert done.settings["spectral_radius"] == radius
         swing = np.ptp(done.energy.potential_j)
         lost.append(abs(done.energy.total_j[-1] - done.energy.total_j[0]) / swing)
@@ -200,9 +195,7 @@ def test_springs_are_held_as_the_scene_has_them_and_a_steep_motor_shows() -> Non
 def test_the_spring_of_a_block_without_mass_goes_to_its_pin() -> None:
     scene = SCENES["spring of a block without mass"]
     done = run(scene, start(scene), ENGINE, dt_s=1e-3, steps=60, drive="free", with_forces=True)
-    assert done.motion is not None
     forces, slid = done.motion.forces, done.motion.sliders["C"]
-    assert forces is not None
     (line,) = (one for one in scene.springs.values() if isinstance(one, SlideSpring))
     pull = line.rate * (slid.displacement - line.free) + line.damping * slid.speed
     angle = scene.sliders["C"].direction_rad
@@ -237,10 +230,6 @@ def test_springs_of_a_driven_mechanism_are_borne_by_its_drive() -> None:
         run(scene, state, ENGINE, with_forces=True, **given)  # type: ignore[arg-type]
         for scene in (sprung, plain)
     )
-    assert with_.motion is not None
-    assert with_.motion.forces is not None
-    assert without.motion is not None
-    assert without.motion.forces is not None
     session = ENGINE.open(
         sprung, state, resolved(ENGINE.profiles["tuned"], None), 1e-3, "prescribed"
     )

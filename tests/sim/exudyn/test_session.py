@@ -38,9 +38,7 @@ def driven_by(law: Law) -> Scene:
 def opened(scene: Scene = FOURBAR, profile: str = "tuned", **settings: object) -> ExudynSession:
     asked = resolved(ENGINE.profiles[profile], settings)  # type: ignore[arg-type]  # values
     state = solve(scene, np.zeros(1)).state()
-    session = ENGINE.open(scene, state, asked, 1e-3, "prescribed")
-    assert isinstance(session, ExudynSession)
-    return session
+    return ENGINE.open(scene, state, asked, 1e-3, "prescribed")
 
 
 def ran(
@@ -67,7 +65,6 @@ def threads() -> int:
 def off(scene: Scene, done: Run, link: str, what: str) -> np.ndarray:
     """The errors of the angle of a link, or of a rate of it."""
     assert done.status == "ok", done.reason
-    assert done.motion is not None
     exact = solve(scene, done.motion.time_s)
     found: np.ndarray = getattr(done.motion.links[link], what) - getattr(exact.links[link], what)
     return np.abs(found)
@@ -102,8 +99,6 @@ def test_two_stretches_in_one_go_are_one() -> None:
 
 def test_steps_in_one_go_are_the_same_as_steps_one_by_one() -> None:
     one, other = (ran(settings={"adaptive_step": each}) for each in ("enable", "disable"))
-    assert one.motion is not None
-    assert other.motion is not None
     for name, link in one.motion.links.items():
         np.testing.assert_allclose(link.theta, other.motion.links[name].theta, atol=1e-11)
 

@@ -32,7 +32,6 @@ def turned(scene: Scene, steps: int, **settings: str) -> Checked:
 
 
 def worst(checked: Checked) -> float:
-    assert checked.errors is not None
     return max(e.pure for name in ("position", "gap") if (e := checked.errors.worst(name)))
 
 

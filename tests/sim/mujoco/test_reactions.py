@@ -9,15 +9,13 @@ import pytest
 
 from analytic.forces import kinetostatics
 from analytic.kinematics import solve
-from models.array import Array
 from models.files import load_scene, shipped
 from models.forces import Forces
-from models.joints import block_name, local_point
-from models.poses import centre_of, mass_of
-from models.scene import GROUND, Scene
-from sim.engine import BodyPose, Drive, ForceSession, Log, Settings
+from models.scene import Scene
+from sim.engine import Drive, ForceSession, Log, Settings
 from sim.registry import engine
 from sim.settings import resolved
+from tests.worlds.equilibrium import left_over
 from tests.worlds.tiers import few
 
 STEPS = 720
@@ -49,60 +47,7 @@ def opened(
 
 
 def acting(log: Log) -> Forces:
-    assert log.forces is not None
     return log.forces
-
-
-def turned(pose: BodyPose, local: tuple[float, float]) -> Array:
-    c, s = np.cos(pose.theta), np.sin(pose.theta)
-    return np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1]], axis=-1)
-
-
-def cross(a: Array, b: Array) -> Array:
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-
-
-def left_over(scene: Scene, log: Log) -> float:
-    """What is left of the equilibrium of the bodies in the engine's own motion, over the largest
-    force and that times the longest link."""
-    forces, poses = acting(log), log.poses.bodies
-    largest = max(float(np.abs(f).max()) for by in forces.pins.values() for f in by.values())
-    worst = 0.0
-    for body, pose in poses.items():
-        mass, inertia = mass_of(scene, body)
-        arm = turned(pose, centre_of(scene, body))
-        push = pose.origin_acceleration - arm * (pose.omega**2)[:, None]
-        push = push + np.stack([-pose.alpha * arm[:, 1], pose.alpha * arm[:, 0]], axis=-1)
-        force = mass * (np.array(scene.gravity_m_s2) - push)
-        moment = -inertia * pose.alpha + cross(arm, force)  # about the body's origin
-        for point, by_body in forces.pins.items():
-            if body in by_body:
-                force = force + by_body[body]
-                moment = moment + cross(
-                    turned(pose, local_point(scene, body, point)), by_body[body]
-                )
-        if body == scene.driver.link:
-            moment = moment + forces.torque
-        for slider in scene.sliders.values():
-            rider = slider.link or block_name(slider)
-            if body not in (rider, slider.on):
-                continue
-            sign = 1.0 if body == rider else -1.0
-            guide = np.zeros_like(pose.theta) if slider.on == GROUND else poses[slider.on].theta
-            line = guide + slider.direction_rad
-            across = np.stack([-np.sin(line), np.cos(line)], axis=-1)
-            own, by = forces.sliders[slider.name], forces.pins.get(slider.point, {})
-            carrier = next(b for b in (rider, *by) if b in poses and b != slider.on)
-            at = poses[carrier].origin + turned(
-                poses[carrier], local_point(scene, carrier, slider.point)
-            )
-            force = force + sign * own.normal[:, None] * across
-            moment = moment + sign * (
-                cross(at - pose.origin, own.normal[:, None] * across) + own.moment
-            )
-        worst = max(worst, float(np.abs(force).max()) / largest)
-        worst = max(worst, float(np.abs(moment).max()) / largest / scene.longest_m)
-    return worst
 
 
 def worst_of(scene: Scene, forces: Forces) -> tuple[float, float]:
@@ -125,7 +70,8 @@ def test_forces_are_those_of_the_reference_and_of_each_bodys_equilibrium(name: s
     log = opened(scene).record_forces(STEPS, 1)
     for by_body in acting(log).pins.values():
         assert np.abs(sum(by_body.values())).max() == pytest.approx(0.0, abs=1e-12)
-    assert left_over(scene, log) < 1e-9
+    force, moment = left_over(scene, log)
+    assert max(force, moment / scene.longest_m) < 1e-9
     reaction, torque = worst_of(scene, acting(log))
     assert max(reaction, torque) < WITHIN.get(name, 1e-4)
 
@@ -143,5 +89,6 @@ def test_forces_change_nothing_of_the_motion() -> None:
 def test_forces_do_not_depend_on_where_the_loop_is_closed(close: str) -> None:
     scene = load_scene("fourbar-lecture-1")
     log = opened(scene, {"close": close}).record_forces(STEPS, 4)
-    assert left_over(scene, log) < 1e-9
+    force, moment = left_over(scene, log)
+    assert max(force, moment / scene.longest_m) < 1e-9
     assert max(worst_of(scene, acting(log))) < 1e-4

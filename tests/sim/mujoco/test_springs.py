@@ -12,27 +12,22 @@ from analytic.free.machine import Machine
 from analytic.free.release import release
 from analytic.kinematics import solve, solve_driven
 from analytic.multibody.release_multibody import start_state
-from models.array import Array
 from models.characteristics import Polynomial
 from models.errors import EngineError
 from models.files import load_scene, parse_scene
-from models.joints import block_name, joints, local_point, riding_body
 from models.loads import Load
 from models.mjcf import build
 from models.motion import State
-from models.poses import centre_of, mass_of
 from models.released import Released
 from models.scene import GROUND, Driver, Scene
-from models.spring_ends import line_ends
 from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from sim.check import refuse_other_model
-from sim.engine import Log
 from sim.mujoco.session import MujocoSession
 from sim.registry import engine
 from sim.run import run
 from sim.settings import resolved
-from sim.spring_lengths import spring_lengths
-from tests.sim.mujoco.test_reactions import acting, cross, turned
+from tests.sim.mujoco.test_reactions import acting
+from tests.worlds.equilibrium import left_over
 
 TUNED = resolved(engine("mujoco").profiles["tuned"], None)
 DT_S = 1e-4
@@ -88,7 +83,6 @@ SCENES = {
 def start_of(scene: Scene) -> tuple[State, float]:
     """The state of the start, and the acceleration of the driver by the equation of the machine."""
     law = scene.driver.law
-    assert isinstance(law, Released)
     theta, omega = np.array([law.start_rad]), np.array([law.speed_rad_s])
     alpha = Machine(scene).acceleration(np.zeros(1), theta, omega)
     motion = solve_driven(scene, theta, omega, alpha, np.zeros(1), bound=False)
@@ -123,88 +117,13 @@ def test_the_engine_holds_the_springs_of_the_scene(name: str) -> None:
         refuse_other_model(scene, state, session.facts(), DT_S, "free")
 
 
-def pulls(scene: Scene, log: Log) -> dict[str, Array]:
-    """What each spring pulls its q back with, from the places that were logged."""
-    poses = log.poses
-    lengths = spring_lengths(scene, poses)
-    rates = {n: np.gradient(q, poses.time_s, edge_order=2) for n, q in lengths.items()}
-    return {
-        n: one.rate * (lengths[n] - one.free) + one.damping * rates[n]
-        for n, one in scene.springs.items()
-    }
-
-
-def left_over(scene: Scene, log: Log) -> float:
-    """What is left of the equilibrium of the bodies with their springs, over the largest force."""
-    poses, forces, pull = log.poses.bodies, acting(log), pulls(scene, log)
-    largest = max(float(np.abs(f).max()) for by in forces.pins.values() for f in by.values())
-    theta = {GROUND: np.zeros_like(log.poses.time_s)} | {n: p.theta for n, p in poses.items()}
-    ends: list[tuple[str, Array, Array]] = []  # body, force, place
-    couples: list[tuple[str, Array]] = []
-    worst = 0.0
-
-    def place(body: str, local: tuple[float, float]) -> Array:
-        own = poses.get(body)
-        return np.array([local]) if own is None else own.origin + turned(own, local)
-
-    for point, by_body in forces.pins.items():
-        for body, force in by_body.items():
-            if body in poses:
-                ends.append((body, force, place(body, local_point(scene, body, point))))
-    for slide in joints(scene).slides:
-        slider, rider = slide.slider, riding_body(slide)
-        line = theta[slider.on] + slider.direction_rad
-        along = np.stack([np.cos(line), np.sin(line)], axis=-1)
-        across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
-        own, at = forces.sliders[slider.name], place(rider, local_point(scene, rider, slider.point))
-        pulled = [
-            pull[name]
-            for name, spring in scene.springs.items()
-            if isinstance(spring, SlideSpring) and spring.slider == slider.name
-        ]
-        push = own.normal[:, None] * across
-        back = sum(pulled, np.zeros_like(line))[:, None] * along
-        if rider == (slider.link or block_name(slider)):
-            ends.append((rider, push - back, at))
-            couples.append((rider, own.moment))
-        else:  # a block without mass hands on to its pin what it is given
-            on_block = forces.pins[slider.point][block_name(slider)] + push - back
-            worst = max(worst, float(np.abs(on_block).max()))
-        ends.append((slider.on, back - push, at))
-        couples.append((slider.on, -own.moment))
-    for name, spring in scene.springs.items():
-        if isinstance(spring, PinSpring):
-            couples += [(spring.bodies[0], pull[name]), (spring.bodies[1], -pull[name])]
-        elif isinstance(spring, LineSpring):
-            (a, at), (b, to) = line_ends(scene, spring)
-            way = place(b, to) - place(a, at)
-            force = pull[name][:, None] * way / np.hypot(*way.T)[:, None]
-            ends += [(a, force, place(a, at)), (b, -force, place(b, to))]
-    for body, pose in poses.items():
-        mass, inertia = mass_of(scene, body)
-        arm = turned(pose, centre_of(scene, body))
-        push = pose.origin_acceleration - arm * (pose.omega**2)[:, None]
-        push = push + np.stack([-pose.alpha * arm[:, 1], pose.alpha * arm[:, 0]], axis=-1)
-        force = mass * (np.array(scene.gravity_m_s2) - push)
-        moment = cross(arm, force) - inertia * pose.alpha
-        moment = moment + sum(couple for on, couple in couples if on == body)
-        for on, given, at in ends:
-            if on == body:
-                force = force + given
-                moment = moment + cross(at - pose.origin, given)
-        if body == scene.driver.link:
-            moment = moment + forces.torque
-        worst = max(worst, float(np.abs(force).max()), float(np.abs(moment).max()))
-    return worst / largest
-
-
 @pytest.mark.parametrize("name", SCENES)
 def test_springs_are_no_reactions_and_nothing_drives_the_crank(name: str) -> None:
     """Dampers by differences, which are good to the second order of the step; the torque to the
     rounding of loops that do not give way."""
     scene = SCENES[name]
     log = opened(scene).record_forces(40, 1)
-    assert left_over(scene, log) < 1e-5
+    assert max(left_over(scene, log)) < 1e-5
     forces = acting(log)
     largest = max(float(np.abs(f).max()) for by in forces.pins.values() for f in by.values())
     assert np.abs(forces.torque).max() < 5e-7 * largest * scene.longest_m
@@ -257,7 +176,6 @@ def test_the_text_runs_by_itself() -> None:
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_step(model, data, 100)
     done = run(scene, state, "mujoco", dt_s=1e-3, steps=100, drive="free")
-    assert done.motion is not None
     own = data.qpos[model.joint("crank.A").qposadr[0]]
     assert own == pytest.approx(done.motion.links["crank"].theta[-1], abs=1e-9)
 
@@ -271,7 +189,6 @@ def test_springs_dampers_and_motors_are_followed_to_fourth_order() -> None:
     errors = []
     for steps in (300, 600):
         done = run(scene, state, "mujoco", dt_s=0.3 / steps, steps=steps, drive="free")
-        assert done.motion is not None
         off = done.motion.links["crank"].theta - true.law.at(done.motion.time_s)[0]
         errors.append(np.abs(off).max())
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.3)

@@ -74,7 +74,6 @@ def test_steps_keep_their_order_where_a_slider_turns_back(stroke: str) -> None:
     for dt_s in (2e-3, 5e-4):
         steps = round(LONG_S / dt_s)
         done = run(scene, start, "mujoco", dt_s=dt_s, steps=steps, drive="free")
-        assert done.motion is not None
         true = motion.at(done.motion.time_s, bound=False).links["crank"].theta
         off.append(float(np.abs(done.motion.links["crank"].theta - true).max()))
     # Where in its step each turn comes is chance, so that the order shows in the bounds alone.
@@ -93,6 +92,5 @@ def test_a_load_that_ends_at_a_dead_centre_costs_no_phase(until_s: float, within
     start = motion.at(np.zeros(1)).state()
     steps = round(until_s / 1e-3)
     done = run(scene, start, "mujoco", dt_s=1e-3, steps=steps, every=steps, drive="free")
-    assert done.motion is not None
     true = motion.at(done.motion.time_s, bound=False).links["crank"].theta
     assert abs(done.motion.links["crank"].theta[-1] - true[-1]) < within

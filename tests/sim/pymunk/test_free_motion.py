@@ -53,7 +53,6 @@ def rod(*loads: Load, springs: tuple[Spring, ...] = ()) -> Scene:
 def start(scene: Scene, alpha: float) -> State:
     """The state at time 0, with the acceleration that goes with it."""
     law = scene.driver.law
-    assert isinstance(law, Released)
     theta, omega, push = (np.array([x]) for x in (law.start_rad, law.speed_rad_s, alpha))
     return solve_driven(scene, theta, omega, push, np.zeros(1), bound=False).state()
 
@@ -66,7 +65,6 @@ def let_go(scene: Scene, alpha: float, dt_s: float, until_s: float = 1.0, **give
 
 
 def angle(result: Run) -> Array:
-    assert result.motion is not None
     return next(iter(result.motion.links.values())).theta
 
 
@@ -133,7 +131,6 @@ def test_a_jump_counts_with_its_share_of_a_step(places: tuple[float, float, floa
     scene = rod(Load("switched", "rocker0", None, steps))
     early = 2.0 / INERTIA if places[0] == 0.0 else 0.0
     result = let_go(scene, early, 1e-3)
-    assert result.motion is not None
     time_s = result.motion.time_s
     exact = sum(
         rise / INERTIA * np.maximum(time_s - place, 0.0) ** 2 / 2.0
@@ -161,7 +158,6 @@ def cranking(*springs: Spring, name: str = "slider-crank-offset") -> Scene:
 def begin(scene: Scene) -> State:
     """The state at the start, with the acceleration that the equation of the machine gives."""
     law = scene.driver.law
-    assert isinstance(law, Released)
     now = np.zeros(1), np.array([law.start_rad]), np.array([law.speed_rad_s])
     return start(scene, float(Machine(scene).acceleration(*now)[0]))
 
@@ -174,7 +170,6 @@ def off_by(scene: Scene, dt_s: float, **settings: str) -> float:
         scene, state, ENGINE, dt_s=dt_s, steps=round(0.2 / dt_s), drive="free", settings=settings
     )
     assert (result.status, result.reason) == ("ok", "")
-    assert result.motion is not None
     exact = motion.at(result.motion.time_s, bound=False).links["crank"].theta
     return float(np.abs(angle(result) - exact).max())
 
@@ -222,8 +217,6 @@ def test_springs_are_no_part_of_what_joints_bear(name: str, springs: str) -> Non
         with_forces=True,
         settings={"springs": springs},
     ).motion
-    assert found is not None
-    assert found.forces is not None
     assert found.forces.contradictions == ()
     assert not found.forces.torque[1:].any()
 
@@ -255,8 +248,6 @@ def test_a_driven_mechanism_takes_its_springs_with_it(name: str) -> None:
         for springs in ("forces", "native")
     ]
     forces, native = (one.motion.forces for one in told if one.motion is not None)
-    assert forces is not None
-    assert native is not None
     assert forces.contradictions == native.contradictions == ()
     exact = power(scene, forces.time_s)
     size = np.abs(exact).max()

@@ -46,7 +46,6 @@ def test_constant_friction_is_against_the_motion(where: str) -> None:
     exact = forces(scene, found.time_s, bound=False)
     same = np.ones(len(found.time_s), dtype=bool)
     for joint, law in scene.friction.items():
-        assert isinstance(law, ConstantFriction)
         agree = np.isclose(found.friction[joint], exact.friction[joint], atol=1e-9 * law.size)
         assert (~agree).sum() <= 1 + 2, joint  # the first sample, and the ends of two strokes
         same &= agree
@@ -60,7 +59,6 @@ def test_friction_of_a_pin_brings_a_free_mechanism_to_rest_and_that_of_a_slider_
     scene = rubbing(load_scene("slider-crank-offset"), B=5.0)
     state = solve(scene, np.zeros(1)).state()
     result = run(scene, state, ENGINE, dt_s=1e-3, steps=1000, drive="free")
-    assert result.motion is not None
     assert np.abs(result.motion.links["crank"].omega[-100:]).max() < 1e-6
     refused = run(rubbing(scene, C=1.0), state, ENGINE, dt_s=1e-3, steps=10, drive="free")
     assert refused.status == "unsupported"
