@@ -121,13 +121,17 @@ def browser() -> Iterator[Browser]:
 
 
 @pytest.fixture(scope="session")
-def wide(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Tab:
-    """The tab of a computer: `open` or `visit` a page in it."""
-    return Tab.of(browser, tmp_path_factory.mktemp("wide"), viewport=WIDE)
+def tab(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Tab:
+    return Tab.of(browser, tmp_path_factory.mktemp("tab"))
 
 
-@pytest.fixture(scope="session")
-def phone(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Tab:
-    """The tab of a phone."""
-    folder = tmp_path_factory.mktemp("phone")
-    return Tab.of(browser, folder, viewport=PHONE, has_touch=True, is_mobile=True)
+@pytest.fixture
+def wide(tab: Tab) -> Tab:
+    """The tab on a computer: `open` or `visit` a page in it."""
+    return tab.on(WIDE)
+
+
+@pytest.fixture
+def phone(tab: Tab) -> Tab:
+    """The tab on a phone."""
+    return tab.on(PHONE)

@@ -6,10 +6,11 @@ what it has seen there once in a fifth of the time, and that is most of what ope
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from playwright.sync_api import Browser, ConsoleMessage, Page, Request
+from playwright.sync_api import Browser, CDPSession, ConsoleMessage, Page, Request
 
 WIDE, PHONE = {"width": 1280, "height": 900}, {"width": 390, "height": 844}
 LONG_MS = 300_000
@@ -100,19 +101,32 @@ class Tab:
 
     page: Page
     file: Path
+    screen: CDPSession
+    is_phone: bool = False
     said: list[str] = field(default_factory=list)
     asked: list[str] = field(default_factory=list)
     path: Path | None = None
     first: object = None
 
     @classmethod
-    def of(cls, browser: Browser, folder: Path, **options: object) -> Tab:
-        """A tab in a window of its own, and a folder for its file."""
-        context = browser.new_context(offline=True, **options)  # type: ignore[arg-type]
+    def of(cls, browser: Browser, folder: Path) -> Tab:
+        """A tab of a computer, and a folder for its file."""
+        context = browser.new_context(offline=True, viewport=WIDE)  # type: ignore[arg-type]
         context.set_default_timeout(LONG_MS)
-        tab = cls(context.new_page(), folder / "page.html")
+        page = context.new_page()
+        tab = cls(page, folder / "page.html", context.new_cdp_session(page))
         tab._watch()
         return tab
+
+    def on(self, size: Mapping[str, int]) -> Tab:
+        """The tab of a screen: a phone's is touched."""
+        if self.is_phone != (size is PHONE):
+            self.is_phone, self.path = size is PHONE, None
+            screen = {"screenWidth": size["width"], "screenHeight": size["height"]}
+            shape = {**size, **screen, "deviceScaleFactor": 1, "mobile": self.is_phone}
+            self.screen.send("Emulation.setDeviceMetricsOverride", shape)
+            self.screen.send("Emulation.setTouchEmulationEnabled", {"enabled": self.is_phone})
+        return self
 
     def _watch(self) -> None:
         def on_console(message: ConsoleMessage) -> None:
