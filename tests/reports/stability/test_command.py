@@ -11,10 +11,12 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner, Result
 
+from models.errors import CrankcheckError
 from reports.cli import app
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.matrix import read_matrix
-from tests.worlds.in_process import in_this_process
+from reports.workers.isolated import Lost
+from tests.worlds.in_process import Here, in_this_process
 
 Crank = Callable[..., Result]
 LINE = ["stability", "grashof-excess", "--engine", "mujoco", "--profile", "tuned"]
@@ -61,7 +63,8 @@ def test_every_run_is_stored_with_the_command_that_repeats_it(
     lost = rows[(rows["case"] == "grashof-excess") & (rows["outcome"] != "ok")].iloc[-1]
     words = lost["command"].split()
     assert words[0] == "crankcheck"
-    alone = crank(*words[1:])
+    with in_this_process():
+        alone = crank(*words[1:])
     assert alone.exit_code == 1
     assert lost["outcome"] in alone.stdout
     number = f"error of place, rad or over the longest link: {lost['error']:.3g}"
@@ -101,13 +104,6 @@ def test_a_few_cases_do_not_take_the_place_of_a_matrix_of_more(
     assert (folder / "stability.json").read_bytes() == before
 
 
-def test_a_single_value_has_a_limit_of_its_time(crank: Crank) -> None:
-    args = ["stability", "long-fourbar", "--engine", "pymunk", "--profile", "tuned"]
-    result = crank(*args, "--at", "10000", "--limit-s", "0.3")
-    assert result.exit_code == 1
-    assert "no end within 0.3 s" in result.stdout
-
-
 def test_a_value_that_is_held_ends_with_0_and_one_that_is_not_with_1(crank: Crank) -> None:
     with in_this_process():
         held, lost = (crank(*LINE, "--at", value) for value in ("1e-3", "1e-6"))
@@ -139,7 +135,8 @@ def test_a_value_that_is_held_ends_with_0_and_one_that_is_not_with_1(crank: Cran
 def test_a_mistake_ends_with_2_and_says_what_would_work(
     crank: Crank, args: list[str], parts: list[str]
 ) -> None:
-    result = crank(*args)
+    with in_this_process():
+        result = crank(*args)
     assert result.exit_code == 2, result.output
     assert "Traceback" not in result.output
     flat = " ".join(result.stderr.split())
@@ -147,11 +144,32 @@ def test_a_mistake_ends_with_2_and_says_what_would_work(
         assert part in flat, flat
 
 
-def test_a_run_over_its_limit_is_a_row_with_its_reason(crank: Crank) -> None:
+def late(child: Here[object], *_: object) -> Lost:
+    """No run ends in its time."""
+    return Lost("timeout", f"no end within {child.limits.time_s:g} s")
+
+
+def refused(*_: object) -> Lost:
+    """What a child raises of what it is asked for."""
+    return Lost("crashed", "", CrankcheckError("no such step"))
+
+
+@pytest.mark.parametrize(
+    ("call", "code", "words"),
+    [
+        (late, 1, "crashed no end within 0.05 s"),
+        (refused, 2, "case long-fourbar at 10000: no such step"),
+    ],
+)
+def test_what_comes_of_a_lost_run(
+    crank: Crank, call: Callable[..., Lost], code: int, words: str
+) -> None:
     args = ["stability", "long-fourbar", "--engine", "pymunk", "--profile", "as-shipped"]
-    result = crank(*args, "--at", "1e4", "--limit-s", "0.05")
-    assert result.exit_code == 1, result.output
-    assert "crashed no end within 0.05 s" in result.stdout
+    with in_this_process() as patch:
+        patch.setattr(Here, "call", call)
+        result = crank(*args, "--at", "1e4", "--limit-s", "0.05")
+    assert result.exit_code == code, result.output
+    assert words in " ".join(result.output.split())
 
 
 def test_the_report_of_a_folder_of_hard_cases_is_their_page(
@@ -171,10 +189,11 @@ def test_the_report_of_a_sweep_has_the_hard_cases_beside_it_or_says_that_they_ar
     stored: tuple[Result, Path], crank: Crank, tmp_path: Path
 ) -> None:
     folder, page = tmp_path / "store", tmp_path / "page.html"
-    swept = crank(
-        *("sweep", "fourbar-lecture-1", "-o", str(folder), "--engine", "pymunk"),
-        *("--profile", "tuned", "--steps-per-turn", "90,180", "--no-timing", "--jobs", "1"),
-    )
+    with in_this_process():
+        swept = crank(
+            *("sweep", "fourbar-lecture-1", "-o", str(folder), "--engine", "pymunk"),
+            *("--profile", "tuned", "--steps-per-turn", "90,180", "--no-timing", "--jobs", "1"),
+        )
     assert swept.exit_code == 0, swept.output
     shutil.copy(stored[1] / "stability.json", folder)
     assert crank("report", str(folder), "-o", str(page)).exit_code == 0

@@ -14,6 +14,7 @@ import pyarrow.parquet as pq
 
 from reports.store.manifest import MOST_BYTES
 from reports.store.part import write_part
+from tests.worlds.tiers import few
 
 Change = Callable[[Path], object]
 LATER = 10**20 - 10
@@ -203,3 +204,15 @@ CASES = {
     ),
     "cells folder": Case(without("cells"), "cells: not there; 4 cells missing", 0, gate=2),
 }
+QUICK = {
+    *("cut", "swapped", "twice", "cut timings", "whole part", "other store"),
+    *("cut manifest", "newer", "notes", "cells folder"),
+}
+"""A few that differ in kind."""
+SAME = "what is damaged in another way is found by the same sums and names"
+
+
+def cases(quick: set[str] = QUICK, *cures: str) -> list[object]:
+    """The names of all cases with one of these cures, or of all."""
+    names = [name for name, case in CASES.items() if not cures or case.cure in cures]
+    return few(names, quick.intersection(names), SAME)

@@ -24,10 +24,11 @@ from reports.store.examine import UNASKED, examine
 from reports.store.manifest import MANIFEST
 from reports.store.part import write_part
 from reports.store.reader import Stored, read_store
-from tests.reports.store.damages import CASES, cut, first
+from tests.reports.store.damages import CASES, QUICK, cases, cut, first
 
 BY_CHANCE = ["wall_s", "logged_us_per_step"]
 TIMES = ["us_per_step", "us_per_step_median", "us_per_step_a", "us_per_step_b", "s_per_turn"]
+MENDED = {"swapped", "twice", "cut timings", "no manifest", "pipe", "manifest folder"}
 Sweep = Callable[..., int]
 
 
@@ -85,7 +86,7 @@ def test_what_can_be_read_is_reported_and_the_rest_is_named(
     )
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", cases())
 def test_no_gate_is_passed_on_cells_that_are_lost(name: str, store: Path, whole: Path) -> None:
     case = CASES[name]
     case.change(store)
@@ -98,7 +99,7 @@ def test_no_gate_is_passed_on_cells_that_are_lost(name: str, store: Path, whole:
             assert "mujoco tuned" in message
 
 
-@pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.cure == "sweep"])
+@pytest.mark.parametrize("name", cases(MENDED, "sweep"))
 def test_the_same_sweep_mends_it_and_throws_nothing_away(
     name: str, store: Path, whole: Path, swept: Sweep, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -120,7 +121,7 @@ def test_the_same_sweep_mends_it_and_throws_nothing_away(
     assert (store / MANIFEST).read_bytes() == text
 
 
-@pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.cure == "nothing"])
+@pytest.mark.parametrize("name", cases(QUICK, "nothing"))
 def test_what_is_not_damaged_is_left_alone(
     name: str, store: Path, swept: Sweep, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -131,7 +132,7 @@ def test_what_is_not_damaged_is_left_alone(
     assert capsys.readouterr().err == ""
 
 
-@pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.cure == "anew"])
+@pytest.mark.parametrize("name", cases(QUICK, "anew"))
 def test_another_format_is_refused_in_a_line_and_not_written_to(
     name: str, store: Path, swept: Sweep
 ) -> None:

@@ -14,6 +14,7 @@ from reports.store.reader import read_store
 from reports.store.writer import Writer
 from tests.reports.store.damages import LATER, first
 from tests.reports.store.test_damage import same
+from tests.worlds.tiers import few
 
 
 class KilledError(Exception):
@@ -51,7 +52,7 @@ def killed_at(step: int, monkeypatch: pytest.MonkeyPatch, *calls: tuple[object, 
         counted(where, name)
 
 
-@pytest.mark.parametrize("step", range(4))
+@pytest.mark.parametrize("step", few(range(4), {1, 2}, "before the first and after the last"))
 def test_mending_that_is_killed_loses_no_cell(
     step: int, store: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -18,8 +18,10 @@ from reports.store.manifest import MANIFEST
 from reports.store.part import open_part
 from reports.store.reader import Stored, read_store
 from tests.reports.store.damages import first
+from tests.worlds.tiers import at_length, slowly
 
 SEED = 20261121
+MORE = "a kind of damage at a place of a file that few draws come to"
 
 
 def spoil(raw: bytes, rng: random.Random) -> bytes:
@@ -58,9 +60,7 @@ def differs(found: Stored, wanted: Stored) -> bool:
     )
 
 
-@pytest.mark.parametrize(
-    "count", [pytest.param(120, id="some"), pytest.param(2000, id="many", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("count", [20, slowly(120, reason=MORE), at_length(2000, reason=MORE)])
 def test_no_number_changes_without_a_word(count: int, whole: Path, tmp_path: Path) -> None:
     rng = random.Random(SEED)
     wanted = read_store(whole)
