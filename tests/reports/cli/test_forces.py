@@ -14,24 +14,11 @@ from models.files import scene_texts
 from reports.stability.matrix import FILE, Graded, Matrix, read_matrix, to_json
 from reports.store.reader import read_store
 from sim import registry
-from tests.worlds.command_line import crank
+from tests.worlds.command_line import crank, crank_alone, flat
 
 SCENE = "fourbar-lecture-1"
-FAST = [
-    "--jobs",
-    "1",
-    "--steps-per-turn",
-    "180",
-    "--turns",
-    "1",
-    "--no-convergence",
-    "--profile",
-    "tuned",
-]
-
-
-def flat(text: str) -> str:
-    return " ".join(text.replace("│", " ").split())
+ONCE = ["--jobs", "1", "--steps-per-turn", "180", "--turns", "1", "--profile", "tuned"]
+FAST = [*ONCE, "--no-convergence"]
 
 
 def test_verify_has_a_table_of_forces_of_its_own(tmp_path: Path) -> None:
@@ -51,8 +38,7 @@ def test_verify_has_a_table_of_forces_of_its_own(tmp_path: Path) -> None:
 
 
 def test_convergence_of_forces_is_told_with_its_floor() -> None:
-    fast = [word for word in FAST if word != "--no-convergence"]
-    result = crank("verify", SCENE, "--engine", "mujoco", *fast, "--forces")
+    result = crank("verify", SCENE, "--engine", "mujoco", *ONCE, "--forces")
     assert "levels off floor" in flat(result.output) or "does not shrink floor" in flat(
         result.output
     )
@@ -78,23 +64,21 @@ def test_a_scene_without_mass_is_refused(verb: str, tmp_path: Path) -> None:
     path = tmp_path / "light.toml"
     path.write_text(text)
     folder = [] if verb == "verify" else ["-o", str(tmp_path / "out")]
-    result = crank(verb, str(path), "--engine", "mujoco", "--forces", *folder)
-    assert result.exit_code == 2
-    assert "no link or slider has a mass and nothing loads them" in flat(result.stderr)
-    assert "Traceback" not in result.output
+    result = crank(verb, path, "--engine", "mujoco", "--forces", *folder)
+    refused(result, "no link or slider has a mass and nothing loads them")
 
 
 def test_a_sweep_keeps_forces_beside_cells_without_and_reports_them(tmp_path: Path) -> None:
     folder = str(tmp_path / "out")
     common = ["--profile", "tuned", "--turns", "1", "--no-timing", "--jobs", "1", "-o", folder]
     some = ["sweep", SCENE, "--steps-per-turn", "90,180", *common]
-    assert crank(*some, "--engine", "mujoco", "--forces").exit_code == 0
-    assert crank(*some, "--engine", "pymunk").exit_code == 0
+    assert crank_alone(*some, "--engine", "mujoco", "--forces").exit_code == 0
+    assert crank_alone(*some, "--engine", "pymunk").exit_code == 0
     cells = read_store(Path(folder)).cells
     known = cells.set_index("engine")["torque_pure"]
     assert known["mujoco"].between(1e-6, 1e-3).all()
     assert known["pymunk"].isna().all()
-    again = crank(*some, "--engine", "mujoco", "--forces")
+    again = crank_alone(*some, "--engine", "mujoco", "--forces")
     assert "0 run now" not in again.output or "2 were there" in again.output
     assert crank("report", folder, "-o", str(tmp_path / "page.html")).exit_code == 0
     assert "reactions in pins" in (tmp_path / "page.html").read_text()
@@ -103,7 +87,7 @@ def test_a_sweep_keeps_forces_beside_cells_without_and_reports_them(tmp_path: Pa
 
 def test_stability_tells_what_forces_are_off_by_and_grades_as_before() -> None:
     told = ["stability", "heavy-rocker", "--at", "10", "--engine", "mujoco", "--profile", "tuned"]
-    asked, plain = crank(*told, "--forces"), crank(*told)
+    asked, plain = crank_alone(*told, "--forces"), crank_alone(*told)
     assert (asked.exit_code, plain.exit_code) == (0, 0)
     more = [line for line in asked.output.splitlines() if line not in plain.output.splitlines()]
     assert len(more) == 1

@@ -12,26 +12,16 @@ from xml.etree import ElementTree as Xml
 import pandas as pd
 import pytest
 from rich.console import Console
-from typer.testing import Result
 
 from models.errors import CrankcheckError, EngineError
 from models.files import scene_texts, shipped
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands import verify as command
 from reports.judge.rules import RULES
-from tests.worlds.command_line import crank
+from tests.worlds.command_line import crank, crank_alone, refused
 
 FAST = ["--steps-per-turn", "360", "--turns", "1", "--no-convergence"]
 ONE = ["verify", "fourbar-lecture-1", *FAST]
-
-
-def refused(result: Result, *parts: str) -> None:
-    """The command ended with exit code 2 and one message that holds all the parts."""
-    assert result.exit_code == 2, result.output
-    assert "Traceback" not in result.output
-    flat = " ".join(result.stderr.replace("│", " ").split())
-    for part in parts:
-        assert part in flat, flat
 
 
 def test_a_scene_within_tolerance_ends_with_0() -> None:
@@ -422,4 +412,4 @@ def test_a_failing_cell_is_told_what_was_tried_and_a_sweep_takes_it(tmp_path: Pa
     told = re.findall(r"cure: Tried at the same step: sweep (--set) (\S+) ", done.output)
     assert len(told) == 1, done.output
     out = ["--no-timing", "-o", str(tmp_path / "out")]
-    assert crank("sweep", str(path), *steps, *told[0], *out).exit_code == 0
+    assert crank_alone("sweep", path, *steps, *told[0], *out).exit_code == 0

@@ -14,14 +14,10 @@ from models.scene_text import scene_text
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands.verify import plan
 from reports.store.reader import read_store
-from tests.worlds.command_line import crank
+from tests.worlds.command_line import crank, crank_alone, flat
 
 SCENE = "fourbar-swing"
 SHORT = ["--duration", "0.1", "--jobs", "1", "--profile", "tuned"]
-
-
-def flat(text: str) -> str:
-    return " ".join(text.replace("│", " ").split())
 
 
 def test_what_is_let_go_is_within_and_has_a_table_of_its_own(tmp_path: Path) -> None:
@@ -102,7 +98,7 @@ def test_a_scene_without_a_mass_that_moves_is_refused_before_anything_runs(tmp_p
 def test_a_sweep_of_what_is_let_go_is_kept_shown_and_compared(tmp_path: Path) -> None:
     store, page = tmp_path / "store", tmp_path / "page.html"
     options = ["--free", "--dt", "1e-3,5e-4", "--duration", "0.1", "--profile", "tuned"]
-    swept = crank("sweep", SCENE, "-o", str(store), *options, "--no-timing", "--jobs", "1")
+    swept = crank_alone("sweep", SCENE, "-o", str(store), *options, "--no-timing", "--jobs", "1")
     assert swept.exit_code == 0, swept.output
     cells = read_store(store).cells
     assert len(cells) == 4

@@ -63,15 +63,16 @@ def test_a_frame_and_columns_by_name_are_judged_as_their_file(ran: crankcheck.Si
 
 
 def test_a_motion_is_judged_as_its_frame() -> None:
-    solution = crankcheck.solve("shaper")
+    scene = crankcheck.load_scene("slider-crank-offset")
+    solution = crankcheck.solve(scene)
     moved = solution.each_series(lambda series: series + 1e-4)
-    judged = crankcheck.judge("shaper", moved, target=1e-3)
-    framed = crankcheck.judge("shaper", crankcheck.Motion(**parts(moved)), target=1e-3)
+    judged = crankcheck.judge(scene, moved, target=1e-3)
+    framed = crankcheck.judge(scene, crankcheck.Motion(**parts(moved)), target=1e-3)
     assert judged.errors is not None
     assert framed.errors is not None
     assert by_key(judged.errors).keys() == by_key(framed.errors).keys()
     assert judged.errors.worst("angle").maximum == pytest.approx(1e-4)  # type: ignore[union-attr]
-    assert (judged.verdict, crankcheck.judge("shaper", moved, target=1e-5).verdict) == (
+    assert (judged.verdict, crankcheck.judge(scene, moved, target=1e-5).verdict) == (
         "within",
         "out",
     )

@@ -13,6 +13,7 @@ import pytest
 import crankcheck
 from models.files import parse_scene
 from reports.store.manifest import read_manifest
+from tests.worlds.in_process import in_this_process
 
 
 @pytest.fixture(scope="module")
@@ -23,17 +24,18 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> crankcheck.Sweep:
     own = replace(
         shipped, name="own", driver=replace(shipped.driver, law=shipped.driver.law.turned(1.0))
     )
-    return crankcheck.sweep(
-        [own, shipped],
-        folder,
-        engines="mujoco",
-        settings={"mujoco.iterations": np.array([50, 100])},
-        steps_per_turn=90,
-        turns=1,
-        timing=False,
-        keep_trajectories=True,
-        jobs=1,
-    )
+    with in_this_process():
+        return crankcheck.sweep(
+            [own, shipped],
+            folder,
+            engines="mujoco",
+            settings={"mujoco.iterations": np.array([50, 100])},
+            steps_per_turn=90,
+            turns=1,
+            timing=False,
+            keep_trajectories=True,
+            jobs=1,
+        )
 
 
 def test_its_frame_is_a_row_per_cell(swept: crankcheck.Sweep) -> None:
