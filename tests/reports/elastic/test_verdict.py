@@ -8,11 +8,9 @@ import pytest
 
 from models.files import load_scene
 from models.scene import Scene
-from models.springs import PinSpring
-from reports.judge.cell import Cell, CellRunner, Checked, check, examined
+from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
-from sim.engine import Run
-from sim.run import run
+from reports.selftest.segment_changes import in_chain, springs, stiffer
 
 STEPS = 720
 """Of a turn; four segments take no more."""
@@ -64,24 +62,9 @@ def test_a_cell_says_what_its_links_were_given_as(checked: Checked, slider_crank
     assert not {"segments", "springs", "deflection_pure", "deflection_error_m"} & set(rigid)
 
 
-def stiffer(by: float) -> CellRunner:
-    """A runner whose springs are stiffer by a share."""
-
-    def runner(scene: Scene, *rest: object, **options: object) -> Run:
-        springs = {
-            name: replace(spring, rate=spring.rate * (1.0 + by))
-            if isinstance(spring, PinSpring)
-            else spring
-            for name, spring in scene.springs.items()
-        }
-        return run(replace(scene, springs=springs), *rest, **options)  # type: ignore[arg-type]
-
-    return runner
-
-
 def test_springs_that_are_a_part_in_a_hundred_too_stiff_are_out(scene: Scene) -> None:
     asked = cell(scene, dt_s=scene.driver.law.period_s / 2880, steps=2880)
-    found, _ = examined(asked, stiffer(0.01))
+    found, _ = examined(asked, in_chain(springs(stiffer))(0.01))
     assert {finding.rule for finding in found.failures} == {"CC132"}
 
 
