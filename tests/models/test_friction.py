@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from models.errors import SceneError
-from models.files import load_scene, parse_scene, shipped
+from models.files import parse_scene
 from models.friction import ConstantFriction, CoulombFriction
 from models.scene_text import scene_text
 
@@ -56,12 +56,6 @@ def test_friction_reads_back_as_itself(of_slider: str) -> None:
     again = parse_scene(scene_text(scene), "again")
     assert again == scene
     assert list(again.friction) == list(scene.friction)
-
-
-@pytest.mark.parametrize("name", shipped())
-def test_a_scene_without_friction_says_nothing_of_it(name: str) -> None:
-    scene = load_scene(name)
-    assert ("[friction." in scene_text(scene)) == bool(scene.friction)
 
 
 FAULTS = {

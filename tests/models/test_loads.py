@@ -10,7 +10,7 @@ import pytest
 
 from models.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.errors import CrankcheckError, SceneError
-from models.files import load_scene, parse_scene, shipped
+from models.files import load_scene, parse_scene
 from models.interpolation import slopes, spline
 from models.loads import Load
 from models.scene_text import scene_text
@@ -101,13 +101,6 @@ def test_loads_read_back_as_themselves() -> None:
     again = parse_scene(scene_text(scene), "again")
     assert again == scene
     assert list(again.loads) == list(scene.loads)
-
-
-@pytest.mark.parametrize("name", shipped())
-def test_a_scene_without_loads_says_nothing_of_them(name: str) -> None:
-    scene = load_scene(name)
-    assert scene.loads == {}
-    assert "loads" not in scene_text(scene)
 
 
 def test_a_characteristic_of_another_kind_has_no_words() -> None:
@@ -312,3 +305,17 @@ def test_no_characteristic_is_steeper_than_it_says(own: Characteristic) -> None:
 def test_a_characteristic_without_magnitude_is_refused(make: object, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         make()  # type: ignore[operator]
+
+
+@pytest.mark.parametrize("last_row", [0.03, 0.05], ids=["open period", "closed period"])
+def test_a_table_repeats_its_kinks(last_row: float) -> None:
+    table = Tabulated((0.0, 0.02, last_row), (1.0, -1.0, 1.0), period=0.05)
+    wanted = [0.0, 0.02, 0.03, 0.05, 0.07, 0.08] if last_row < 0.05 else [0.0, 0.02, 0.05, 0.07]
+    assert list(table.kinks_between(0.0, 0.09)) == pytest.approx(wanted)
+    before = list(table.kinks_between(-0.05, 0.0))
+    assert before[0] == -0.05
+    assert before[-1] == 0.0
+
+
+def test_steps_that_happen_once_are_told_within_alone() -> None:
+    assert list(Staircase((0.1, 0.2, 0.3), (1.0, 0.0, 2.0)).kinks_between(0.15, 0.3)) == [0.2, 0.3]

@@ -1,4 +1,5 @@
-"""The MJCF text: what it holds, that it loads in a bare MuJoCo, and what it refuses."""
+"""The MJCF text: what it holds, that it loads in a bare MuJoCo, what it refuses, and the files in
+models/canonical/, which are what the builder writes: `make models` writes them anew."""
 
 from __future__ import annotations
 
@@ -11,6 +12,7 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 import pytest
 
+import models
 from analytic.kinematics import solve
 from models.errors import EngineError
 from models.files import load_scene, shipped
@@ -34,24 +36,28 @@ def assembled(text: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
     return model, data
 
 
+def built(name: str) -> str:
+    scene = load_scene(name)
+    return build(scene, start_of(scene))
+
+
+def apart(model: mujoco.MjModel, data: mujoco.MjData) -> float:
+    """How far the loops are open."""
+    pairs = zip(model.eq_obj1id, model.eq_obj2id, strict=True)
+    return max(float(np.abs(data.site_xpos[a] - data.site_xpos[b]).max()) for a, b in pairs)
+
+
 @pytest.mark.parametrize("time_s", [0.0, 0.123])
 @pytest.mark.parametrize("name", sorted(shipped()))
 def test_every_scene_loads_with_closed_loops_and_the_velocities_of_the_state(
-    name: str, time_s: float, tmp_path: Path
+    name: str, time_s: float
 ) -> None:
     scene = load_scene(name)
     state = start_of(scene, time_s)
-    path = tmp_path / "scene.xml"
-    path.write_text(build(scene, state), encoding="utf-8")
-    model = mujoco.MjModel.from_xml_path(str(path))
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
-    mujoco.mj_forward(model, data)
+    model, data = assembled(build(scene, state))
     assert model.key(0).name == "assembled"
     assert model.neq >= 1
-    for equality in range(model.neq):
-        a, b = (data.site_xpos[i[equality]] for i in (model.eq_obj1id, model.eq_obj2id))
-        assert np.abs(a - b).max() < 1e-12
+    assert apart(model, data) < 1e-12
     jacobian = data.efc_J.reshape(-1, model.nv)
     peak = max(abs(w) for w in state.omega.values()) * scene.longest_m
     assert np.abs(jacobian @ data.qvel).max() < 1e-12 * max(peak, 1.0)
@@ -65,9 +71,7 @@ def test_the_text_alone_runs_a_turn_in_a_bare_mujoco(name: str) -> None:
     mujoco.mj_step(model, data, 1000)
     mujoco.mj_forward(model, data)
     wanted = start_of(scene, scene.driver.law.period_s)
-    for equality in range(model.neq):
-        a, b = (data.site_xpos[i[equality]] for i in (model.eq_obj1id, model.eq_obj2id))
-        assert np.abs(a - b).max() < 1e-5 * scene.longest_m
+    assert apart(model, data) < 1e-5 * scene.longest_m
     for link, theta in wanted.theta.items():
         turn = data.xmat[model.body(link).id].reshape(3, 3)
         assert turn[1, 0] == pytest.approx(np.sin(theta), abs=1e-5)
@@ -144,7 +148,7 @@ def test_the_loop_of_a_fourbar_closes_at_any_pin_but_the_drivers(close: str) -> 
     model, data = assembled(text)
     assert f'<connect name="{close}: ' in text
     assert model.neq == 1
-    assert np.abs(data.site_xpos[0] - data.site_xpos[1]).max() < 1e-12
+    assert apart(model, data) < 1e-12
 
 
 def test_three_links_at_one_pin_are_tied_twice() -> None:
@@ -165,15 +169,12 @@ def test_three_links_at_one_pin_are_tied_twice() -> None:
     assert len(ties) + len(in_tree) == 2
     assert len(tree.closures) == 2
     model, data = assembled(build(scene, start_of(scene)))
-    for equality in range(model.neq):
-        a, b = (data.site_xpos[i[equality]] for i in (model.eq_obj1id, model.eq_obj2id))
-        assert np.abs(a - b).max() < 1e-12
+    assert apart(model, data) < 1e-12
 
 
 def test_the_same_scene_gives_the_same_text() -> None:
-    scene = load_scene("shaper")
-    text = build(scene, start_of(scene))
-    assert text == build(load_scene("shaper"), start_of(scene))
+    text = built("shaper")
+    assert text == built("shaper")
     assert text.isascii()
 
 
@@ -243,3 +244,26 @@ def test_a_link_that_hangs_on_nothing_is_named() -> None:
     )
     with pytest.raises(EngineError, match="loose hangs on nothing"):
         build(scene, state)
+
+
+FOLDER = Path(models.__file__).parent / "canonical"
+NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
+
+
+def same(kept: str, new: str) -> bool:
+    """The same text; numbers may differ in their last digits, as processors' sines do."""
+    if NUMBER.split(kept) != NUMBER.split(new):
+        return False
+    pairs = [np.array(NUMBER.findall(text), dtype=float) for text in (kept, new)]
+    return bool(np.allclose(*pairs, rtol=1e-13, atol=1e-15))
+
+
+@pytest.mark.parametrize("name", ["fourbar-lecture-1", "slider-crank-central"])
+def test_kept_file_is_what_the_builder_writes(name: str) -> None:
+    assert same((FOLDER / f"{name}.xml").read_text(encoding="utf-8"), built(name))
+
+
+def test_comparison_sees_a_changed_number_and_a_changed_word() -> None:
+    text = built("fourbar-lecture-1")
+    assert not same(text, text.replace("0.25", "0.25000001"))
+    assert not same(text, text.replace("RK4", "Euler"))

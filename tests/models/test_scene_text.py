@@ -23,8 +23,10 @@ LAWS = [
 @pytest.mark.parametrize("name", every_shipped())
 def test_every_shipped_scene_reads_back_as_itself(name: str) -> None:
     scene = load_scene(name)
-    again = parse_scene(scene_text(scene), name)
+    text = scene_text(scene)
+    again = parse_scene(text, name)
     assert again == scene
+    assert ("[loads." in text, "[friction." in text) == (bool(scene.loads), bool(scene.friction))
     assert list(again.links) == list(scene.links)
     assert list(again.pins) == list(scene.pins)
 
