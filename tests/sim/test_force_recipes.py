@@ -18,6 +18,7 @@ from models.characteristics import Constant, Sine
 from models.errors import EngineError
 from models.files import load_scene
 from models.friction import ConstantFriction
+from models.hard import double_parallelogram
 from models.loads import Load
 from models.scene import Scene
 from sim.force_recipes import force_recipe
@@ -31,9 +32,9 @@ SETTLED = 36
 """Samples after which nothing is left of what a start shakes: exudyn's are off by 6e-3 at first."""
 
 
-def recipe(name: str, scene: Scene) -> str:
+def recipe(name: str, scene: Scene, steps: float = 720.0) -> str:
     settings = resolved(engine(name).profiles["tuned"], None)
-    return force_recipe(name, scene, solve(scene, np.zeros(1)).state(), settings, 720.0)
+    return force_recipe(name, scene, solve(scene, np.zeros(1)).state(), settings, steps)
 
 
 def elsewhere(text: str, folder: Path) -> str:
@@ -66,9 +67,9 @@ def columns_of(text: str) -> dict[str, np.ndarray]:
     return dict(zip(text.splitlines()[0].split(","), rows.T, strict=True))
 
 
-def off(scene: Scene, columns: dict[str, np.ndarray]) -> float:
+def off(scene: Scene, columns: dict[str, np.ndarray], settled: int = SETTLED) -> float:
     """The largest error of what was printed, as shares of the largest reaction and torque."""
-    columns = {name: column[SETTLED:] for name, column in columns.items()}
+    columns = {name: column[settled:] for name, column in columns.items()}
     true = kinetostatics.forces(scene, columns["time_s"], bound=False)
     largest = max(np.abs(force).max() for by in true.pins.values() for force in by.values())
     errors = [np.abs(columns["torque_n_m"] - true.torque).max() / np.abs(true.torque).max()]
@@ -114,3 +115,32 @@ def test_that_of_mujoco_is_refused_where_a_file_does_not_hold_what_drives_or_loa
         recipe("mujoco", pulse)
     with pytest.raises(EngineError, match=r"tangent: driver comes as a control"):
         recipe("mujoco", load_scene("tangent"))
+
+
+@pytest.mark.parametrize(
+    ("name", "steps", "most"),
+    [
+        ("fourbar-lecture-1", 720, 5e-4),
+        ("slider-crank-excel-350", 360, 2e-3),  # a rail
+        ("scotch-yoke", 360, 2e-3),  # a groove in a moving guide, a gear, and a body without turns
+        ("slotted-lever", 360, 2e-3),  # a rail that moves
+    ],
+)
+def test_that_of_pymunk_holds_every_kind_of_line_from_the_first_step_on(
+    name: str, steps: int, most: float
+) -> None:
+    scene = load_scene(name)
+    columns = columns_of(printed(recipe("pymunk", scene, steps)))
+    assert len(columns["time_s"]) == steps
+    assert off(scene, columns, settled=0) < most
+
+
+def test_what_that_of_pymunk_would_leave_out_is_refused() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    loaded = replace(scene, loads={"push": Load("push", "rocker", None, Constant(1.0))})
+    with pytest.raises(EngineError, match=r"leaves out loads\.push; take them out"):
+        recipe("pymunk", loaded)
+    with pytest.raises(EngineError, match="leaves out a driver whose speed is not constant"):
+        recipe("pymunk", load_scene("tangent"))
+    with pytest.raises(EngineError, match="redundant links leave the reactions open"):
+        recipe("pymunk", double_parallelogram("double-parallelogram", source="test"))

@@ -178,15 +178,22 @@ def test_what_nobody_has_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
         viewer()
 
 
+def package(folder: Path, name: str, needs: str, text: str) -> Path:
+    """The files of an engine: a declaration, and an adapter with this text."""
+    own = folder / name
+    own.mkdir()
+    declared = (
+        f"from sim.registry import Declaration\nDECLARATION = Declaration({needs!r}, {needs!r})\n"
+    )
+    (own / "__init__.py").write_text(declared)
+    (own / "engine.py").write_text(text)
+    return own
+
+
 def test_a_fault_in_the_files_of_an_engine_is_not_taken_for_a_missing_package(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    folder = tmp_path / "wrong_engine"
-    folder.mkdir()
-    (folder / "__init__.py").write_text(
-        "from sim.registry import Declaration\nDECLARATION = Declaration('json', 'json')\n"
-    )
-    (folder / "engine.py").write_text("import math\nmath.nothing_there\n")
+    folder = package(tmp_path, "wrong_engine", "json", "import math\nmath.nothing_there\n")
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setitem(registry.ENGINES, "wrong", "wrong_engine")
     with pytest.raises(AttributeError, match="nothing"):
@@ -200,12 +207,7 @@ def test_a_fault_in_the_files_of_an_engine_is_not_taken_for_a_missing_package(
 def test_a_package_that_can_not_be_imported_is_no_missing_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    folder = tmp_path / "broken_engine"
-    folder.mkdir()
-    (folder / "__init__.py").write_text(
-        "from sim.registry import Declaration\nDECLARATION = Declaration('brkn', 'brkn')\n"
-    )
-    (folder / "engine.py").write_text("import brkn\n")
+    package(tmp_path, "broken_engine", "brkn", "import brkn\n")
     (tmp_path / "brkn.py").write_text("raise RuntimeError('no screen\\nhere')\n")
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(registry, "ENGINES", {"broken": "broken_engine"})

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from typing import Any
 
+import exudyn as exu
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 import pymunk
@@ -11,14 +13,21 @@ import pytest
 
 from analytic.kinematics import solve
 from models.files import load_scene
-from sim.engine import Facts, SettingValue
-from sim.mujoco.engine import MujocoSession
-from sim.pymunk.engine import PymunkSession
+from sim.engine import Facts, Session, SettingValue
+from sim.exudyn.engine import ENGINE
+from sim.exudyn.solver import simulation
 from sim.registry import engine
 from sim.settings import SettingError, resolved
 
 SCENE = load_scene("fourbar-lecture-1")
 START = solve(SCENE, np.zeros(1)).state()
+OF_A_RUN = {
+    "solution.file.write",
+    "solution.sensors.writePeriod",
+    "timeIntegration.endTime",
+    "timeIntegration.numberOfSteps",
+}
+"""What has to do with the length of a run, and with what is kept of it."""
 BARE = """
 <mujoco>
   <worldbody>
@@ -30,9 +39,7 @@ BARE = """
 """
 
 
-def opened(
-    name: str, profile: str, settings: Mapping[str, SettingValue] | None = None
-) -> MujocoSession | PymunkSession:
+def opened(name: str, profile: str, settings: Mapping[str, SettingValue] | None = None) -> Session:
     chosen = engine(name)
     held = resolved(chosen.profiles[profile], settings)
     return chosen.open(SCENE, START, held, 1e-3, "prescribed")
@@ -72,6 +79,33 @@ def test_pymunk_as_shipped_is_a_bare_space() -> None:
             assert getattr(held, name) == getattr(joint, name), name
 
 
+def leaves(values: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
+    for name, value in values.items():
+        if isinstance(value, dict):
+            yield from leaves(value, f"{path}{name}.")
+        else:
+            yield f"{path}{name}", value
+
+
+def test_exudyn_as_shipped_differs_from_a_bare_simulation_by_what_a_run_is_asked_for() -> None:
+    asked = simulation(resolved(ENGINE.profiles["as-shipped"], None), 1e-4)
+    own, bare = (dict(leaves(each.GetDictionary())) for each in (asked, exu.SimulationSettings()))
+    assert len(bare) > 100
+    assert {name for name in bare if str(own[name]) != str(bare[name])} == OF_A_RUN
+    assert exu.SimulationSettings().timeIntegration.solverType.name == "GeneralizedAlpha"
+
+
+def test_our_trapezoidal_rule_is_that_of_exudyn() -> None:
+    """`SolveDynamic` sets two flags for it, which a solver of one's own has to be given."""
+    asked = simulation(
+        resolved(ENGINE.profiles["tuned"], {"integrator": "TrapezoidalIndex2"}), 1e-3
+    )
+    assert asked.timeIntegration.generalizedAlpha.useNewmark
+    assert asked.timeIntegration.generalizedAlpha.useIndex2Constraints
+    held = facts("exudyn", {"integrator": "TrapezoidalIndex2"}).settings
+    assert held["integrator"] == "TrapezoidalIndex2"
+
+
 @pytest.mark.parametrize(
     ("name", "setting", "value"),
     [
@@ -85,11 +119,25 @@ def test_pymunk_as_shipped_is_a_bare_space() -> None:
         ("pymunk", "iterations", 7),
         ("pymunk", "damping", 0.75),
         ("pymunk", "error_bias", 0.25),
+        ("exudyn", "integrator", "TrapezoidalIndex2"),
+        ("exudyn", "spectral_radius", 0.75),
+        ("exudyn", "relative_tolerance", 1e-6),
+        ("exudyn", "absolute_tolerance", 1e-7),
+        ("exudyn", "iterations", 17),
+        ("exudyn", "jacobian", "each-iteration"),
+        ("exudyn", "jacobian", "as-needed"),
+        ("exudyn", "adaptive_step", "disable"),
+        ("exudyn", "ignore_singular", "disable"),
     ],
 )
 def test_a_setting_reaches_the_engine(name: str, setting: str, value: SettingValue) -> None:
     assert facts(name, {setting: value}).settings[setting] == value
     assert opened(name, "tuned").facts().settings[setting] != value
+
+
+@pytest.mark.parametrize("name", ["EXUdense", "EigenDense", "EigenSparse"])
+def test_so_does_a_linear_solver_of_exudyn(name: str) -> None:
+    assert facts("exudyn", {"linear_solver": name}).settings["linear_solver_used"] == name
 
 
 @pytest.mark.parametrize(
@@ -105,6 +153,12 @@ def test_a_setting_reaches_the_engine(name: str, setting: str, value: SettingVal
         ("pymunk", "error_bias", -1.0),
         ("pymunk", "error_bias", float("nan")),
         ("pymunk", "lines", "loose"),
+        ("exudyn", "integrator", "RK44"),
+        ("exudyn", "spectral_radius", 1.5),
+        ("exudyn", "relative_tolerance", -1.0),
+        ("exudyn", "iterations", 0),
+        ("exudyn", "jacobian", "never"),
+        ("exudyn", "linear_solver", "LAPACK"),
     ],
 )
 def test_a_value_that_an_engine_does_not_take_is_refused(

@@ -128,31 +128,34 @@ def test_a_pymunk_run_that_comes_apart_is_diverged_too(
     assert shown.out + shown.err == ""
 
 
-def test_an_engine_that_says_it_diverged_is_believed(fake_engine: ModuleType) -> None:
-    result = ran(engine=fake_engine.FakeEngine(solve, diverges_after=120), steps=9000)
-    assert (result.status, result.stopped_at_s) == ("diverged", pytest.approx(0.12))
-    assert result.reason == "came apart at 0.12 s"
+STOPPED = {"diverges_after": 120, "stopped": "no step was small enough"}
 
 
-def test_an_engine_that_stops_by_itself_says_why(fake_engine: ModuleType) -> None:
-    given = {"diverges_after": 120, "stopped": "no step was small enough"}
+def apart(fake: ModuleType, from_s: float) -> dict[str, object]:
+    """A fake engine whose loop is open by more than the longest link from some instant on."""
+    return {"disturb": fake.turned_link("rocker", lambda t: np.where(t > from_s, 3.0, 0.0))}
+
+
+@pytest.mark.parametrize(
+    ("given", "apart_s", "stopped_s", "reason"),
+    [
+        ({"diverges_after": 120}, None, 0.12, "came apart at 0.12 s"),
+        (STOPPED, None, 0.12, "stopped after 0.12 s: no step was small enough"),
+        (STOPPED, 0.1, 0.1, "came apart at 0.10"),  # which was first
+        ({}, 0.2, 0.2, "came apart at 0.20"),
+    ],
+)
+def test_a_run_that_ends_too_early_says_when_and_why(
+    given: dict[str, object],
+    apart_s: float | None,
+    stopped_s: float,
+    reason: str,
+    fake_engine: ModuleType,
+) -> None:
+    given = given | ({} if apart_s is None else apart(fake_engine, apart_s))
     result = ran(engine=fake_engine.FakeEngine(solve, **given), steps=9000)
-    assert (result.status, result.stopped_at_s) == ("diverged", pytest.approx(0.12))
-    assert result.reason == "stopped after 0.12 s: no step was small enough"
-
-
-def test_what_came_apart_before_an_engine_stopped_is_told_first(fake_engine: ModuleType) -> None:
-    apart = fake_engine.turned_link("rocker", lambda t: np.where(t > 0.1, 3.0, 0.0))
-    given = {"diverges_after": 120, "stopped": "no step was small enough", "disturb": apart}
-    result = ran(engine=fake_engine.FakeEngine(solve, **given), steps=9000)
-    assert result.reason.startswith("came apart at 0.10")
-
-
-def test_a_loop_open_by_more_than_the_longest_link_is_diverged(fake_engine: ModuleType) -> None:
-    apart = fake_engine.turned_link("rocker", lambda t: np.where(t > 0.2, 3.0, 0.0))
-    result = ran(engine=fake_engine.FakeEngine(solve, disturb=apart), steps=9000)
-    assert result.status == "diverged"
-    assert result.stopped_at_s == pytest.approx(0.2)
+    assert (result.status, result.stopped_at_s) == ("diverged", pytest.approx(stopped_s))
+    assert result.reason == reason if apart_s is None else result.reason.startswith(reason)
 
 
 def test_an_engine_that_raises_is_a_row_with_a_reason(fake_engine: ModuleType) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,13 +11,17 @@ import pytest
 from analytic.forces import kinetostatics
 from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve
+from models import mjcf_friction, tree
 from models.errors import EngineError
 from models.files import load_scene
 from models.friction import ConstantFriction, CoulombFriction
 from models.mjcf import build
 from models.scene import Scene
 from models.window_chain import Chain
+from sim.mujoco import session
+from sim.registry import engine
 from sim.run import run
+from sim.settings import resolved
 from tests.sim.mujoco.test_reactions import STEPS, acting, opened
 
 FOURBAR = load_scene("fourbar-lecture-1")
@@ -85,3 +90,48 @@ def test_a_free_rod_slows_down_at_its_rate_and_then_stands() -> None:
     np.testing.assert_allclose(turned[sliding], (time_s - 1.5 * time_s**2)[sliding], atol=1e-12)
     assert turned[-1] == pytest.approx(1.0 / 6.0, abs=5e-5)  # but for the step in which it stops
     assert abs(rod.omega[-1]) < 1e-12
+
+
+def turned(scene: Scene) -> Scene:
+    """The same driver, with the two links of its pin in the other order."""
+    driver = scene.driver
+    law = replace(driver.law, start_rad=-driver.law.start_rad, speed_rad_s=-driver.law.speed_rad_s)  # type: ignore[attr-defined, call-arg]  # of constant speed
+    return replace(scene, driver=replace(driver, link=driver.base, base=driver.link, law=law))
+
+
+@pytest.mark.parametrize(
+    ("scene", "joint", "size"),
+    [
+        (load_scene("slider-crank-by-piston"), "C", 0.5),
+        (load_scene("fourbar-by-coupler"), "B", 0.02),
+        (turned(load_scene("fourbar-by-coupler")), "B", 0.02),
+        (load_scene("fourbar-lecture-1"), "A", 0.02),
+    ],
+    ids=["slider", "pin", "pin, links in the other order", "crank"],
+)
+def test_friction_of_the_driven_joint_is_not_taken_for_the_drive(
+    scene: Scene, joint: str, size: float
+) -> None:
+    """What rubs in the driven joint itself is no part of what the drive exerts."""
+    scene = rubbing(scene, **{joint: size})
+    start = solve(scene, np.zeros(1)).state()
+    dt_s = scene.driver.law.period_s / 720
+    done = run(scene, start, "mujoco", "tuned", dt_s=dt_s, steps=120, with_forces=True)
+    found = done.motion.forces
+    drive = kinetostatics.forces(scene, found.time_s[20:], skip_dead_points=True).torque
+    assert np.nanmax(np.abs(found.torque[20:] - drive)) < 0.02 * size
+
+
+def test_the_tree_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    plans: list[object] = []
+
+    def counted(*args: Any, **options: Any) -> tree.Tree:
+        plans.append(args)
+        return tree.plan(*args, **options)
+
+    for module in (mjcf_friction, session):
+        monkeypatch.setattr(module, "plan", counted)
+    scene, mujoco = FOURBAR, engine("mujoco")
+    settings = resolved(mujoco.profiles["tuned"], {"close": "B"})
+    mujoco.open(scene, solve(scene, np.zeros(1)).state(), settings, 1e-3, "prescribed")
+    assert len(plans) == 1

@@ -1,4 +1,5 @@
-"""Pins of what is let go, closed for the arcs of their points."""
+"""Errors of pymunk by the step: of pins that are closed for the arcs of their points, and of a
+motor in a pin of two moving links."""
 
 from __future__ import annotations
 
@@ -30,3 +31,20 @@ def test_pins_are_open_by_a_cube_of_the_step_where_chords_leave_a_square(name: s
     assert math.log2(arcs[0] / arcs[1]) > 2.7
     assert math.log2(chords[0] / chords[1]) == pytest.approx(2.0, abs=0.2)
     assert arcs[1] < 0.1 * chords[1]
+
+
+@pytest.mark.parametrize(("profile", "order"), [("as-shipped", 1.0), ("tuned", 2.0)])
+def test_a_driven_pin_of_two_moving_links_converges_as_its_profile_does(
+    profile: str, order: float
+) -> None:
+    scene = load_scene("fourbar-by-coupler")
+    start = solve(scene, np.zeros(1)).state()
+    errors = []
+    for steps in (720, 2880):
+        dt_s = scene.driver.law.period_s / steps
+        done = run(scene, start, "pymunk", profile, dt_s=dt_s, steps=2 * steps)
+        assert done.status == "ok", done.reason
+        true = solve(scene, done.motion.time_s, bound=False).links["rocker"].theta
+        errors.append(float(np.max(np.abs(done.motion.links["rocker"].theta - true))))
+    assert errors[0] < 1e-2
+    assert math.log2(errors[0] / errors[-1]) / 2.0 == pytest.approx(order, abs=0.1)
