@@ -67,8 +67,6 @@ def errors_of(disturbed: Callable[..., Run]) -> Callable[..., Errors]:
     """The errors that `compare` finds in a disturbed run."""
 
     def find(scene: Scene, *args: object, **options: object) -> Errors:
-        found = compare(Beside.of(Truth(scene), disturbed(scene, *args, **options)))
-        assert found is not None
-        return found
+        return compare(Beside.of(Truth(scene), disturbed(scene, *args, **options)))
 
     return find

@@ -50,10 +50,7 @@ def at(speed: float, *scenes: Scene) -> Demand:
 
 
 def told(
-    stored: Stored,
-    every: tuple[Line, ...],
-    demand: Demand,
-    texts: Mapping[str, str] = TEXTS,
+    stored: Stored, every: tuple[Line, ...], demand: Demand, texts: Mapping[str, str] = TEXTS
 ) -> MeasuredStudy:
     return evidence(stored, every, demand, texts, EVERY.values())
 

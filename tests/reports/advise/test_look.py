@@ -45,7 +45,6 @@ def test_its_error_is_that_of_a_comparison(choice: Choice) -> None:
         settings=choice.settings,
     )
     errors = compare(Beside.of(truth, done))
-    assert errors is not None
     places = [worst for name in named("place") if (worst := errors.worst(name))]
     assert look(cell).error == pytest.approx(max(worst.pure for worst in places), rel=1e-9)
 

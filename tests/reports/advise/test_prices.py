@@ -55,11 +55,9 @@ def test_the_dearest_scene_counts_at_the_step_of_the_promise(
     every = [found("a", 4), found("none", None), found("b", 1)]
     priced = prices(DEMAND, every)
     first, none, last = priced.each
-    assert first is not None
     assert (first.scene, first.us_per_step) == (SECOND, 4.0)
     assert first.s_per_s == pytest.approx(4e-6 * 4 / 0.02)
     assert none is None
-    assert last is not None
     assert last.s_per_s == pytest.approx(1.5e-6 / 0.02)
     assert [(cell.scene.name, cell.dt_s, cell.profile) for cell in asked] == [
         (name, dt, "tuned") for dt in (0.005, 0.02) for name in (FIRST, SECOND)

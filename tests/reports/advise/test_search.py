@@ -69,11 +69,9 @@ def second_order(exact: float) -> Callable[[str, float], float]:
 @pytest.mark.parametrize("exact", [0.5, 1.0, 3.0, 4.5, 7.0, 60.0])
 def test_finds_the_fewest_sub_steps_of_the_worst_scene(exact: float) -> None:
     found, child = searched(second_order(exact))
-    assert found.promise is not None
     assert found.promise.substeps == max(1, math.ceil(exact))
     assert found.promise.scene == SECOND
     assert found.promise.error <= DEMAND.target
-    assert found.at_frame is not None
     assert found.at_frame.error == pytest.approx(1e-3 * exact**2)
     assert found.nearest is None
     assert len(child.asked) == found.runs < 30
@@ -97,7 +95,6 @@ def test_a_scene_that_is_over_the_target_spares_the_runs_of_the_others() -> None
 def test_luck_is_no_promise() -> None:
     """Two errors that cancel with 3 sub-steps."""
     found, _ = searched(lambda _, n: 1e-5 if n == 3 else 1e-3 * (8.0 / n) ** 2)
-    assert found.promise is not None
     assert found.promise.substeps == 8
 
 
@@ -113,7 +110,6 @@ def test_settings_that_break_with_more_sub_steps_promise_nothing() -> None:
 def test_where_nothing_reaches_the_nearest_is_told_for_all_scenes() -> None:
     found, child = searched(lambda name, n: 2e-3 + 1e-2 / n**2 + (name == FIRST) * 1e-4)
     assert found.promise is None
-    assert found.nearest is not None
     assert found.nearest.error == pytest.approx(2.1e-3, rel=0.1)
     n = found.nearest.substeps
     assert {(FIRST, n), (SECOND, n)} <= {(name, each) for name, each, _ in child.asked}
@@ -123,7 +119,6 @@ def test_where_nothing_reaches_the_nearest_is_told_for_all_scenes() -> None:
 def test_too_coarse_a_frame_is_not_run_and_sub_steps_mend_it() -> None:
     found, child = searched(second_order(2.0), frame_s=1 / 6)
     assert found.at_frame is None
-    assert found.promise is not None
     assert found.promise.substeps == replace(DEMAND, frame_s=1 / 6).least == 3
     assert min(n for _, n, _ in child.asked) == 3
 
@@ -141,7 +136,6 @@ def test_an_error_that_grows_has_to_stay_under_the_target_for_longer() -> None:
         return child.asked[-1][2]
 
     found = _reached(DEMAND, MeasuredStudy(), cast("Isolated[TriedRun]", child), CHOICE)
-    assert found.promise is not None
     assert found.promise.substeps == 6
     assert any(turns == pytest.approx(80.0, rel=0.01) for _, _, turns in child.asked)
 
@@ -157,7 +151,6 @@ def test_an_error_that_grows_has_to_stay_under_the_target_for_longer() -> None:
 def test_a_run_that_no_step_mends_is_the_last(end: TriedRun | Lost, status: str) -> None:
     found, child = searched(lambda _, n: end)
     assert len(child.asked) == 1
-    assert found.ended is not None
     assert found.ended.status == status
     assert found.ended.reason
     assert (found.promise, found.nearest, found.held_at) == (None, None, ())
@@ -170,9 +163,7 @@ def test_a_run_that_comes_apart_at_the_frame_is_not() -> None:
             TriedRun(math.inf, "diverged", "came apart") if n < 5 else 1e-3 * (6.0 / n) ** 2
         )
     )
-    assert found.at_frame is not None
     assert found.at_frame.seen.status == "diverged"
-    assert found.promise is not None
     assert found.promise.substeps == 6
 
 
@@ -181,12 +172,10 @@ def test_what_a_study_covers_is_not_run_but_its_promise_is() -> None:
     steps = DEMAND.frames_per_turn
     known = studied(lambda name, n: law(name, n / steps), steps, 400 * steps)
     found, child = searched(law, known)
-    assert found.promise is not None
     assert found.promise.substeps == 5
     assert not found.promise.seen.studied
     assert {(name, n) for name, n, _ in child.asked} == {(FIRST, 5), (SECOND, 5)}
     assert found.runs == 2
-    assert found.at_frame is not None
     assert found.at_frame.seen.studied
 
 
@@ -194,9 +183,7 @@ def test_a_study_that_says_otherwise_than_a_run_is_left() -> None:
     steps = DEMAND.frames_per_turn
     known = studied(lambda name, n: 1e-4, steps, 400 * steps)
     found, child = searched(second_order(5.0), known)
-    assert found.promise is not None
     assert found.promise.substeps == 5
-    assert found.at_frame is not None
     assert not found.at_frame.seen.studied
     assert {n >= 6 for _, n, _ in child.asked} == {True, False}
 
@@ -210,6 +197,5 @@ def test_what_a_study_lacks_is_run() -> None:
         whole, measured={key: each for key, each in whole.measured.items() if key[0] == SECOND}
     )
     found, child = searched(law, known)
-    assert found.promise is not None
     assert found.promise.substeps == 5
     assert {n for name, n, _ in child.asked if name == SECOND} == {1, 5}

@@ -54,9 +54,7 @@ def untimed(row: Row) -> Row:
 
 
 def stored(
-    rows: Iterable[Row],
-    scenes: Iterable[str] = (),
-    runs: tuple[Mapping[str, object], ...] = (),
+    rows: Iterable[Row], scenes: Iterable[str] = (), runs: tuple[Mapping[str, object], ...] = ()
 ) -> Stored:
     """A store of the rows."""
     manifest = Manifest(dict.fromkeys(scenes, ""), runs)

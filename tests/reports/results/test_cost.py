@@ -63,7 +63,6 @@ def test_the_time_to_a_target_is_taken_along_the_fit() -> None:
     line = line_of(second_order("a", "x", 1e-3, 2.0))
     assert time_to(line, 1e-4) == pytest.approx(2e-6 * 90 * math.sqrt(10), rel=1e-3)
     found = reached(line, 1e-4)
-    assert found is not None
     assert found.steps_per_turn == pytest.approx(90 * math.sqrt(10), rel=1e-3)
 
 
@@ -72,7 +71,6 @@ def test_nothing_is_extrapolated_to_either_side() -> None:
     assert time_to(line, 1e-6) is None  # 1.6e-5 at the finest step
     assert reached(line, 1e-6) is None
     at_most = reached(line, 1e-2)  # 1e-3 at the coarsest
-    assert at_most is not None
     assert at_most.steps_per_turn == pytest.approx(90)
     assert time_to(line, 1e-2) == pytest.approx(2e-6 * 90)
 
@@ -87,7 +85,6 @@ def test_a_step_at_which_a_run_failed_is_not_the_coarsest() -> None:
     rows = second_order("a", "x", 1e-3, 2.0)
     line = line_of([rows[0] | {"status": "diverged"}, *rows[1:]])
     found = reached(line, 1e-2)
-    assert found is not None
     assert found.steps_per_turn == pytest.approx(180)
 
 

@@ -46,6 +46,10 @@ def of(traces: Traces) -> Callable[[str], Trace]:
     return lambda key: traces.get(key, {})
 
 
+def split_of(line: Line, geometric: Callable[[Array, float], Array]) -> Split:
+    return split(line, of(traces_of(line, geometric)), BODY, LENGTH)
+
+
 def second_order(floor: float) -> tuple[Line, Split]:
     """A line with a floor in the phase, and a step's error of order 2 with another shape."""
 
@@ -62,8 +66,6 @@ def test_floor_and_discretisation_are_told_apart_instant_by_instant(floor: float
     assert found.why == ""
     for key, dt_s in zip(line.cells["key"], line.cells["dt_s"], strict=True):
         parts = found.cells[key]
-        assert parts.floor is not None
-        assert parts.discretisation is not None
         # the fit of the largest error tells the order to some digits only
         room = {"atol": found.doubt + 1e-12}
         np.testing.assert_allclose(parts.floor, floor * np.sin(parts.driver_rad), **room)
@@ -75,9 +77,6 @@ def test_floor_and_discretisation_are_told_apart_instant_by_instant(floor: float
 def test_parts_add_up_to_the_total_and_gaps_are_over_the_longest_link() -> None:
     _, found = second_order(1e-3)
     for parts in found.cells.values():
-        assert parts.drive is not None
-        assert parts.floor is not None
-        assert parts.discretisation is not None
         total = parts.drive + parts.floor + parts.discretisation
         np.testing.assert_allclose(total, parts.total, atol=1e-18)
         np.testing.assert_allclose(parts.drive, 3e-9 * np.cos(parts.driver_rad), atol=1e-17)
@@ -86,11 +85,9 @@ def test_parts_add_up_to_the_total_and_gaps_are_over_the_longest_link() -> None:
 
 def test_without_a_floor_the_extrapolation_is_within_its_doubt() -> None:
     line = line_of(lambda dt_s: 40.0 * dt_s**2 * (1.0 + 0.02 * math.sin(1e4 * dt_s)))
-
-    def error(phase: Array, dt_s: float) -> Array:
-        return 40.0 * dt_s**2 * (1.0 + 0.02 * math.sin(1e4 * dt_s)) * np.cos(phase)
-
-    found = split(line, of(traces_of(line, error)), BODY, LENGTH)
+    found = split_of(
+        line, lambda phase, dt: 40.0 * dt**2 * (1.0 + 0.02 * math.sin(1e4 * dt)) * np.cos(phase)
+    )
     assert 0.0 < found.floor < found.doubt
     assert not found.seen
 
@@ -98,13 +95,10 @@ def test_without_a_floor_the_extrapolation_is_within_its_doubt() -> None:
 def test_what_coarser_steps_tell_otherwise_is_doubt() -> None:
     """A phase at which the error falls with another order leaves something behind at dt = 0."""
     line = line_of(lambda dt_s: 1e-4 + 40.0 * dt_s**2)
-
-    def error(phase: Array, dt_s: float) -> Array:
-        return 1e-4 * np.sin(phase) + 40.0 * dt_s**2 * np.cos(phase) + 0.05 * dt_s
-
-    found = split(line, of(traces_of(line, error)), BODY, LENGTH)
+    found = split_of(
+        line, lambda phase, dt: 1e-4 * np.sin(phase) + 40.0 * dt**2 * np.cos(phase) + 0.05 * dt
+    )
     parts = found.cells[str(line.cells["key"].iloc[0])]
-    assert parts.floor is not None
     off = np.max(np.abs(parts.floor - 1e-4 * np.sin(parts.driver_rad)))
     assert 1e-5 < off < 1.2 * found.doubt
     assert found.seen
@@ -114,11 +108,7 @@ def test_a_line_that_falls_throughout_has_no_floor_whatever_is_left() -> None:
     """What is far below the finest error is nothing to be told from so few curves."""
     line = line_of(lambda dt_s: 40.0 * dt_s**2)
     assert line.fit.kind == "order"
-
-    def error(phase: Array, dt_s: float) -> Array:
-        return 40.0 * dt_s**2 * np.cos(phase) + 1e-6 * np.sin(phase)
-
-    found = split(line, of(traces_of(line, error)), BODY, LENGTH)
+    found = split_of(line, lambda phase, dt: 40.0 * dt**2 * np.cos(phase) + 1e-6 * np.sin(phase))
     assert found.floor == pytest.approx(1e-6, rel=0.1)
     assert found.doubt >= found.floor
     assert not found.seen
@@ -127,16 +117,11 @@ def test_a_line_that_falls_throughout_has_no_floor_whatever_is_left() -> None:
 def test_an_order_that_is_not_well_known_is_doubt() -> None:
     """Also where the third step can not be asked, as it was logged at other instants."""
     line = line_of(lambda dt_s: 1e-4 + 40.0 * dt_s**2 * (1.0 + 0.05 * math.sin(1e4 * dt_s)))
-
-    def error(phase: Array, dt_s: float) -> Array:
-        return 1e-4 * np.sin(phase) + 40.0 * dt_s**2 * np.cos(phase)
-
-    traces = traces_of(line, error)
+    traces = traces_of(line, lambda phase, dt: 1e-4 * np.sin(phase) + 40.0 * dt**2 * np.cos(phase))
     third = str(line.cells["key"].iloc[-3])
     traces[third] = {**traces[third], "time_s": traces[third]["time_s"] + 1e-3}
     found = split(line, of(traces), BODY, LENGTH)
     parts = found.cells[str(line.cells["key"].iloc[-1])]
-    assert parts.floor is not None
     assert parts.discretisation is not None
     off = np.max(np.abs(parts.floor - 1e-4 * np.sin(parts.driver_rad)))
     assert 0.0 < off < found.doubt
@@ -147,7 +132,7 @@ def test_an_order_that_is_not_well_known_is_doubt() -> None:
 def test_a_floor_that_is_all_of_the_error_needs_no_order() -> None:
     line = line_of(lambda dt_s: 1e-3)
     assert math.isnan(line.fit.order)
-    found = split(line, of(traces_of(line, lambda phase, dt: 1e-3 * np.sin(phase))), BODY, LENGTH)
+    found = split_of(line, lambda phase, dt: 1e-3 * np.sin(phase))
     assert found.seen
     assert found.floor == pytest.approx(1e-3, rel=1e-3)
 
@@ -155,7 +140,7 @@ def test_a_floor_that_is_all_of_the_error_needs_no_order() -> None:
 def test_an_error_that_follows_no_order_is_not_extrapolated() -> None:
     errors = iter((1e-3, 3e-3, 5e-4, 4e-3))
     line = line_of(lambda dt_s: next(errors))
-    found = split(line, of(traces_of(line, lambda phase, dt: 1e-3 * np.sin(phase))), BODY, LENGTH)
+    found = split_of(line, lambda phase, dt: 1e-3 * np.sin(phase))
     assert found.why == "the error follows no order of the step"
     assert math.isnan(found.floor)
     assert not found.seen
@@ -193,11 +178,7 @@ def test_a_run_that_did_not_end_well_is_split_but_not_extrapolated_from(
     rows = [cell("s", "v", n, 40.0 * (PERIOD_S / n) ** 2, 1.0) for n in STEPS]
     rows[bad]["status"] = "branch-changed"
     (line,) = lines(stored(rows))
-
-    def error(phase: Array, dt_s: float) -> Array:
-        return 40.0 * dt_s**2 * np.cos(phase)
-
-    found = split(line, of(traces_of(line, error)), BODY, LENGTH)
+    found = split_of(line, lambda phase, dt: 40.0 * dt**2 * np.cos(phase))
     assert len(found.cells) == 4
     assert math.isfinite(found.floor) == told
     assert all((parts.floor is not None) == told for parts in found.cells.values())
@@ -209,11 +190,9 @@ def test_a_finest_run_that_timed_out_leaves_the_floor_to_the_others() -> None:
     rows.append(cell("s", "v", 1440, math.nan, 1.0, status="timeout"))
     (line,) = lines(stored(rows))
     assert line.fit.kind == "floor"
-
-    def error(phase: Array, dt_s: float) -> Array:
-        return 1e-3 * np.sin(phase) + 40.0 * dt_s**2 * np.cos(2 * phase)
-
-    traces = traces_of(line, error)
+    traces = traces_of(
+        line, lambda phase, dt: 1e-3 * np.sin(phase) + 40.0 * dt**2 * np.cos(2 * phase)
+    )
     del traces[str(line.cells["key"].iloc[-1])]
     found = split(line, of(traces), BODY, LENGTH)
     assert (found.why, found.seen) == ("", True)
@@ -232,7 +211,6 @@ def test_runs_at_rounding_are_not_extrapolated_from() -> None:
     found = split(line, of(traces), BODY, LENGTH)
     third = line.cells["dt_s"].iloc[2]
     parts = found.cells[str(line.cells["key"].iloc[2])]
-    assert parts.discretisation is not None
     most = float(np.max(np.abs(parts.discretisation)))
     assert most == pytest.approx(1e-7 * (45 * third / PERIOD_S) ** 4, rel=1e-3)
 
@@ -246,11 +224,7 @@ def test_sliders_are_over_the_longest_link() -> None:
     line = line_of(lambda dt_s: 40.0 * dt_s**2)
     traces = traces_of(line, lambda phase, dt: 40.0 * dt**2 * np.cos(phase))
     slid = {
-        key: {
-            **trace,
-            "displacement.C": trace["angle.rocker"],
-            "geometric.displacement.C": trace["geometric.angle.rocker"],
-        }
+        key: {name.replace("angle.rocker", "displacement.C"): a for name, a in trace.items()}
         for key, trace in traces.items()
     }
     found = split(line, of(slid), CurveBody("displacement.C", LENGTH), LENGTH)
@@ -273,7 +247,6 @@ def test_the_worst_body_is_not_decided_by_one_line_that_is_far_off() -> None:
             }
     body = worst_body(found, of(traces), LENGTH)
     assert body == CurveBody("angle.rocker", 1.0)
-    assert body is not None
     assert body.name == "angle of rocker"
 
 

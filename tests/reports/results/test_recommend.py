@@ -64,9 +64,7 @@ def test_a_cell_that_did_not_end_well_disqualifies_with_its_status(status: str) 
 
 def test_a_missing_cell_disqualifies() -> None:
     found = of(
-        cell("a", "x", 90, 1e-4, 1.0),
-        cell("a", "y", 90, 1e-4, 7.0),
-        cell("b", "y", 90, 1e-4, 7.0),
+        cell("a", "x", 90, 1e-4, 1.0), cell("a", "y", 90, 1e-4, 7.0), cell("b", "y", 90, 1e-4, 7.0)
     )
     assert variant(found) == "y"
     found = of(cell("a", "x", 90, 1e-4, 1.0), cell("b", "y", 90, 1.0, 7.0))
@@ -162,7 +160,6 @@ def test_a_promise_that_a_finer_step_breaks_comes_with_caution_and_a_steadier_ch
     )
     assert variant(found) == "wild"
     assert found.caution == "not at 360 steps a turn: a diverged"
-    assert found.steadier is not None
     assert (found.steadier.best.variant, found.steadier.best.steps_per_turn) == ("steady", 90)
     assert "Caution" not in found.steadier.snippet()
     assert "Caution: not at 360" in found.snippet()
@@ -182,9 +179,7 @@ def test_a_dip_of_the_error_is_no_steady_promise() -> None:
 
 def test_a_finer_step_that_was_not_run_everywhere_gives_no_caution() -> None:
     found = of(
-        cell("a", "x", 90, 1e-4, 1.0),
-        cell("b", "x", 90, 1e-4, 1.0),
-        cell("a", "x", 180, 1e-5, 1.0),
+        cell("a", "x", 90, 1e-4, 1.0), cell("b", "x", 90, 1e-4, 1.0), cell("a", "x", 180, 1e-5, 1.0)
     )
     assert (variant(found), found.caution) == ("x", "")
 
@@ -210,10 +205,7 @@ def test_the_step_on_the_fit_is_not_extrapolated() -> None:
 
 
 def test_engines_are_compared_each_with_itself() -> None:
-    rows = [
-        cell("a", "x", 90, 1e-4, 1.0),
-        cell("a", "x", 90, 1e-4, 9.0, engine="pymunk"),
-    ]
+    rows = [cell("a", "x", 90, 1e-4, 1.0), cell("a", "x", 90, 1e-4, 9.0, engine="pymunk")]
     found = recommendations(stored(rows), [1e-2, 1e-3])
     assert [(r.best.engine, r.target, variant(r)) for r in found] == [
         ("mujoco", 1e-2, "x"),
@@ -224,10 +216,7 @@ def test_engines_are_compared_each_with_itself() -> None:
 
 
 def test_another_drive_is_another_choice_and_named() -> None:
-    found = of(
-        cell("a", "x", 90, 1e-4, 1.0),
-        cell("a", "x", 90, 1e-4, 2.0, drive="servo"),
-    )
+    found = of(cell("a", "x", 90, 1e-4, 1.0), cell("a", "x", 90, 1e-4, 2.0, drive="servo"))
     assert (variant(found), found.best.drive) == ("x", "prescribed")
     found = of(cell("a", "x", 90, 1.0, 2.0, drive="servo"))
     assert found.reason.startswith("nearest is x, servo drive at 90 steps a turn: ")

@@ -109,9 +109,7 @@ def recommended(store: Stored) -> tuple[Recommendation, ...]:
     return recommendations(store)
 
 
-def test_every_target_is_reached_on_the_four_bar(
-    recommended: tuple[Recommendation, ...],
-) -> None:
+def test_every_target_is_reached_on_the_four_bar(recommended: tuple[Recommendation, ...]) -> None:
     found = {(one.best.engine, one.target) for one in recommended if not one.reason}
     assert found == {(engine, target) for engine in BARE for target in TARGETS}
 

@@ -47,7 +47,6 @@ def test_the_reference_survives_every_case(name_and_value: tuple[str, float]) ->
     stride = max(trial.steps // MOST_SAMPLES, 1)
     time_s = trial.dt_s * np.arange(0, trial.steps + 1, stride)
     motion = solve(trial.scene, time_s)
-    assert motion.bound is not None
     for link, bound in zip(motion.links.values(), motion.bound.links.values(), strict=True):
         for series in (link.theta, link.omega, link.alpha):
             assert np.isfinite(series).all()

@@ -33,7 +33,6 @@ def done(trial: Trial) -> Run:
 
 
 def moved(found: Run) -> Motion:
-    assert found.motion is not None
     return found.motion
 
 
@@ -91,11 +90,7 @@ def cut(found: Run) -> Run:
 
 
 @pytest.mark.parametrize(
-    ("spoil", "word"),
-    [
-        (cut, "samples"),
-        (lambda found: replace(found, gaps={}), "no gap of"),
-    ],
+    ("spoil", "word"), [(cut, "samples"), (lambda found: replace(found, gaps={}), "no gap of")]
 )
 def test_a_log_with_holes_is_not_held(spoil: Callable[[Run], Run], word: str) -> None:
     trial = CATALOGUE["coarse-step"].trial(90.0)

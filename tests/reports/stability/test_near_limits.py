@@ -16,6 +16,7 @@ from models.scene import Driver, Scene
 from reports.stability.case import Trial
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.catalogue.change_points import TRIAD_CRANK_M
+from reports.stability.error_series import nearest
 from reports.stability.grading import graded
 from tests.worlds.tiers import few, slow
 
@@ -43,15 +44,14 @@ def test_the_driver_comes_as_near_to_the_end_of_its_range_as_the_case_says(name:
     few([*NEAR, "triad-excess"], {"piston-near-limit"}, "the same law; a triad takes a second"),
 )
 def test_what_is_harder_is_nearer_to_a_singular_position(name: str) -> None:
-    case, nearest = CATALOGUE[name], []
+    case, sines = CATALOGUE[name], []
     for value in case.values:
         trial = case.trial(value)
         motion = solve(trial.scene, np.linspace(0.0, trial.scene.driver.law.period_s, 7201))
-        nearest.append(min(float(sine.min()) for sine in motion.conditioning.values()))
-        assert motion.bound is not None
+        sines.append(min(float(sine.min()) for sine in motion.conditioning.values()))
         assert max(float(np.max(each.theta)) for each in motion.bound.links.values()) < 1e-11
     # As the root of what is left, for a limit is a fold.
-    powers = np.diff(np.log(nearest)) / np.diff(np.log(case.values))
+    powers = np.diff(np.log(sines)) / np.diff(np.log(case.values))
     assert powers[-1] == pytest.approx(0.5, abs=0.06)
 
 
@@ -74,7 +74,6 @@ def test_a_lost_run_of_a_driven_slider_is_told_in_metres_and_drawn() -> None:
     found, drawn = graded(case, "mujoco", "as-shipped", 1.0, draw=True)
     assert found.outcome == "branch-changed"
     assert 0.2 < found.at_driver_rad < 0.4
-    assert drawn is not None
     told = drawn.drawing["told"]
     assert (told["joint"], told["unit"]) == ("slider C", "m")  # type: ignore[index]  # as embedded
     place = np.asarray(told["at"])  # type: ignore[index]  # as above
@@ -107,3 +106,21 @@ def test_an_engine_that_cannot_do_a_driver_is_a_row_with_its_reason(
     assert "drive" in found.reason
     assert drawn is None
     assert graded(case, "mujoco", "tuned", 1.0, draw=False)[0].outcome == "ok"
+
+
+@pytest.mark.parametrize(
+    ("case", "value", "least"),
+    [("lever-through-pivot", 360.0, 0.01), ("swinging-lever", 1e-6, 0.01)],
+)
+def test_a_lever_whose_block_comes_to_its_pivot_is_said_to_be_near(
+    case: str, value: float, least: float
+) -> None:
+    trial = CATALOGUE[case].trial(value)
+    motion = solve(trial.scene, np.arange(1441) * trial.dt_s, bound=False)
+    assert 0.0 <= nearest(trial.scene, motion) < least
+
+
+def test_a_scene_far_from_singular_positions_is_said_to_be_far() -> None:
+    trial = CATALOGUE["swinging-lever"].trial(1.0)
+    motion = solve(trial.scene, np.arange(1441) * trial.dt_s, bound=False)
+    assert nearest(trial.scene, motion) == pytest.approx(1.0 / 3.0, abs=1e-4)

@@ -51,7 +51,6 @@ def test_getting_over_without_the_energy_is_a_change_of_branch(runs: dict[str, R
 def test_falling_back_with_the_energy_is_degraded_by_what_it_was_short_of(
     runs: dict[str, Run],
 ) -> None:
-    assert OVER.throw is not None
     errors = at_toggle(OVER, runs["short"])
     nearest = toggle_passage(OVER.throw.barrier, runs["short"]).nearest_rad
     assert outcome(errors, 1e-2).outcome == "degraded"
@@ -63,9 +62,7 @@ def test_falling_back_with_the_energy_is_degraded_by_what_it_was_short_of(
 def test_a_run_that_ends_too_soon_is_undecided_and_one_that_comes_open_broken(
     runs: dict[str, Run],
 ) -> None:
-    assert OVER.throw is not None
     done, barrier = runs["over"], OVER.throw.barrier
-    assert done.motion is not None
     early = replace(
         done,
         motion=replace(

@@ -9,7 +9,6 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-import pandas as pd
 import psutil
 import pytest
 from filelock import FileLock
@@ -18,6 +17,7 @@ from typer.testing import CliRunner
 from reports.cli import app
 from reports.store.reader import Stored, read_store, stored_keys
 from reports.workers.signals import Stopped
+from tests.reports.store.test_damage import same
 from tests.worlds.command import COMMAND, PYTHON, script
 from tests.worlds.in_process import in_this_process
 from tests.worlds.programs import Start, until
@@ -26,7 +26,6 @@ from tests.worlds.tiers import few, slow, slowly
 GRID = ("slider-crank-offset", "--profile", "tuned", "--turns", "2", "--jobs", "1")
 STEPS = ("--steps-per-turn", "90,100,108,120")
 NUMBER = 2 * 4
-BY_CHANCE = {"wall_s", "logged_us_per_step", "run_on", "us_per_step"}
 PROGRAM = script("""
 import os, sys
 from pathlib import Path
@@ -99,19 +98,6 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Stored:
     folder = tmp_path_factory.mktemp("whole") / "store"
     assert counted(folder, "--no-timing") == (NUMBER, NUMBER, 0, 0)
     return read_store(folder)
-
-
-def same(one: Stored, other: Stored) -> None:
-    """The same cells, each once, bit by bit but for what chance decides."""
-    columns = [name for name in one.cells.columns if name not in BY_CHANCE]
-    left, right = (s.cells.set_index("key").sort_index() for s in (one, other))
-    names = [name for name in columns if name != "key"]
-    pd.testing.assert_frame_equal(left[names], right[names], check_exact=True)
-    order = ["key", "quantity", "body_kind", "body", "source", "kind"]
-    long = (s.errors.sort_values(order).reset_index(drop=True) for s in (one, other))
-    pd.testing.assert_frame_equal(*long, check_exact=True)
-    for key in left.index:
-        assert set(one.trace(key)) == set(other.trace(key))
 
 
 @pytest.mark.parametrize("part", few((1, 3, 4, 8), {3}, "one moment shows it; the ends may differ"))

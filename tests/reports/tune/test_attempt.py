@@ -15,16 +15,7 @@ from models.files import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.sweep.measured import Repeats, measured
-from reports.tune.attempt import (
-    DEARER,
-    NONE_KNOWN,
-    Attempt,
-    Bench,
-    Goal,
-    LostError,
-    Row,
-    error_of,
-)
+from reports.tune.attempt import DEARER, NONE_KNOWN, Attempt, Bench, Goal, LostError, Row, error_of
 from reports.tune.timing import GUESS_US, times
 from reports.workers.isolated import Isolated, Limits
 from sim.engine import Settings, SettingValue
@@ -59,7 +50,6 @@ def error(bench: Bench, index: int, steps: int) -> float:
 
 def test_the_error_is_the_worst_of_the_scenes_and_the_cost_their_sum(two: Bench) -> None:
     found = two.attempt(SETTINGS, None)
-    assert found.steps_per_turn is not None
     each = [error(two, index, found.steps_per_turn) for index in (0, 1)]
     assert found.error == max(each) <= 1e-4
     assert found.scene == SCENES[each.index(max(each))]
@@ -70,7 +60,6 @@ def test_the_error_is_the_worst_of_the_scenes_and_the_cost_their_sum(two: Bench)
 
 def test_a_coarser_step_misses_the_target(two: Bench) -> None:
     found = two.attempt(SETTINGS, None)
-    assert found.steps_per_turn is not None
     coarser = math.floor(found.steps_per_turn / 1.03)
     assert max(error(two, index, coarser) for index in (0, 1)) > 1e-4
 

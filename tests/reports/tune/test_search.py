@@ -58,14 +58,12 @@ def test_the_profile_is_tried_first_so_that_nothing_found_is_dearer() -> None:
     assert found[0].settings == PROFILE
     assert found[1].settings == {**PROFILE, "kind": "wrong"}
     best = best_of(found)
-    assert best is not None
     assert best.cost_us <= found[0].cost_us
 
 
 @pytest.mark.parametrize("seed", few(range(3), {0}, "luck of a seed"))
 def test_the_search_beats_as_many_guesses(seed: int) -> None:
     best = best_of(done(budget=40, seed=seed))
-    assert best is not None
     assert best.settings["kind"] == "fast"
     assert abs(float(best.settings["stiffness"]) - 23.0) <= 1.0
 
@@ -161,7 +159,6 @@ def test_a_study_is_one_that_optuna_reads_with_its_own_best(tmp_path: Path) -> N
         found = search(study, plan(4), known)
     own = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
     best = best_of(found)
-    assert best is not None
     assert own.best_value == best.cost_us
     assert {t.state for t in own.trials} == {TrialState.COMPLETE}
 

@@ -52,7 +52,6 @@ def test_a_store_is_read_with_costs_and_digests(store: Copy) -> None:
     for one, (_, row) in zip(found.cells.values(), cells.iterrows(), strict=True):
         assert one.errors["position"] == row.position_pure
         assert one.scene_digest == row.scene_digest
-        assert one.cost is not None
         assert (one.cost.us_per_step, one.cost.noise, one.cost.processor) == (2.5, 0.0, "mine")
     assert found.facts["mujoco"] == "4.0.0"
 

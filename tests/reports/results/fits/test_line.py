@@ -29,7 +29,6 @@ def test_a_power_of_the_step_has_its_order_and_no_floor(order: float, number: in
     found = fit_line(STEPS[:number], line(order)[:number], rounding=0.0)
     assert found.kind == "order"
     assert found.order == pytest.approx(order)
-    assert found.curve is not None
     assert found.curve.coefficient == pytest.approx(10.0)
     assert found.order_error < 0.1
     assert all(found.used)
@@ -47,7 +46,6 @@ def test_a_floor_under_a_power_of_the_step_is_found(order: float, share: float) 
     assert found.kind == "floor"
     assert found.floor == pytest.approx(floor, rel=1e-3)
     assert found.order == pytest.approx(order, abs=0.01)
-    assert found.curve is not None
     assert found.curve.coefficient == pytest.approx(10.0, rel=0.05)
     assert found.floor_error < 0.2 * floor
     assert floor < found.floor_below < 1.5 * floor
@@ -71,7 +69,6 @@ def test_an_error_that_no_step_changes_is_a_floor_of_no_order() -> None:
 def test_an_error_that_comes_up_to_its_floor_is_a_floor() -> None:
     found = fit_line(STEPS, 1e-2 * (1.0 - 20.0 * STEPS))
     assert (found.kind, found.floor) == ("floor", pytest.approx(1e-2, rel=1e-3))
-    assert found.curve is not None
     assert found.curve.coefficient < 0.0
 
 

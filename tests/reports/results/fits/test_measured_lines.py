@@ -92,7 +92,6 @@ def test_stated_uncertainties_of_floors_hold_two_times_in_three() -> None:
 def test_a_floor_that_works_against_the_step_is_told_from_the_dip_before_it() -> None:
     """The finest error of the slotted lever is half of the floor that it rises to."""
     found = at_steps(MUJOCO_AS_SHIPPED["slotted-lever"][0])
-    assert found.curve is not None
     assert found.curve.alignment < -0.5
     assert found.floor > 1.5 * found.finest_error
     assert found.order == pytest.approx(1.0, abs=0.1)

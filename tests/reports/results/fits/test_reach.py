@@ -27,10 +27,8 @@ def parabola(floor: float) -> LineFit:
 def test_the_step_of_a_target_has_the_target_for_its_error(at: float, floor: float) -> None:
     fit = parabola(floor)
     target = fit.error_at(at)
-    assert target is not None
     assert target == pytest.approx(floor + 10.0 * at**2, rel=1e-3)
     found = fit.dt_for(target)
-    assert found is not None
     assert fit.error_at(found) == pytest.approx(target)
 
 
@@ -55,7 +53,6 @@ def test_coarse_points_off_the_fit_are_reached_between_what_was_measured() -> No
     fit = fit_line(STEPS, errors)
     assert not fit.used[0]
     found = fit.dt_for(0.2)
-    assert found is not None
     assert STEPS[1] < found < STEPS[0]
     assert math.log(0.2 / errors[1]) / math.log(errors[0] / errors[1]) == pytest.approx(
         math.log(found / STEPS[1]) / math.log(2.0), rel=0.02
@@ -67,14 +64,12 @@ def test_a_target_that_a_dip_reaches_but_finer_steps_do_not_is_not_reached() -> 
     fit = fit_line(STEPS, errors)
     assert fit.dt_for(1e-3) is None
     found = fit.dt_for(7e-3)
-    assert found is not None
     assert STEPS[1] < found < STEPS[0]
 
 
 def test_points_that_wander_are_reached_where_they_rise_over_the_target_first() -> None:
     knots = [(1.0, 1e-3), (2.0, 3e-3), (4.0, 2e-3), (8.0, 9e-3)]
     found = reach(knots, 2.5e-3)
-    assert found is not None
     assert 1.0 < found < 2.0
     assert reach(knots, 0.9e-3) is None
     assert reach(knots, 1e-2) is None
