@@ -131,9 +131,7 @@ def test_near_is_not_at(edited: Edit) -> None:
     refuse_singular(scene, scene.driver.law.period_s)
 
 
-def test_solve_shows_a_dash_for_the_rates_of_a_singular_position_and_names_it(
-    edited: Edit,
-) -> None:
+def test_solve_shows_a_dash_for_the_rates_of_a_singular_position_and_names_it(edited: Edit) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         result = crank("solve", edited("fourbar-lecture-1", RHOMBUS, NEARLY))
