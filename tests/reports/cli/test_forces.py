@@ -14,7 +14,7 @@ from models.files import scene_texts
 from reports.stability.matrix import FILE, Graded, Matrix, read_matrix, to_json
 from reports.store.reader import read_store
 from sim import registry
-from tests.worlds.command_line import crank, crank_alone, flat
+from tests.worlds.command_line import crank, crank_alone, flat, refused
 
 SCENE = "fourbar-lecture-1"
 ONCE = ["--jobs", "1", "--steps-per-turn", "180", "--turns", "1", "--profile", "tuned"]

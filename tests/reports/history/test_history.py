@@ -7,11 +7,11 @@ import io
 import os
 import subprocess
 import sys
-import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
+from packaging.version import Version
 from rich.console import Console
 
 from models.errors import CrankcheckError
@@ -19,8 +19,11 @@ from models.files import shipped
 from reports.cli.changes import HistoryRequest
 from reports.cli.commands.history import run_history
 from reports.history import verification
+from reports.history.environments import EngineVersion
+from reports.workers.programs import Ended
 from tests.worlds.command import COMMAND, PYTHON, script, shadows
-from tests.worlds.programs import Start
+from tests.worlds.programs import Start, until
+from tests.worlds.tiers import slow, slowly
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="the installer is a POSIX script")
 
@@ -44,7 +47,7 @@ if version == "9.9.9":
     sys.exit(1)
 if version == "1.0":
     Path({sign!r}).write_text(str(os.getpid()))
-    time.sleep(60.0)
+    time.sleep(600.0)
 environment = Path(arguments[arguments.index("--python") + 1]).parents[1]
 (site,) = environment.glob("lib/python*/site-packages")
 (site / "mujoco").mkdir()
@@ -132,8 +135,14 @@ def history(installer: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> Hi
 
 @posix
 def test_versions_are_installed_run_compared_and_kept(
-    history: History, installer: Path, cache: Path, tmp_path: Path
+    history: History,
+    installer: Path,
+    cache: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    """In a folder whose packages have our names, which change nothing."""
+    monkeypatch.chdir(shadows(tmp_path / "mine"))
     code, output, complaint = history("3.7.0", "9.9.9", "3.6.0", folder=tmp_path / "out")
     assert code == 2
     reason = "not installed: no mujoco 9.9.9 is offered as a wheel for Python"
@@ -160,10 +169,30 @@ def test_versions_are_installed_run_compared_and_kept(
     assert f"Results: {cache.resolve()}" in output.replace("- ", "-")
     assert (installer / "log").read_text().count("pip install") == calls
 
+    folders: list[Path] = []
+    monkeypatch.setattr(
+        "reports.cli.commands.history.measure", lambda folder, *_: folders.append(folder)
+    )
     code, output, _ = history("3.7.0", again=True)
+    assert len(folders) == 1
     assert "kept from before" not in output
     assert (installer / "log").read_text().count("pip install") == calls
     assert not list(cache.glob("history/results/.*"))
+
+
+def test_a_new_result_takes_the_place_of_the_old_one_whole(tmp_path: Path) -> None:
+    def run(command: Sequence[str], *_: object) -> Ended:
+        aside = Path(command[command.index("-o") + 1])
+        aside.mkdir()
+        (aside / command[-1]).write_text("1")
+        (aside / "verify.csv").write_text(command[-1])
+        return Ended(0, "", "")
+
+    version = EngineVersion("mujoco", Version("3.6.0"))
+    for name in ("one", "other"):
+        verification.measure(tmp_path / "of it", version, Path("python"), [name], run)
+        assert {path.name for path in (tmp_path / "of it").iterdir()} == {"verify.csv", name}
+        assert [path.name for path in tmp_path.iterdir()] == ["of it"]
 
 
 @pytest.fixture
@@ -217,6 +246,7 @@ def test_another_text_of_a_scene_is_not_answered_from_the_cache(
         assert len(measured) == count
 
 
+@slow("two processes of a second: above, the one that verifies is in such a folder as well")
 @posix
 def test_packages_of_our_names_in_the_working_folder_change_nothing(
     installer: Path, cache: Path, tmp_path: Path
@@ -311,7 +341,7 @@ if __name__ == "__main__":
         from reports.cli.changes import HistoryRequest
         from reports.cli.commands.history import run_history
         from reports.history.verification import patient
-        patient.keywords["patience_s"] = 60.0  # the other program ends without being killed
+        patient.keywords["patience_s"] = 600.0  # the other program ends without being killed
         # One scene is run without workers, whose start would let signals through anyway.
         request = HistoryRequest("mujoco", [{version!r}], ["fourbar-lecture-1"], turns=100.0,
                           cache=Path({cache!r}))
@@ -319,14 +349,12 @@ if __name__ == "__main__":
 """
 
 
-def nothing_left(group: int) -> bool:
-    """Whether the processes of a group are all gone, or are within a minute."""
-    for _ in range(1200):
-        try:
-            os.killpg(group, 0)
-        except ProcessLookupError:
-            return True
-        time.sleep(0.05)
+def gone(group: int) -> bool:
+    """Whether the processes of a group are all gone."""
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return True
     return False
 
 
@@ -338,10 +366,13 @@ ALONE = "os.kill(os.getpid(), signal.SIGTERM)"
 @pytest.mark.parametrize(
     ("version", "kill", "end"),
     [
-        ("1.0", GROUP, (130, "interrupted")),
-        ("3.7.0", ALONE, (143, "terminated")),
+        pytest.param("1.0", GROUP, (130, "interrupted"), id="while it installs"),
+        slowly(
+            *("3.7.0", ALONE, (143, "terminated")),
+            reason="two seconds: signals are in tests/reports/workers/test_programs.py as well",
+            id="while it verifies",
+        ),
     ],
-    ids=["while it installs", "while it verifies"],
 )
 def test_a_signal_ends_the_other_program_too(
     programs: Start,
@@ -361,7 +392,7 @@ def test_a_signal_ends_the_other_program_too(
     )
     path = {"PATH": f"{installer}{os.pathsep}{os.environ['PATH']}"}
     running = programs(PYTHON, program, more=path)
-    output, complaint = running.communicate(timeout=300)
+    output, complaint = running.communicate()
     assert (running.returncode, complaint) == (end[0], f"crankcheck: {end[1]}\n")
     assert output == ""
     environments = list(cache.glob(f"history/environments/mujoco-{version}-*"))
@@ -369,11 +400,11 @@ def test_a_signal_ends_the_other_program_too(
         [] if version == "1.0" else environments
     )
     assert not list(cache.glob("history/results/.*"))
-    assert nothing_left(running.pid)
-    assert nothing_left(int(sign.read_text())), "what it has started has a group of its own"
+    until(lambda: gone(running.pid))
+    until(lambda: gone(int(sign.read_text())))  # what it has started has a group of its own
 
 
-@pytest.mark.slow
+@slow("real versions, which are fetched and installed")
 def test_mujoco_3_7_closes_moving_loops_better_than_3_6(tmp_path: Path) -> None:
     """The velocity term of moving loop constraints that 3.7.0 added; needs the network."""
     output, complaint = io.StringIO(), io.StringIO()

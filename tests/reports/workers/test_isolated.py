@@ -3,36 +3,60 @@
 from __future__ import annotations
 
 import os
-import sys
 import threading
 import time
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
-from types import ModuleType
+from typing import ClassVar
 
 import pytest
 
 from models.errors import SceneError
 from reports.workers import isolated as isolation
 from reports.workers.isolated import Isolated, Limits, Lost
+from tests.worlds.jobs import be_odd, be_strange, fail, hold, refuse_scene
 from tests.worlds.programs import ROOT
 
-LIMIT_S = 0.7
+LIMIT_S = 900.0
+"""That of a job, which no job here takes."""
 
 
 def test_a_child_that_keeps_memory_is_replaced() -> None:
-    with closing(Isolated[int](Limits(20.0, 0.4))) as isolated:
-        pids = {isolated.call(hold, 120_000_000) for _ in range(4)}
+    with closing(Isolated[int](Limits(LIMIT_S, 0.4))) as isolated:
+        pids = {isolated.call(hold, 120_000_000) for _ in range(3)}
     assert not any(isinstance(pid, Lost) for pid in pids)
     assert len(pids) > 1
 
 
-def test_the_time_limit_is_for_each_job() -> None:
-    with closing(Isolated[None](Limits(1.2))) as isolated:
-        assert isolated.call(time.sleep, 60.0) == Lost("timeout", "no end within 1.2 s")
-        assert isolated.call(time.sleep, 0.7) is None
-        assert isolated.call(time.sleep, 0.7) is None
+def test_the_time_limit_is_for_each_job(monkeypatch: pytest.MonkeyPatch) -> None:
+    with closing(Isolated[None](Limits(0.3))) as isolated:
+        assert isolated.call(time.sleep, 3600.0) == Lost("timeout", "no end within 0.3 s")
+        monkeypatch.setattr(isolation.threading, "Timer", Noted)
+        isolated.limits = Limits(LIMIT_S)
+        for jobs in (1, 2):
+            assert isolated.call(time.sleep, 0.0) is None
+            assert Noted.limits_s.count(LIMIT_S) == jobs
+            assert Noted.running == 0
+
+
+class Noted(threading.Timer):
+    """A timer that notes its limit, and how many of them run."""
+
+    limits_s: ClassVar[list[float]] = []
+    running: ClassVar[int] = 0
+
+    def __init__(self, interval_s: float, function: Callable[[], None]) -> None:
+        super().__init__(interval_s, function)
+        Noted.limits_s.append(interval_s)
+
+    def start(self) -> None:
+        Noted.running += 1
+        super().start()
+
+    def cancel(self) -> None:
+        Noted.running -= 1
+        super().cancel()
 
 
 class LastMoment(threading.Timer):
@@ -59,9 +83,9 @@ def test_a_limit_that_ends_with_the_job_does_not_end_the_next(
 ) -> None:
     monkeypatch.setattr(isolation.threading, "Timer", LastMoment)
     with closing(Isolated[int](Limits(LIMIT_S))) as isolated:
-        pids = [isolated.call(os.getpid) for _ in range(3)]
+        pids = [isolated.call(os.getpid) for _ in range(2)]
     assert not any(isinstance(pid, Lost) for pid in pids)
-    assert len(set(pids)) == 3
+    assert len(set(pids)) == 2
 
 
 def test_a_closed_one_starts_nothing() -> None:
@@ -79,7 +103,7 @@ def test_what_the_function_imports_is_not_of_the_memory_of_a_job(
     monkeypatch.syspath_prepend(tmp_path)
     from large import size  # type: ignore[import-not-found]  # made just now
 
-    with closing(Isolated[int](Limits(memory_gb=0.2))) as isolated:
+    with closing(Isolated[int](Limits(LIMIT_S, 0.2))) as isolated:
         assert isolated.call(size) == 300_000_000
         assert "out of memory" in str(isolated.call(bytearray, 300_000_000))
 
@@ -87,7 +111,7 @@ def test_what_the_function_imports_is_not_of_the_memory_of_a_job(
 def test_what_was_raised_comes_with_the_place_where_it_was() -> None:
     with closing(Isolated[object](Limits())) as isolated:
         lost = isolated.call(fail)
-        refused = isolated.call(refuse, "scene.toml", ["one", "two"])
+        refused = isolated.call(refuse_scene, "scene.toml", ["one", "two"])
         odd = isolated.call(be_odd)
         strange = isolated.call(be_strange)
     assert isinstance(lost, Lost)
@@ -106,49 +130,24 @@ def test_what_was_raised_comes_with_the_place_where_it_was() -> None:
 
 def test_a_child_that_does_not_start_in_time_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     with closing(Isolated[int](Limits())) as isolated:
-        monkeypatch.setattr("reports.workers.isolated.START_S", 0.01)
-        assert isolated.call(os.getpid) == Lost("timeout", "no start within 0.01 s")
-        monkeypatch.setattr("reports.workers.isolated.START_S", 60.0)
+        with monkeypatch.context() as patch:
+            patch.setattr(isolation.threading, "Timer", AtOnce)
+            assert isolated.call(os.getpid) == Lost("timeout", "no start within 60 s")
         assert isinstance(isolated.call(os.getpid), int)
 
 
-_held: list[bytearray] = []
+class AtOnce(threading.Timer):
+    """A timer that goes off where it is started."""
 
+    def start(self) -> None:
+        self.function()
 
-def hold(size: int) -> int:
-    """Keep some memory, and tell in which process."""
-    _held.append(bytearray(size))
-    return os.getpid()
-
-
-def fail() -> float:
-    return 1 / 0
-
-
-def refuse(place: str, faults: list[str]) -> None:
-    raise SceneError(place, faults)
-
-
-class OddError(Exception):
-    """One that cannot be made anew from what it holds."""
-
-    def __init__(self, one: int, two: int) -> None:
-        super().__init__(f"{one} and {two}")
-
-
-def be_odd() -> None:
-    raise OddError(1, 2)
-
-
-def be_strange() -> None:
-    module = ModuleType("there_alone")
-    exec("class StrangeError(Exception):\n    pass", vars(module))
-    sys.modules[module.__name__] = module
-    raise module.StrangeError("of a module that is there alone")
+    def join(self, timeout: float | None = None) -> None:
+        """No thread was started."""
 
 
 @pytest.fixture(autouse=True)
 def importable(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The child imports this file's functions by the name that pytest gave it."""
+    """The child imports the functions of the tests."""
     monkeypatch.syspath_prepend(ROOT)
     monkeypatch.setenv("PYTHONPATH", str(ROOT))

@@ -24,11 +24,11 @@ def test_what_the_user_says_stays(name: str) -> None:
 def test_a_worker_has_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in CHOICES:
         monkeypatch.delenv(name, raising=False)
-    with closing(Isolated[str | None](Limits(20.0))) as isolated:
+    with closing(Isolated[str | None](Limits(900.0))) as isolated:
         assert isolated.call(os.getenv, THREADS) == "1"
     assert THREADS not in os.environ  # this process is the user's own
     monkeypatch.setenv(THREADS, "2")
-    with closing(Isolated[str | None](Limits(20.0))) as isolated:
+    with closing(Isolated[str | None](Limits(900.0))) as isolated:
         assert isolated.call(os.getenv, THREADS) == "2"
 
 
