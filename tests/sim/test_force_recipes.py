@@ -24,6 +24,7 @@ from models.scene import Scene
 from sim.force_recipes import force_recipe
 from sim.registry import engine, offering
 from sim.settings import resolved
+from tests.worlds.tiers import few
 
 FOURBAR = load_scene("fourbar-lecture-1")
 WITHIN = {"mujoco": 1e-4}
@@ -82,7 +83,9 @@ def off(scene: Scene, columns: dict[str, np.ndarray], settled: int = SETTLED) ->
     return float(max(errors))
 
 
-@pytest.mark.parametrize("name", offering("force_recipe"))
+@pytest.mark.parametrize(
+    "name", few(offering("force_recipe"), {"mujoco"}, "the others run in the process of the tests")
+)
 def test_a_recipe_runs_without_us_and_has_the_forces_of_the_reference(
     name: str, tmp_path: Path
 ) -> None:
