@@ -21,7 +21,10 @@ from models.scene import GROUND, Driver, Point, Scene
 from tests.analytic.chain import Chain, Solved, coordinates
 from tests.analytic.change_points.jets import Jet
 from tests.worlds.strategies import FORMS, Designed, mechanisms
+from tests.worlds.tiers import few, slow, slowly
 
+TIMES = "an instant at which rounding adds up"
+EACH_KIND = "a form of each kind of dyad shows it"
 NOTHING = 1e-38
 """What is left of an error of the oracle itself."""
 
@@ -81,7 +84,7 @@ def random_times(scene: Scene, count: int, turns: float, seed: int = 1) -> Array
     return np.sort(np.random.default_rng(seed).uniform(-0.1 * span, span, count))
 
 
-@pytest.mark.parametrize("count", [20, pytest.param(200, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [8, slowly(200, reason=TIMES)])
 @pytest.mark.parametrize("name", shipped())
 def test_error_stays_below_the_bound_in_every_scene(name: str, count: int) -> None:
     scene = load_scene(name)
@@ -90,14 +93,14 @@ def test_error_stays_below_the_bound_in_every_scene(name: str, count: int) -> No
     assert found.max() > 1e-3, "a bound a thousand times the largest error says little"
 
 
-@pytest.mark.parametrize("count", [8, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [4, slowly(100, reason=TIMES)])
 @pytest.mark.parametrize("name", shipped())
 def test_error_stays_below_the_bound_after_ten_thousand_turns(name: str, count: int) -> None:
     scene = load_scene(name)
     assert shares(scene, random_times(scene, count, 1e4)).max() <= 1.0
 
 
-@pytest.mark.parametrize("count", [8, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [4, slowly(100, reason=TIMES)])
 @pytest.mark.parametrize("name", shipped())
 def test_error_stays_below_the_bound_a_million_lengths_away(name: str, count: int) -> None:
     scene = load_scene(name)
@@ -127,7 +130,7 @@ def test_error_stays_below_the_bound_under_every_law(
 ) -> None:
     scene = load_scene("sixbar-watt")
     scene = replace(scene, driver=Driver(scene.driver.link, law))
-    found = shares(scene, random_times(scene, 12, 2.0))
+    found = shares(scene, random_times(scene, 6, 2.0))
     assert found.max() <= 1.0
 
 
@@ -146,7 +149,10 @@ def _hold(designed: Designed) -> None:
     assert shares(scene, random_times(scene, 4, 1.0)).max() <= 1.0
 
 
-@pytest.mark.parametrize("form", FORMS)
+OF_EACH_KIND = list({form[:3]: form for form in FORMS}.values())
+
+
+@pytest.mark.parametrize("form", few(FORMS, OF_EACH_KIND, EACH_KIND))
 @settings(max_examples=2, deadline=None, derandomize=True, database=None)
 @given(data=st.data())
 def test_error_stays_below_the_bound_where_frames_lie_far_off(
@@ -157,7 +163,7 @@ def test_error_stays_below_the_bound_where_frames_lie_far_off(
     assert shares(scene, random_times(scene, 4, 1.0)).max() <= 1.0
 
 
-@pytest.mark.slow
+@slow("rare mechanisms, sixty of each form")
 @pytest.mark.parametrize("form", FORMS)
 @settings(max_examples=60, deadline=None, derandomize=True, database=None)
 @given(data=st.data())
@@ -171,7 +177,7 @@ def test_error_stays_below_the_bound_in_many_mechanisms_of_every_form(
     assert shares(scene, random_times(scene, 4, 1.0)).max() <= 1.0
 
 
-@pytest.mark.parametrize("form", [form for form in FORMS if form != "RRR"])
+@pytest.mark.parametrize("form", few(FORMS, OF_EACH_KIND, EACH_KIND)[1:])
 @settings(max_examples=2, deadline=None, derandomize=True, database=None)
 @given(data=st.data(), turns=st.sampled_from([-2775, 777, 2775]))
 def test_error_stays_below_the_bound_where_angles_hold_many_turns(

@@ -16,6 +16,7 @@ from tests.analytic.chain import Chain, coordinates
 from tests.analytic.change_points.jets import Jet
 from tests.analytic.oracle import Place
 from tests.analytic.wide_chain import HAS_DIGITS, PI, Rows, Solved, Wide, WideChain
+from tests.worlds.tiers import slow
 from tests.worlds.wide_angles import made, times
 
 pytestmark = pytest.mark.skipif(not HAS_DIGITS, reason="long doubles here are floats")
@@ -112,7 +113,7 @@ def test_bounds_are_within_a_few_tens_of_the_errors() -> None:
         assert np.median(np.concatenate(loose[name])) < most, name
 
 
-@pytest.mark.slow
+@slow("three hundred thousand instants: one in ten thousand may be worse")
 @pytest.mark.parametrize("part", range(10))
 def test_errors_stay_below_their_bounds_at_300_000_samples(part: int) -> None:
     _hold(range(150 * part, 150 * (part + 1)))

@@ -153,7 +153,7 @@ def test_angle_out_of_reach_raises() -> None:
 
 
 @pytest.mark.parametrize("form", [form for form in FORMS if form[:3] in ("RRP", "RPR")])
-@settings(max_examples=15, deadline=None, derandomize=True, database=None)
+@settings(max_examples=5, deadline=None, derandomize=True, database=None)
 @given(data=st.data())
 def test_branch_of_a_slider_is_the_way_along_its_line(form: str, data: st.DataObject) -> None:
     """Of the two assemblies, +1 is the one with the greater displacement, in every role."""

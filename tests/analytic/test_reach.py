@@ -16,6 +16,7 @@ from analytic.mechanism.fourbar import FourBar
 from models.errors import ReachError
 from models.files import load_scene, parse_scene, shipped
 from models.scene import Scene
+from tests.worlds.tiers import slowly
 
 
 def fourbar(a: float, b: float, c: float, d: float, branch: int = 1) -> Scene:
@@ -64,7 +65,7 @@ def test_range_is_that_of_the_closed_form(lengths: tuple[float, float, float, fl
     assert np.allclose(found, wanted, rtol=0, atol=1e-7)
 
 
-@pytest.mark.parametrize("count", [60, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [60, slowly(1000, reason="random lengths, some near a limit")])
 def test_range_of_random_fourbars_is_that_of_the_closed_form(count: int) -> None:
     rng, kinds = np.random.default_rng(3), set()
     for _ in range(count):

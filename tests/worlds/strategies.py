@@ -15,6 +15,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from hypothesis import settings
 from hypothesis import strategies as st
 
 from analytic.kinematics import solve
@@ -46,6 +47,11 @@ class Designed:
     scene: Scene
     frames: Mapping[str, tuple[float, float, float]]
     forms: tuple[str, ...]
+
+
+def examples(count: int) -> settings:
+    """So many examples, the same ones every time."""
+    return settings(max_examples=count, deadline=None, derandomize=True, database=None)
 
 
 @st.composite

@@ -14,12 +14,19 @@ from analytic.assur.leg_rows import AngleRow, CircleRow, LegRow, LineRow
 from models.errors import CrankcheckError
 from tests.analytic.assur.drawn_rows import MOST, SINGULAR, drawn
 from tests.analytic.assur.homotopy import real, solutions
+from tests.worlds.tiers import at_length, slowly
 
 Kinds = tuple[str, str, str]
 
 
 @pytest.mark.parametrize(
-    "seeds", [range(20), pytest.param(range(20, 10_000), marks=pytest.mark.slow)], ids=len
+    "seeds",
+    [
+        range(6),
+        slowly(range(6, 1000), reason="rare rows, with assemblies that lie close together"),
+        at_length(range(1000, 10_000), reason="a minute of each kind, of rarer ones"),
+    ],
+    ids=len,
 )
 @pytest.mark.parametrize("kinds", MOST, ids="-".join)
 def test_a_homotopy_finds_the_same_assemblies(kinds: Kinds, seeds: range) -> None:
@@ -91,7 +98,7 @@ def test_they_come_by_increasing_angle_whatever_the_order_of_the_legs() -> None:
 
 def test_a_mechanism_of_class_ii_loads_no_python_flint() -> None:
     say = (
-        "import sys, numpy, crankcheck as c; s = c.load_scene('fourbar-swing');"
-        "c.solve(s, numpy.zeros(1)); sys.exit('flint' in sys.modules)"
+        "import sys, numpy; from analytic.kinematics import solve; from models import files;"
+        "solve(files.load_scene('fourbar-swing'), numpy.zeros(1)); sys.exit('flint' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", say], check=False).returncode == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from models.errors import CrankcheckError
 from models.scene import Point
 from tests.analytic.assur.drawn_rows import MOST, drawn
 from tests.analytic.assur.homotopy import real, solutions
+from tests.worlds.tiers import slowly
 
 SIX_PINS = ("RR", "RR", "RR")
 UP, ALONG = (0.0, 1.0), (1.0, 0.0)
@@ -144,9 +146,14 @@ def test_one_leg_twice_moves_and_two_lengths_between_the_same_pins_are_none() ->
             assert counted(*rows) == []
 
 
+@pytest.mark.parametrize(
+    "seeds", [(1, 3, 5), slowly(range(7, 41, 2), reason="random points")], ids=len
+)
 @pytest.mark.parametrize("shared", ["outer", "inner", "collinear", "both collinear"])
-def test_points_that_coincide_or_lie_on_a_line_are_no_special_case(shared: str) -> None:
-    for seed in range(1, 21, 2):
+def test_points_that_coincide_or_lie_on_a_line_are_no_special_case(
+    shared: str, seeds: Sequence[int]
+) -> None:
+    for seed in seeds:
         rows = list(drawn(SIX_PINS, seed))
         a = [np.array(row.a) for row in rows if isinstance(row, CircleRow)]
         pins = [np.array(row.pin) for row in rows if isinstance(row, CircleRow)]

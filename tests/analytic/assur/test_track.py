@@ -11,8 +11,9 @@ from analytic.assur.platform import solve_platform
 from analytic.assur.step import AssurStep
 from analytic.dyads.plane import BodyKinematics
 from models.array import Array
-from tests.analytic.assur.test_triad_bounds import start_of, step_of
-from tests.analytic.assur.triad_scenes import KINDS, on_branch, triad
+from tests.analytic.assur.test_triad_bounds import few_kinds, start_of, step_of
+from tests.analytic.assur.triad_scenes import on_branch, triad
+from tests.worlds.tiers import slowly
 
 
 def followed(step: AssurStep, theta: Array) -> BodyKinematics:
@@ -33,8 +34,12 @@ def inside(step: AssurStep, count: int) -> Array:
     return np.linspace(low + margin, high - margin, count)
 
 
-@pytest.mark.parametrize("seeds", [range(1), pytest.param(range(1, 60), marks=pytest.mark.slow)])
-@pytest.mark.parametrize("kinds", KINDS, ids="-".join)
+@pytest.mark.parametrize(
+    "seeds",
+    [range(1), slowly(range(1, 30), reason="random triads, some with a narrow way")],
+    ids=len,
+)
+@few_kinds
 def test_what_is_followed_is_an_assembly_all_along_and_moves_at_its_rate(
     kinds: tuple[str, str, str], seeds: range
 ) -> None:

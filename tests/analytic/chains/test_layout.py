@@ -10,6 +10,7 @@ import pytest
 from analytic.chains.chain import Chain
 from analytic.chains.layout import layout
 from analytic.chains.number_synthesis import chains
+from tests.worlds.tiers import slow
 
 FEW = [*chains(4), *chains(6), *chains(8)[:1], *chains(8)[2:3]]
 
@@ -19,7 +20,7 @@ def test_no_bar_crosses_another(chain: Chain) -> None:
     _check(chain)
 
 
-@pytest.mark.slow
+@slow("fourteen more, drawn as the few are")
 @pytest.mark.parametrize("chain", chains(8))
 def test_no_bar_of_an_eight_bar_crosses_another(chain: Chain) -> None:
     _check(chain)

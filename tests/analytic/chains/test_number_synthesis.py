@@ -11,6 +11,7 @@ from analytic.chains.chain import Chain, assortments, has_rigid_part
 from analytic.chains.number_synthesis import chain_names, chains
 from analytic.chains.type_synthesis import every_joint_moves
 from models.errors import CrankcheckError
+from tests.worlds.tiers import slow
 
 PUBLISHED = {
     (4, 1): 1, (6, 1): 2, (8, 1): 16,
@@ -28,7 +29,7 @@ def test_as_many_chains_are_found_as_are_published(links: int, mobility: int) ->
     assert {chain.mobility for chain in every} == {mobility}
 
 
-@pytest.mark.slow
+@slow("half a minute: the number that is published of ten links")
 def test_there_are_230_chains_of_ten_links() -> None:
     assert len(chains(10)) == 230
 

@@ -26,6 +26,7 @@ from tests.analytic import oracle
 from tests.analytic.chain import law_at
 from tests.analytic.change_points import jets
 from tests.analytic.change_points.jets import Jet
+from tests.worlds.tiers import few, slowly
 
 Exact = Mapping[str, Jet]
 """Links by name, sliders by "s NAME", in fifty digits."""
@@ -220,7 +221,7 @@ def test_fourbars_that_fold_flat_follow_the_smooth_branch(
     lengths: tuple[float, float, float, float], angles: list[float], branch: int
 ) -> None:
     scene = fourbar(*lengths, branch)
-    theta = beside([0.0, math.pi], 4)
+    theta = beside([0.0, math.pi], 4)[::2]
     motion = driven(scene, theta)
     found = shares(motion, exact_fourbar(scene, lengths, angles, at_angles(theta)))
     assert found.max() <= 1.0
@@ -335,18 +336,26 @@ def test_a_law_that_rests_in_a_change_point_starts_on_the_branch_that_it_goes_to
 
 
 def test_a_chain_of_windows_is_followed_through_flat_up_to_six() -> None:
-    """As `models.window_chain` says; one more is not, and longer ones are refused at any angle."""
+    """As `models.window_chain` says; one more is not."""
     theta = np.array([1.5, 0.5, 0.0, -0.5])
     motion = driven(Chain(6).scene(), theta)
     assert np.allclose(motion.links["rocker6"].theta, theta, rtol=0, atol=1e-9)
     with pytest.raises(CrankcheckError, match=r"B7 is in a change point with no smooth motion"):
         driven(Chain(7).scene(), theta)
-    for count in (8, 40):
-        with pytest.raises(CrankcheckError, match=r"B8 is singular .*: change a length$"):
-            driven(Chain(count).scene(), theta[:1])
 
 
-@pytest.mark.parametrize("power", range(2, 13))
+@pytest.mark.parametrize("count", [8, slowly(40, reason="what is refused at the eighth window")])
+def test_longer_chains_of_windows_are_refused_at_any_angle(count: int) -> None:
+    with pytest.raises(CrankcheckError, match=r"B8 is singular .*: change a length$"):
+        driven(Chain(count).scene(), np.array([1.5]))
+
+
+few_powers = pytest.mark.parametrize(
+    "power", few(range(2, 13), (2, 7, 12), "between these nothing changes")
+)
+
+
+@few_powers
 @pytest.mark.parametrize("sign", [1, -1])
 def test_near_is_not_in_a_change_point(power: int, sign: int) -> None:
     """The four-bar that all but folds flat keeps its branch; so does one that cannot fold."""
@@ -365,7 +374,7 @@ def test_near_is_not_in_a_change_point(power: int, sign: int) -> None:
     assert found.max() <= 1.0
 
 
-@pytest.mark.parametrize("power", range(2, 13))
+@few_powers
 def test_a_rod_that_is_longer_by_little_keeps_its_side(power: int) -> None:
     rod = 0.1 * (1.0 + 10.0**-power)
     theta = beside([math.pi / 2], 2)
@@ -386,7 +395,7 @@ def dyadic(low: int, high: int) -> st.SearchStrategy[float]:
     return st.integers(low, high).map(lambda k: k / 1024)
 
 
-@settings(max_examples=20, deadline=None, derandomize=True, database=None)
+@settings(max_examples=8, deadline=None, derandomize=True, database=None)
 @given(crank=dyadic(50, 2000), coupler=dyadic(50, 2000), branch=st.sampled_from([1, -1]))
 def test_random_parallelograms_and_their_contrary_mates(
     crank: float, coupler: float, branch: int
@@ -401,7 +410,7 @@ def test_random_parallelograms_and_their_contrary_mates(
     assert found.max() <= 1.0
 
 
-@settings(max_examples=20, deadline=None, derandomize=True, database=None)
+@settings(max_examples=8, deadline=None, derandomize=True, database=None)
 @given(
     short=dyadic(50, 1000),
     first=dyadic(20, 1000),

@@ -18,21 +18,22 @@ from analytic.kinematics import reach, solve_driven
 from models.files import load_scene, shipped
 from models.motion import Motion
 from models.scene import Scene
+from tests.worlds.tiers import slowly
 
 OMEGA, ALPHA = 10.0, 3.0
-ANGLES = 24
 SCENES = sorted({*shipped(), "toggle-press", "compressor", "squeezer", "fourbar-chain"})
 """Of these the other kinds have the geometry."""
+few_angles = pytest.mark.parametrize("count", [7, slowly(24, reason="angles nearer to a limit")])
 
 
-def angles_of(scene: Scene) -> np.ndarray:
+def angles_of(scene: Scene, count: int) -> np.ndarray:
     """Driver angles over what it reaches, clear of its ends."""
     low, high = reach(scene)[0]
-    return low + (high - low) * (np.arange(ANGLES) + 0.41) / ANGLES
+    return low + (high - low) * (np.arange(count) + 0.41) / count
 
 
-def drawn_and_solved(scene: Scene) -> list[tuple[DrawnPolygons, Motion]]:
-    theta = angles_of(scene)
+def drawn_and_solved(scene: Scene, count: int) -> list[tuple[DrawnPolygons, Motion]]:
+    theta = angles_of(scene, count)
     ones = np.ones(1)
     return [
         (
@@ -43,9 +44,10 @@ def drawn_and_solved(scene: Scene) -> list[tuple[DrawnPolygons, Motion]]:
     ]
 
 
+@few_angles
 @pytest.mark.parametrize("name", SCENES)
-def test_every_image_is_the_reference_s_vector(name: str) -> None:
-    for drawn, solved in drawn_and_solved(load_scene(name)):
+def test_every_image_is_the_reference_s_vector(name: str, count: int) -> None:
+    for drawn, solved in drawn_and_solved(load_scene(name), count):
         assert drawn.undetermined == ()
         for polygon in (drawn.velocity, drawn.acceleration):
             exact = {n: getattr(p, polygon.quantity)[0] for n, p in solved.points.items()}
@@ -62,7 +64,7 @@ def test_every_image_is_the_reference_s_vector(name: str) -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_every_vector_begins_at_the_pole_or_where_another_ends(name: str) -> None:
     scene = load_scene(name)
-    drawn = draw_polygons(scene, DriverState(float(angles_of(scene)[5]), OMEGA, ALPHA))
+    drawn = draw_polygons(scene, DriverState(float(angles_of(scene, 7)[1]), OMEGA, ALPHA))
     for polygon in (drawn.velocity, drawn.acceleration):
         ends, near = [np.zeros(2)], 1e-9 * polygon.largest
         for step in polygon.steps:
@@ -96,10 +98,11 @@ def turned_and_scaled(link: np.ndarray, image: np.ndarray) -> tuple[complex, flo
     return factor, float(np.abs(other - factor * one).max())
 
 
+@few_angles
 @pytest.mark.parametrize("name", SCENES)
-def test_the_image_of_a_link_is_similar_to_the_link_and_turned(name: str) -> None:
+def test_the_image_of_a_link_is_similar_to_the_link_and_turned(name: str, count: int) -> None:
     scene = with_third_points(load_scene(name))
-    for drawn, _ in drawn_and_solved(scene):
+    for drawn, _ in drawn_and_solved(scene, count):
         for link in scene.links:
             rates, places = drawn.rates[link], drawn.placement.points
             for polygon, turn in (

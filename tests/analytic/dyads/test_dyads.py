@@ -16,6 +16,7 @@ from models.array import Array
 from tests.analytic.change_points.jets import Jet
 from tests.analytic.dyads.dyad_cases import KINDS, Bunch
 from tests.analytic.dyads.dyad_inputs import BUNCH, Draw, Exact, Moved
+from tests.worlds.tiers import at_length, slowly
 
 LEVELS = ("position", "rate", "acceleration")
 SURE = 20.0
@@ -128,7 +129,16 @@ def _assert_certain_off_toggle(found: Found, kind: str) -> None:
         assert np.isfinite(found.bound[:, 0]).all()
 
 
-def _check(kind: str, count: int) -> None:
+def many(quick: int) -> pytest.MarkDecorator:
+    """So many dyads of each kind, and more."""
+    more = slowly(10_000, reason="one in a thousand is nearer to toggle than to rounding")
+    most = at_length(100_000, reason="one in ten thousand, half a minute of each kind")
+    return pytest.mark.parametrize("count", [quick, more, most])
+
+
+@many(400)
+@pytest.mark.parametrize("kind", KINDS)
+def test_error_never_exceeds_the_bound(kind: str, count: int) -> None:
     found = _many(kind, count)
     _assert_bounded(found)
     _assert_certain_off_toggle(found, kind)
@@ -140,21 +150,11 @@ def _check(kind: str, count: int) -> None:
     assert (found.sine < 2e-3).mean() > 0.3, "half of the dyads are meant to stand near toggle"
 
 
+@many(200)
 @pytest.mark.parametrize("kind", KINDS)
-def test_error_never_exceeds_the_bound(kind: str) -> None:
-    _check(kind, 800)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", KINDS)
-def test_error_never_exceeds_the_bound_in_a_hundred_thousand(kind: str) -> None:
-    _check(kind, 100_000)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_bound_covers_inputs_that_are_wrong_by_their_stated_error(kind: str) -> None:
+def test_bound_covers_inputs_that_are_wrong_by_their_stated_error(kind: str, count: int) -> None:
     """From rounding up to errors as large as the links, in places, rates, and turning guides."""
-    found = _many(kind, 400, wrong=(1e-13, 1.0))
+    found = _many(kind, count, wrong=(1e-13, 1.0))
     _assert_bounded(found)
     known = np.isfinite(found.bound) & (found.error > 0.0)
     # Not by being boundless: most have a bound, and it is of the size of the change.
@@ -162,16 +162,10 @@ def test_bound_covers_inputs_that_are_wrong_by_their_stated_error(kind: str) -> 
     assert np.median(found.bound[known] / found.error[known]) < 50.0
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", KINDS)
-def test_bound_covers_wrong_inputs_in_a_hundred_thousand(kind: str) -> None:
-    _assert_bounded(_many(kind, 100_000, wrong=(1e-13, 1.0)))
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_bound_is_near_rounding_away_from_toggle(kind: str) -> None:
     """Within some hundred roundings of each quantity's size; each level loses size / sine once."""
-    draws = (Draw(np.random.default_rng([n, 5]), near=False, far_m=10.0) for n in range(8))
+    draws = (Draw(np.random.default_rng([n, 5]), near=False, far_m=10.0) for n in range(4))
     found = _joined([_compare(KINDS[kind](draw), Exact()) for draw in draws])
     good = found.sine > 0.1
     assert good.mean() > 0.8

@@ -16,6 +16,7 @@ from models.files import load_scene, parse_scene, shipped
 from models.scene import Scene
 from tests.analytic.assur.triad_scenes import KINDS, triad
 from tests.analytic.forces.beside import AGREED, apart
+from tests.worlds.tiers import few
 
 CYLINDER = """
 name = "cylinder"
@@ -67,7 +68,7 @@ QUICK = {("RR", "RR", "PR"), ("RR", "PR", "RP"), ("RR", "RP", "PP"), ("PR", "PR"
 
 @pytest.mark.parametrize(
     "kinds",
-    [k if k in QUICK else pytest.param(k, marks=pytest.mark.slow) for k in KINDS],
+    few(KINDS, QUICK, "legs of each kind are among the few"),
     ids="-".join,
 )
 def test_every_kind_of_triad_has_the_forces_of_the_multipliers(kinds: tuple[str, str, str]) -> None:

@@ -22,6 +22,7 @@ from models.scene import Scene
 from tests.analytic.chain import Chain, coordinates
 from tests.analytic.forces.exact_forces import ExactForces, exact_forces, value_of
 from tests.worlds.loading import OVER, characteristic, loaded, loaded_mechanism
+from tests.worlds.tiers import few, slow
 from tests.worlds.wide_angles import made, times
 
 NOTHING = 1e-38
@@ -115,7 +116,7 @@ def test_errors_stay_below_their_bounds_in_random_mechanisms() -> None:
     assert np.median(finite) < LOOSE
 
 
-@pytest.mark.parametrize("number", range(10))
+@pytest.mark.parametrize("number", few(range(10), range(4), "random mechanisms"))
 def test_errors_stay_below_their_bounds_where_angles_hold_many_turns(number: int) -> None:
     """And far from the origin, at times of up to a million turns."""
     chance = random.Random(number)
@@ -132,7 +133,7 @@ def test_magnitudes_of_loads_are_rounded_by_no_more_than_they_say() -> None:
             assert _apart(float(found), value_of(own, mpf(float(at)))) <= most, own
 
 
-@pytest.mark.slow
+@slow("one mechanism in a thousand is nearer to a dead point than to rounding")
 @pytest.mark.parametrize("part", range(8))
 def test_errors_stay_below_their_bounds_in_thousands_of_mechanisms(part: int) -> None:
     for number in range(500 * part, 500 * (part + 1)):

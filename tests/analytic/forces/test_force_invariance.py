@@ -26,6 +26,7 @@ from tests.analytic.forces.beside import apart, turn, unlocked
 from tests.worlds.loading import loaded
 from tests.worlds.other_way import sped_up
 from tests.worlds.sprung import sprung
+from tests.worlds.tiers import slowly
 
 CLOSE = 1e-11
 
@@ -92,17 +93,22 @@ def test_forces_go_with_the_scene(name: str, change: str) -> None:
     _goes_with(load_scene(name), CHANGES[change])
 
 
+RANDOM = "loads and springs at random"
+
+
+@pytest.mark.parametrize("seeds", [range(2), slowly(range(2, 8), reason=RANDOM)], ids=len)
 @pytest.mark.parametrize("change", CHANGES)
 @pytest.mark.parametrize("name", LOADED)
-def test_forces_of_any_loads_go_with_the_scene(name: str, change: str) -> None:
-    for seed in range(8):
+def test_forces_of_any_loads_go_with_the_scene(name: str, change: str, seeds: range) -> None:
+    for seed in seeds:
         _goes_with(loaded(load_scene(name), random.Random(seed)), CHANGES[change])
 
 
+@pytest.mark.parametrize("seeds", [range(1), slowly(range(1, 4), reason=RANDOM)], ids=len)
 @pytest.mark.parametrize("change", [name for name in CHANGES if CHANGES[name].fast > 0.0])
 @pytest.mark.parametrize("name", LOADED)
-def test_forces_of_springs_go_with_the_scene(name: str, change: str) -> None:
-    for seed in range(3):
+def test_forces_of_springs_go_with_the_scene(name: str, change: str, seeds: range) -> None:
+    for seed in seeds:
         _goes_with(sprung(load_scene(name), random.Random(seed)), CHANGES[change])
 
 

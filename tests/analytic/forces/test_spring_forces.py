@@ -22,11 +22,15 @@ from tests.analytic.forces.beside import AGREED, apart, out_of_balance, turn, un
 from tests.analytic.forces.test_force_bounds import beside
 from tests.worlds.loading import loaded_mechanism
 from tests.worlds.sprung import sprung
+from tests.worlds.tiers import slowly
 
 
+@pytest.mark.parametrize(
+    "seeds", [range(1), slowly(range(1, 6), reason="springs at random")], ids=len
+)
 @pytest.mark.parametrize("name", [*shipped(), *shipped("forces")])
-def test_three_computations_agree_with_springs(name: str) -> None:
-    for seed in range(3):
+def test_three_computations_agree_with_springs(name: str, seeds: range) -> None:
+    for seed in seeds:
         scene = sprung(load_scene(name), random.Random(seed))
         time_s = unlocked(scene, turn(scene))
         found = kinetostatics.forces(scene, time_s)
@@ -36,9 +40,10 @@ def test_three_computations_agree_with_springs(name: str) -> None:
         assert apart(found, plain) > 1e3 * AGREED
 
 
-def test_random_mechanisms_with_springs_agree() -> None:
+@pytest.mark.parametrize("count", [16, slowly(200, reason="random mechanisms")])
+def test_random_mechanisms_with_springs_agree(count: int) -> None:
     """Springs on moving guides and on blocks among them."""
-    for number in range(0, 60, 2):
+    for number in range(0, count, 2):
         scene = sprung(loaded_mechanism(number)[0], random.Random(number))
         time_s = np.linspace(0.01, 1.0, 5) * scene.driver.law.period_s
         found = kinetostatics.forces(scene, time_s)
@@ -46,10 +51,11 @@ def test_random_mechanisms_with_springs_agree() -> None:
         assert out_of_balance(scene, time_s, found) <= AGREED, number
 
 
-def test_bounds_hold_with_springs() -> None:
+@pytest.mark.parametrize("count", [8, slowly(100, reason="random mechanisms")])
+def test_bounds_hold_with_springs(count: int) -> None:
     """Half of them near a dead point."""
     loose = []
-    for number in range(24):
+    for number in range(count):
         plain, near = loaded_mechanism(number)
         scene = sprung(plain, random.Random(number))
         time_s = 0.0 if near else random.Random(number).uniform(-1.0, 1.0)

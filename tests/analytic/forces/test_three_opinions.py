@@ -19,6 +19,7 @@ from models.array import Array
 from models.files import load_scene, shipped
 from tests.analytic.forces.beside import AGREED, apart, out_of_balance, turn, unlocked
 from tests.worlds.loading import loaded, loaded_mechanism
+from tests.worlds.tiers import slowly
 
 
 @pytest.mark.parametrize("heavy", [False, True], ids=["as shipped", "loaded"])
@@ -35,9 +36,10 @@ def test_three_computations_agree_over_a_turn(name: str, heavy: bool) -> None:
     assert not np.array_equal(found.torque, other.torque), "bit for bit: the same computation?"
 
 
-def test_random_mechanisms_agree_with_the_multipliers() -> None:
+@pytest.mark.parametrize("count", [16, slowly(200, reason="random mechanisms")])
+def test_random_mechanisms_agree_with_the_multipliers(count: int) -> None:
     """Off their dead points."""
-    for number in range(0, 60, 2):
+    for number in range(0, count, 2):
         scene, _ = loaded_mechanism(number)
         time_s = np.linspace(0.01, 1.0, 5) * scene.driver.law.period_s
         found = kinetostatics.forces(scene, time_s)

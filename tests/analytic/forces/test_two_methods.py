@@ -21,8 +21,8 @@ from models.motion import Motion
 from models.scene import Scene
 from tests.analytic.forces.beside import series
 from tests.worlds.loading import loaded_mechanism
+from tests.worlds.tiers import slowly
 
-COUNT = 30
 SAMPLES = 3
 ROUNDINGS = 1.0
 """Of the entries of a matrix and of its elimination, in units of Skeel's bound."""
@@ -79,16 +79,16 @@ def _limits(bound: ForceBound) -> dict[str, Array]:
     return limits
 
 
-def test_two_methods_are_within_their_bounds() -> None:
+PARTS = [range(1000 * part, 1000 * (part + 1)) for part in range(8)]
+
+
+@pytest.mark.parametrize(
+    "numbers",
+    [range(12), *(slowly(part, reason="one in a thousand is rarer") for part in PARTS)],
+    ids=str,
+)
+def test_two_methods_are_within_their_bounds(numbers: range) -> None:
     """Of all dyads, on fixed and moving guides, half of them near a dead point."""
-    for number in range(COUNT):
-        ratio, where = worst(number)
-        assert ratio <= 1.0, f"mechanism {number}, {where}: {ratio:.3g} times what may be"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("part", range(8))
-def test_two_methods_are_within_their_bounds_in_thousands_of_mechanisms(part: int) -> None:
-    for number in range(1000 * part, 1000 * (part + 1)):
+    for number in numbers:
         ratio, where = worst(number)
         assert ratio <= 1.0, f"mechanism {number}, {where}: {ratio:.3g} times what may be"

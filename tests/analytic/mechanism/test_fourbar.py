@@ -16,6 +16,7 @@ from models.files import load_scene, parse_scene
 from models.laws import ConstantSpeed
 from models.scene import Driver, Scene
 from tests.analytic.test_reach import fourbar
+from tests.worlds.tiers import slowly
 
 STILL = """
 name = "still"
@@ -56,7 +57,9 @@ def test_grashof_class(lengths: tuple[float, float, float, float], wanted: str) 
     assert FourBar(*(1e3 * x for x in lengths)).grashof_class == wanted
 
 
-@pytest.mark.parametrize("count", [50, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "count", [50, slowly(1000, reason="random lengths, some near a change point")]
+)
 def test_class_is_what_the_links_do(count: int) -> None:
     """Which of driver and rocker turn fully, seen in the motion of random Grashof chains."""
     rng, seen = np.random.default_rng(1), set()

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Mapping
 
 import numpy as np
+import pytest
 
+from analytic.synthesis import coupler
+from analytic.synthesis.solutions import Solutions, solutions_of
 from models.tasks.coupler import CouplerTask
 from models.tasks.quick_return import QuickReturnTask
 from models.tasks.rocker import RockerTask
@@ -152,3 +156,12 @@ TASKS: Mapping[str, Callable[[Draw], TaskTable]] = {
 def random_task(kind: str, number: int) -> TaskTable:
     """The task of a number."""
     return TASKS[kind](np.random.default_rng([19, list(TASKS).index(kind), number]))
+
+
+@functools.cache
+def random_solutions(kind: str, number: int, chosen: int = 4) -> Solutions:
+    """The solutions of that task, of many that hold a body no more than ``chosen``. Raises
+    CrankcheckError for one of four positions that none does."""
+    with pytest.MonkeyPatch.context() as changed:
+        changed.setattr(coupler, "CHOSEN", chosen)
+        return solutions_of(random_task(kind, number))

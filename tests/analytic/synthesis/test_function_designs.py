@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import replace
 
@@ -22,10 +23,12 @@ from analytic.synthesis.function.task import FunctionTask, MechanismKind
 from models.draft import Draft
 from models.errors import CrankcheckError, ReachError
 from tests.analytic.synthesis.function_cases import known
+from tests.worlds.tiers import at_length, slowly
 
 POWER = GivenFunction.of_formula("x^1.6")
 OUTPUTS = {"fourbar": math.radians(90.0), "slider-crank": 0.05}
 MET = 1e-10
+FORTY_EIGHT = "48 designs to examine; those of five points are examined the same way"
 
 
 def power_task(kind: MechanismKind, count: int, *, equal_ripple: bool = False) -> FunctionTask:
@@ -44,18 +47,31 @@ def power_task(kind: MechanismKind, count: int, *, equal_ripple: bool = False) -
     )
 
 
+@functools.cache
+def designs(task: FunctionTask) -> list[tuple[FunctionProposal, Examined]]:
+    """What is proposed for a task, and what the reference says of it."""
+    return [(proposal, examine(proposal)) for proposal in function_designs(task)]
+
+
 def best(task: FunctionTask) -> tuple[FunctionProposal, Examined, StructuralError]:
     """Of the mechanisms without defect that close over the range, that with the least error."""
     found = []
-    for proposal in function_designs(task):
-        examined = examine(proposal)
+    for proposal, examined in designs(task):
         if not examined.defects and "assembled over" not in proposal.doubt:
             found.append((proposal, examined, structural_error(proposal, examined)))
     return min(found, key=lambda one: one[2].largest)
 
 
-def check_known(seed: int, trials: int) -> None:
-    """Random mechanisms: their designs meet their points, and one of them makes the function."""
+@pytest.mark.parametrize(
+    ("seed", "trials"),
+    [
+        (4, 12),
+        slowly(5, 300, reason="random mechanisms, some near a limit"),
+        at_length(5, 1000, reason="a minute, of mechanisms nearer to one"),
+    ],
+)
+def test_designs_of_random_solvable_tasks_meet_their_points(seed: int, trials: int) -> None:
+    """And one of them makes the function of the mechanism that was drawn."""
     rng = np.random.default_rng(seed)
     kinds: tuple[MechanismKind, ...] = ("fourbar", "slider-crank")
     givens = {3: [("input", "output")], 4: [("input",), ("output",)], 5: [()]}
@@ -74,22 +90,13 @@ def check_known(seed: int, trials: int) -> None:
         assert min(errors) < 1e-6 * case.task.output_scale, (number, errors, case)
 
 
-def test_designs_of_random_solvable_tasks_meet_their_points() -> None:
-    check_known(4, 36)
-
-
-@pytest.mark.slow
-def test_designs_of_a_thousand_random_solvable_tasks_meet_their_points() -> None:
-    check_known(5, 1000)
-
-
 @pytest.mark.parametrize(
     ("kind", "count", "largest", "refined"),
     [
         ("fourbar", 3, 9.6868e-3, 5.5055e-3),
         ("fourbar", 4, 2.8329e-4, 1.4714e-4),
         ("slider-crank", 3, 1.66349e-4, 1.15942e-4),
-        ("slider-crank", 4, 2.6573e-6, 1.5018e-6),
+        slowly("slider-crank", 4, 2.6573e-6, 1.5018e-6, reason=FORTY_EIGHT),
         ("slider-crank", 5, 1.3073e-6, 1.1366e-6),
     ],
 )
@@ -109,19 +116,24 @@ def test_five_points_of_the_power_have_one_four_bar_with_a_branch_defect() -> No
     assert examine(proposal).defects == ["branch defect"]
 
 
-@pytest.mark.parametrize("kind", ["fourbar", "slider-crank"])
-@pytest.mark.parametrize("count", [3, 4, 5])
+@pytest.mark.parametrize(
+    ("kind", "count"),
+    [
+        *((kind, count) for kind in ("fourbar", "slider-crank") for count in (3, 5)),
+        ("fourbar", 4),
+        slowly("slider-crank", 4, reason=FORTY_EIGHT),
+    ],
+)
 def test_equal_ripples_are_equal_and_no_larger_than_before(kind: MechanismKind, count: int) -> None:
     task = power_task(kind, count)
-    plain, even = function_designs(task), function_designs(replace(task, equal_ripple=True))
+    plain, even = designs(task), designs(replace(task, equal_ripple=True))
     refined = 0
-    for before, after in zip(plain, even, strict=True):
+    for (before, first), (after, second) in zip(plain, even, strict=True):
         if after.chosen["spacing"] != "for equal ripples":
             assert "equal ripples" in after.doubt
             assert after.x_points == before.x_points
             continue
         refined += 1
-        first, second = examine(before), examine(after)
         if first.defects or second.defects:
             continue
         error = structural_error(after, second, 4001)
@@ -220,10 +232,13 @@ def test_explicit_points_a_falling_function_and_clockwise_ranges() -> None:
     assert not examined.defects
 
 
-def test_a_hump_and_a_table_are_generated() -> None:
+@pytest.mark.parametrize(
+    "start", [math.radians(30.0), slowly(None, reason="156 designs, as both starts are open")]
+)
+def test_a_hump_and_a_table_are_generated(start: float | None) -> None:
     x = np.linspace(0.0, math.pi, 60)
     table = GivenFunction.of_table(x.tolist(), np.sin(x).tolist(), "a hump")
-    task = FunctionTask(table, 0.0, math.pi, 2.0, 0.6, "slider-crank", 3)
+    task = FunctionTask(table, 0.0, math.pi, 2.0, 0.6, "slider-crank", 3, input_start_rad=start)
     assert task.y_ends == pytest.approx((0.0, 1.0), abs=1e-3)
     _, examined, error = best(task)
     assert max(examined.off) < MET

@@ -18,6 +18,7 @@ from analytic.synthesis.pose import Pose
 from models.array import Array
 from models.errors import CrankcheckError
 from tests.analytic.synthesis.function_cases import known
+from tests.worlds.tiers import slowly
 
 CASES = [
     (kind, count, given)
@@ -43,12 +44,13 @@ def numbers(one: Generator) -> Array:
     return np.array([*one.lengths, math.cos(one.input_start), math.sin(one.input_start), *ends])
 
 
+@pytest.mark.parametrize("tasks", [10, slowly(200, reason="random tasks, some near a limit")])
 @pytest.mark.parametrize(("kind", "count", "given"), CASES)
 def test_the_mechanism_that_made_the_points_is_found(
-    kind: MechanismKind, count: int, given: tuple[str, ...]
+    kind: MechanismKind, count: int, given: tuple[str, ...], tasks: int
 ) -> None:
     rng = np.random.default_rng(11)
-    for _ in range(40):
+    for _ in range(tasks):
         case = known(rng, kind, count, given)
         task, own = case.task, case.generator
         found = solved(task)
@@ -116,10 +118,11 @@ def test_five_points_have_the_solutions_that_burmester_has() -> None:
     assert counted[3] > 10
 
 
+@pytest.mark.parametrize("tasks", [1, slowly(4, reason="more tasks, each from as many starts")])
 @pytest.mark.parametrize("kind", ["fourbar", "slider-crank"])
-def test_a_search_from_many_starts_finds_no_other_solution(kind: MechanismKind) -> None:
+def test_a_search_from_many_starts_finds_no_other_solution(kind: MechanismKind, tasks: int) -> None:
     rng, hits = np.random.default_rng(21), 0
-    for _ in range(4):
+    for _ in range(tasks):
         task = known(rng, kind, 5, ()).task
         turns, ways = task.input_turn(task.x_points), task.output_scales(task.x_points)
         found = [numbers(one) for one in solved(task)]
@@ -128,7 +131,7 @@ def test_a_search_from_many_starts_finds_no_other_solution(kind: MechanismKind) 
             if pins is not None and max(abs(pins)) < 100.0 and np.hypot(*pins[:2]) > 1e-3:
                 assert min(_pins_off(kind, pins, one) for one in found) < 1e-5, (pins, found)
                 hits += 1
-    assert hits > 40
+    assert hits > 10 * tasks
 
 
 def _searched(kind: str, turns: Array, ways: Array, guess: Array) -> Array | None:

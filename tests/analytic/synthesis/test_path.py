@@ -11,14 +11,21 @@ import pytest
 
 from analytic.kinematics import solve_driven
 from analytic.synthesis.examine import examine
-from analytic.synthesis.path.search import PathFit, generate
+from analytic.synthesis.path.search import STARTS, PathFit, generate
 from analytic.synthesis.path.task import PathTask
 from models.array import Array
 from models.errors import CrankcheckError
 from tests.analytic.synthesis.random_paths import random_path
+from tests.worlds.tiers import at_length, slowly
 
 KINDS = list(itertools.product((True, False), (True, False)))
 NAMES = [f"{'timed' if t else 'free'}-{'closed' if c else 'open'}" for t, c in KINDS]
+
+
+FEW = 4
+few_starts = pytest.mark.parametrize(
+    "starts", [FEW, slowly(24, reason="of many starts more than the best one lead to mechanisms")]
+)
 
 
 def off_by_reference(fit: PathFit, task: PathTask) -> Array:
@@ -29,11 +36,17 @@ def off_by_reference(fit: PathFit, task: PathTask) -> Array:
     return np.asarray(np.abs(place[:, 0] + 1j * place[:, 1] - task.array))
 
 
+@pytest.mark.parametrize(
+    ("seeds", "starts"),
+    [((1,), FEW), slowly((1, 3), STARTS, reason="the number of starts that users have")],
+)
 @pytest.mark.parametrize(("timed", "closed"), KINDS, ids=NAMES)
-def test_a_four_bar_is_found_again_from_its_path(timed: bool, closed: bool) -> None:
-    for seed in (1, 3):
+def test_a_four_bar_is_found_again_from_its_path(
+    timed: bool, closed: bool, seeds: tuple[int, ...], starts: int
+) -> None:
+    for seed in seeds:
         _, _, task = random_path(seed, 15, timed=timed, closed=closed)
-        found = generate(task)
+        found = generate(task, starts=starts)
         best = found.fits[0]
         assert best.rms_m < 1e-4 * task.radius_m
         assert found.complete
@@ -47,48 +60,59 @@ def test_a_four_bar_is_found_again_from_its_path(timed: bool, closed: bool) -> N
             )
 
 
-@pytest.mark.slow
+@pytest.mark.parametrize(
+    "count",
+    [
+        slowly(10, reason="a share that is found takes many of them"),
+        at_length(40, reason="the share to a few hundredths: two seconds for each of 160"),
+    ],
+)
 @pytest.mark.parametrize(
     ("timed", "closed", "least"),
     [(True, True, 0.95), (True, False, 0.8), (False, True, 0.9), (False, False, 0.8)],
     ids=NAMES,
 )
-def test_most_of_forty_four_bars_are_found_again(timed: bool, closed: bool, least: float) -> None:
+def test_most_four_bars_are_found_again(
+    timed: bool, closed: bool, least: float, count: int
+) -> None:
     near = 0
-    for seed in range(40):
+    for seed in range(count):
         _, _, task = random_path(seed, 20, timed=timed, closed=closed)
         near += generate(task).fits[0].rms_m < 1e-4 * task.radius_m
-    assert near >= least * 40
+    assert near >= least * count
 
 
-def test_timing_is_kept_and_without_it_the_angles_are_free() -> None:
+@pytest.mark.parametrize("starts", [8, slowly(24, reason="another search, of many starts")])
+def test_timing_is_kept_and_without_it_the_angles_are_free(starts: int) -> None:
     one, angles, task = random_path(4, 12, timed=True, closed=True)
-    for fit in generate(task, starts=24).fits:
+    for fit in generate(task, starts=starts).fits:
         assert np.diff(fit.crank_rad) == pytest.approx(np.diff(angles), abs=1e-5)
     assert task.turned_rad is not None
     # Other angles for the same points are another task, that the same four-bar does not do.
     warped = task.turned_rad + 0.15 * np.sin(task.turned_rad)
     other = replace(task, crank_rad=tuple(warped.tolist()))
-    assert generate(other, starts=24).fits[0].rms_m > 1e-3 * task.radius_m
-    free = generate(replace(task, crank_rad=None), starts=24).fits[0]
+    assert generate(other, starts=starts).fits[0].rms_m > 1e-3 * task.radius_m
+    free = generate(replace(task, crank_rad=None), starts=starts).fits[0]
     assert free.rms_m < 1e-5 * task.radius_m
     assert one.family in ("crank-rocker", "double-crank")
 
 
+@few_starts
 @pytest.mark.parametrize("timed", [True, False])
-def test_noise_is_not_fitted_and_not_made_worse(timed: bool) -> None:
+def test_noise_is_not_fitted_and_not_made_worse(timed: bool, starts: int) -> None:
     noise = 0.01
     _, _, task = random_path(1, 40, timed=timed, closed=True, noise=noise)
-    best = generate(task, starts=24).fits[0]
+    best = generate(task, starts=starts).fits[0]
     # Of both directions of the noise with timing, and of the one across the curve without.
     expected = noise * math.sqrt(2.0 if timed else 1.0) * task.radius_m
     assert 0.6 * expected < best.rms_m < 1.15 * expected
     assert best.rms_m < best.largest_m < 5.0 * expected
 
 
-def test_the_mechanisms_are_distinct_and_the_nearest_is_the_first() -> None:
+@pytest.mark.parametrize("starts", [16, slowly(STARTS, reason="more of them to be told apart")])
+def test_the_mechanisms_are_distinct_and_the_nearest_is_the_first(starts: int) -> None:
     _, _, task = random_path(0, 12, timed=False, closed=True, noise=0.02)
-    fits = generate(task, count=6).fits
+    fits = generate(task, count=6, starts=starts).fits
     assert len(fits) > 2
     errors = [round(fit.rms_m / task.radius_m, 6) for fit in fits]
     assert errors == sorted(errors)
@@ -98,23 +122,24 @@ def test_the_mechanisms_are_distinct_and_the_nearest_is_the_first() -> None:
         assert off > 1e-3 * task.radius_m or one.four_bar.sign != other.four_bar.sign
 
 
-def test_cognates_are_among_them() -> None:
+@few_starts
+def test_cognates_are_among_them(starts: int) -> None:
     _, _, task = random_path(0, 20, timed=False, closed=True)
-    fits = generate(task, count=4).fits
+    fits = generate(task, count=4, starts=starts).fits
     assert sum(fit.rms_m < 1e-9 * task.radius_m for fit in fits) >= 2
 
 
 def test_the_same_seed_gives_the_same_answer() -> None:
     _, _, task = random_path(3, 10, timed=False, closed=False)
-    one, other = (generate(task, starts=10, seed=7) for _ in range(2))
+    one, other = (generate(task, starts=FEW, seed=7) for _ in range(2))
     assert [fit.four_bar for fit in one.fits] == [fit.four_bar for fit in other.fits]
-    timed = random_path(3, 10, timed=True, closed=False, noise=0.02)[2]
+    timed = random_path(3, 10, timed=True, closed=True, noise=0.02)[2]
     seeds = [generate(timed, starts=4, seed=seed).fits[0].rms_m for seed in (1, 1, 2)]
     assert seeds[0] == seeds[1] != seeds[2]
 
 
 def test_a_search_ends_with_its_time_and_tells_how_far_it_is() -> None:
-    _, _, task = random_path(0, 30, timed=False, closed=True)
+    _, _, task = random_path(0, 12, timed=False, closed=True)
     told: list[tuple[float, float]] = []
     found = generate(task, time_s=0.0, progress=lambda *each: told.append(each))
     assert not found.complete
@@ -129,13 +154,16 @@ def test_a_search_ends_with_its_time_and_tells_how_far_it_is() -> None:
     assert best[-1] < 1e-2 * task.radius_m
 
 
+@few_starts
 @pytest.mark.parametrize("closed", [True, False])
-def test_points_in_a_wrong_order_are_never_met_as_if_they_were_in_order(closed: bool) -> None:
+def test_points_in_a_wrong_order_are_never_met_as_if_they_were_in_order(
+    closed: bool, starts: int
+) -> None:
     _, _, task = random_path(5, 14, timed=False, closed=closed)
     points = list(task.points)
     points[4], points[8] = points[8], points[4]
     try:
-        fits = generate(PathTask(tuple(points), closed=closed), starts=16).fits
+        fits = generate(PathTask(tuple(points), closed=closed), starts=starts).fits
     except CrankcheckError as error:
         assert "in their order" in str(error)  # noqa: PT017  # either answer is a true one
         return
@@ -157,11 +185,11 @@ def test_a_distance_that_is_not_allowed_is_told_as_a_defect() -> None:
 
 def test_few_points_leave_freedom_and_are_met_exactly() -> None:
     points = (0j, 0.1 + 0.05j, 0.22 + 0.06j, 0.3 + 0.02j, 0.34 - 0.06j)
-    best = generate(PathTask(points), starts=12).fits[0]
+    best = generate(PathTask(points), starts=FEW).fits[0]
     assert best.rms_m < 1e-8
     assert best.proposal.chosen["freedom"].startswith("4 numbers")
     timed = random_path(1, 5, timed=True, closed=False)[2]
-    determined = generate(timed).fits[0]
+    determined = generate(timed, starts=FEW).fits[0]
     assert "freedom" not in determined.proposal.chosen
     assert determined.rms_m < 1e-6 * timed.radius_m
 
@@ -198,15 +226,16 @@ def test_what_is_no_path_is_refused(ask, told: str) -> None:  # type: ignore[no-
         ask()
 
 
+@few_starts
 @pytest.mark.parametrize("timed", [True, False])
-def test_a_transmission_angle_is_kept_at_the_cost_of_the_distance(timed: bool) -> None:
+def test_a_transmission_angle_is_kept_at_the_cost_of_the_distance(timed: bool, starts: int) -> None:
     turn = math.tau * (np.arange(24) + 0.1) / 24
     heart = 16 * np.sin(turn) ** 3 + 1j * (13 * np.cos(turn) - 5 * np.cos(2 * turn))
     crank = tuple(turn.tolist()) if timed else None
     task = PathTask(tuple(heart.tolist()), crank, closed=True)
-    loose = generate(task, starts=16).fits
+    loose = generate(task, starts=starts).fits
     least = math.radians(30.0)
-    strict = generate(task, starts=16, least_transmission_rad=least).fits
+    strict = generate(task, starts=starts, least_transmission_rad=least).fits
     assert all(fit.examined.least_transmission_rad >= least for fit in strict)
     assert min(fit.examined.least_transmission_rad for fit in loose) < least
     assert strict[0].rms_m < 0.5 * task.radius_m

@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.synthesis import coupler
 from analytic.synthesis.examine import Examined
 from analytic.synthesis.passing import passing_times
-from analytic.synthesis.solutions import solutions_of
 from models.errors import CrankcheckError, ReachError
 from models.laws import Oscillating
-from tests.analytic.synthesis.random_tasks import TASKS, random_task
+from tests.analytic.synthesis.random_tasks import TASKS, random_solutions
+from tests.worlds.tiers import at_length, slowly
 
 MET = 1e-10
 """Of the size, over the square of the sine of the worst transmission in a position: near a limit
@@ -47,7 +46,7 @@ def followed(one: Examined) -> tuple[float, float]:
 def hold(kind: str, number: int) -> tuple[int, int]:
     """The solutions of a task: how many have no defect, of how many."""
     try:
-        found = solutions_of(random_task(kind, number)).examined
+        found = random_solutions(kind, number).examined
     except CrankcheckError:
         if kind != "four_positions":  # of others a mechanism is known
             raise
@@ -61,19 +60,19 @@ def hold(kind: str, number: int) -> tuple[int, int]:
     return sum(not one.defects for one in found), len(found)
 
 
-def hold_all(kind: str, numbers: range, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(coupler, "CHOSEN", 4)
+SOME = {"driving_dyad", "crank_rocker", "stroke_and_ratio", "rocker_by_positions", "five_positions"}
+"""Of whose tasks one takes as long as ten of the others."""
+
+
+@pytest.mark.parametrize(
+    ("kind", "numbers"),
+    [
+        *((kind, range(1 if kind in SOME else 4)) for kind in TASKS),
+        *(slowly(kind, range(4, 44), reason="of forty, some are near a limit") for kind in TASKS),
+        *(at_length(kind, range(4, 1004), reason="one circuit in a hundred") for kind in TASKS),
+    ],
+    ids=lambda one: one if isinstance(one, str) else str(len(one)),
+)
+def test_solutions_do_what_is_said_of_them(kind: str, numbers: range) -> None:
     sound = [hold(kind, number) for number in numbers]
     assert sum(some for some, _ in sound) > 0.05 * sum(every for _, every in sound)
-    print(kind, "without a defect", sum(s for s, _ in sound), "of", sum(e for _, e in sound))
-
-
-@pytest.mark.parametrize("kind", TASKS)
-def test_solutions_do_what_is_said_of_them(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    hold_all(kind, range(4), monkeypatch)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", TASKS)
-def test_a_thousand_of_each(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    hold_all(kind, range(4, 1004), monkeypatch)

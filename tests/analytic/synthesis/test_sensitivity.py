@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
@@ -12,6 +13,12 @@ from analytic.synthesis.sensitivity import is_measured, monte_carlo, sensitivity
 from analytic.synthesis.solutions import solutions_of
 from models.tasks.files import load_task
 from models.tasks.stroke import StrokeTask
+from tests.worlds.tiers import slowly
+
+
+@functools.cache
+def best(kind: str, name: str) -> Examined:
+    return solutions_of(load_task(kind, name)).examined[0]
 
 
 def central(rod: float = 0.3) -> Examined:
@@ -40,14 +47,23 @@ def test_the_largest_clearance_is_that_of_all_joints_at_once() -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "name"),
-    [("coupler", "three-positions"), ("coupler", "driving-dyad"), ("quick-return", "whitworth")],
+    ("kind", "name", "count"),
+    [
+        ("coupler", "three-positions", 40),
+        ("quick-return", "whitworth", 40),
+        *(
+            slowly(*task, 200, reason="of more dimensions and mechanisms")
+            for task in (("coupler", "three-positions"), ("coupler", "driving-dyad"))
+        ),
+    ],
 )
-def test_a_monte_carlo_stays_within_the_worst_case_and_comes_near(kind: str, name: str) -> None:
-    one = solutions_of(load_task(kind, name)).examined[0]
+def test_a_monte_carlo_stays_within_the_worst_case_and_comes_near(
+    kind: str, name: str, count: int
+) -> None:
+    one = best(kind, name)
     found, small = sensitivity(one), 1e-6
     worst = found.worst(small)
-    spread = monte_carlo(one, small, (0.3 * worst).tolist(), 200)
+    spread = monte_carlo(one, small, (0.3 * worst).tolist(), count)
     moves = worst > 1e-9
     assert np.all(spread.largest <= worst * 1.001 + 1e-12)
     assert np.all(spread.largest[moves] > 0.25 * worst[moves])
@@ -57,15 +73,15 @@ def test_a_monte_carlo_stays_within_the_worst_case_and_comes_near(kind: str, nam
 
 def test_the_same_seed_gives_the_same() -> None:
     one = central()
-    first, second = (monte_carlo(one, 1e-4, [1e-4, 1e-4], 50) for _ in range(2))
+    first, second = (monte_carlo(one, 1e-4, [1e-4, 1e-4], 10) for _ in range(2))
     assert first.largest.tolist() == second.largest.tolist()
-    other = monte_carlo(one, 1e-4, [1e-4, 1e-4], 50, seed=1)
+    other = monte_carlo(one, 1e-4, [1e-4, 1e-4], 10, seed=1)
     assert other.largest.tolist() != first.largest.tolist()
 
 
 def test_mechanisms_that_can_not_be_assembled_are_counted() -> None:
-    one = solutions_of(load_task("coupler", "three-positions")).examined[0]
-    assert monte_carlo(one, 0.1, [1.0] * 9, 100).lost > 5
+    one = best("coupler", "three-positions")
+    assert monte_carlo(one, 0.1, [1.0] * 9, 40).lost > 5
 
 
 def test_a_bar_has_one_length() -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
@@ -21,7 +21,8 @@ from models.laws import ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
 from models.scene import Driver, Scene
 from tests.analytic.change_points.test_crossing import LEVER, LOCOMOTIVE, fourbar
-from tests.worlds.strategies import Designed, mechanisms
+from tests.worlds.strategies import Designed, examples, mechanisms
+from tests.worlds.tiers import slowly
 
 WHITWORTH = """
 name = "quick"
@@ -158,55 +159,42 @@ def test_turns_are_counted_through_change_points_and_past_near_ones(name: str) -
         assert np.abs(found[link] - steps[near]).max() < 0.01
 
 
-def _turns_as_it_does_step_by_step(designed: Designed) -> None:
-    scene = designed.scene
-    time_s = np.random.default_rng(5).uniform(0.0, 2.0 * scene.driver.law.period_s, 20)
-    found, wanted = sampled(scene, time_s), followed(scene, time_s)
-    for link in scene.links:
-        assert np.allclose(found[link], wanted[link], rtol=0, atol=1e-9)
+@pytest.mark.parametrize("count", [10, slowly(1_000, reason="rare mechanisms and swings")])
+def test_random_mechanisms_turn_as_they_do_step_by_step(count: int) -> None:
+    @examples(count)
+    @given(designed=mechanisms())
+    def hold(designed: Designed) -> None:
+        scene = designed.scene
+        time_s = np.random.default_rng(5).uniform(0.0, 2.0 * scene.driver.law.period_s, 20)
+        found, wanted = sampled(scene, time_s), followed(scene, time_s)
+        for link in scene.links:
+            assert np.allclose(found[link], wanted[link], rtol=0, atol=1e-9)
+
+    hold()
 
 
-@settings(max_examples=25, deadline=None, derandomize=True, database=None)
-@given(designed=mechanisms())
-def test_random_mechanisms_turn_as_they_do_step_by_step(designed: Designed) -> None:
-    _turns_as_it_does_step_by_step(designed)
-
-
-@pytest.mark.slow
-@settings(max_examples=1_000, deadline=None, derandomize=True, database=None)
-@given(designed=mechanisms())
-def test_a_thousand_mechanisms_turn_as_they_do_step_by_step(designed: Designed) -> None:
-    _turns_as_it_does_step_by_step(designed)
-
-
-def _no_angle_is_farther_off_than_said(designed: Designed, seed: int) -> None:
+@pytest.mark.parametrize("count", [10, slowly(1_000, reason="rare mechanisms and cells")])
+def test_no_angle_in_a_cell_is_farther_off_than_said(count: int) -> None:
     """Also in cells that are too wide to be sure, and where the mechanism is open in the middle;
     and one that is said to be open all over does not close anywhere."""
-    scene = designed.scene
-    ready = prepared.prepared(scene)
-    look = CellSolver(scene, ready.steps, ready.passages)
-    rng = np.random.default_rng(seed)
-    middle, half = rng.uniform(-math.pi, math.pi, 200), 10.0 ** rng.uniform(-4.0, 0.0, 200)
-    cells, inside = look.at(middle, half), look.at(middle + rng.uniform(-1.0, 1.0, 200) * half)
-    closed = ~inside.is_open
-    assert not np.any(closed & cells.is_open)
-    for link, angle in cells.angles.items():
-        off = inside.angles[link] - angle
-        off -= math.tau * np.round(off / math.tau)
-        assert np.all(np.abs(off)[closed] <= cells.spread[closed])
 
+    @examples(count)
+    @given(designed=mechanisms(), seed=st.integers(0, 2**32 - 1))
+    def hold(designed: Designed, seed: int) -> None:
+        scene = designed.scene
+        ready = prepared.prepared(scene)
+        look = CellSolver(scene, ready.steps, ready.passages)
+        rng = np.random.default_rng(seed)
+        middle, half = rng.uniform(-math.pi, math.pi, 200), 10.0 ** rng.uniform(-4.0, 0.0, 200)
+        cells, inside = look.at(middle, half), look.at(middle + rng.uniform(-1.0, 1.0, 200) * half)
+        closed = ~inside.is_open
+        assert not np.any(closed & cells.is_open)
+        for link, angle in cells.angles.items():
+            off = inside.angles[link] - angle
+            off -= math.tau * np.round(off / math.tau)
+            assert np.all(np.abs(off)[closed] <= cells.spread[closed])
 
-@settings(max_examples=15, deadline=None, derandomize=True, database=None)
-@given(designed=mechanisms(), seed=st.integers(0, 2**32 - 1))
-def test_no_angle_in_a_cell_is_farther_off_than_said(designed: Designed, seed: int) -> None:
-    _no_angle_is_farther_off_than_said(designed, seed)
-
-
-@pytest.mark.slow
-@settings(max_examples=1_000, deadline=None, derandomize=True, database=None)
-@given(designed=mechanisms(), seed=st.integers(0, 2**32 - 1))
-def test_no_angle_in_many_cells_is_farther_off_than_said(designed: Designed, seed: int) -> None:
-    _no_angle_is_farther_off_than_said(designed, seed)
+    hold()
 
 
 def test_two_reachable_ranges_are_counted_each_for_itself() -> None:
@@ -247,12 +235,12 @@ on = "crank"
 """
 
 
-def narrow_ranges() -> Iterator[tuple[str, float, float, dict[str, float]]]:
+def narrow_ranges(count: int) -> Iterator[tuple[str, float, float, dict[str, float]]]:
     """Scenes of a long crank and short links, with their reach beyond 0 by the cosine rule and
     their lengths: ranges of 0.1 to 0.3 deg, and random ones of 1e-6 rad and more."""
     rng = np.random.default_rng(9)
     found = [(1.001, 0.004, 0.001), (1.007, 0.01, 0.002), (1.0, 0.02, 0.002)]
-    for short in 10.0 ** rng.uniform(-5.0, -1.0, 40):
+    for short in 10.0 ** rng.uniform(-5.0, -1.0, count):
         other = short * 10.0 ** rng.uniform(-1.0, 1.0)
         found.append((1.0 + rng.uniform(-0.9, 0.9) * (short + other), short, other))
     for ground, coupler, rocker in found:
@@ -265,12 +253,13 @@ def narrow_ranges() -> Iterator[tuple[str, float, float, dict[str, float]]]:
         yield NARROW + SHORT_ROD, -side, side, lengths
 
 
-def test_a_reachable_range_may_be_as_narrow_as_it_likes() -> None:
+@pytest.mark.parametrize("count", [8, slowly(200, reason="random lengths")])
+def test_a_reachable_range_may_be_as_narrow_as_it_likes(count: int) -> None:
     """A cell that is open in its middle may hold all of it."""
     rng = np.random.default_rng(10)
     along = 0.5 - 0.5 * np.cos(np.linspace(1e-3, math.pi - 1e-3, 2001))
     some = slice(None, None, -67)
-    for text, low, high, lengths in narrow_ranges():
+    for text, low, high, lengths in narrow_ranges(count):
         theta = low + (high - low) * along
         start = math.degrees(low + (high - low) * rng.uniform(0.1, 0.9))
         for branch in (1, -1):
@@ -285,7 +274,7 @@ def test_a_reachable_range_may_be_as_narrow_as_it_likes() -> None:
 
 def test_the_angle_at_time_0_is_the_one_nearest_to_zero() -> None:
     """Also where the link jumps over half a turn within the cell that the driver starts in."""
-    for start in np.linspace(-math.pi, math.pi, 200):
+    for start in np.linspace(-math.pi, math.pi, 60):
         scene = replace(whitworth(0.1), driver=Driver("crank", ConstantSpeed(start, 10.0)))
         theta = sampled(scene, np.array([0.0, 0.0, 1e-9, -1e-9, 0.1 * PERIOD]))["lever"]
         assert abs(theta[0]) <= math.pi

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import functools
 import math
 from dataclasses import replace
 
@@ -19,18 +20,23 @@ from models.tasks.coupler import CouplerTask
 from models.tasks.files import load_task, shipped_tasks
 from models.tasks.task import TaskTable
 from reports.synthesis.proof import by_reference, proven
+from tests.worlds.tiers import slowly
 
-QUICK = {"function": "power-4-points", "path": "oval"}
-"""Of kinds whose tasks take seconds, the one that is not slow."""
+QUICK = (
+    *("three-positions", "five-positions", "given-pivots", "by-angle", "central", "isosceles"),
+    *("slotted-lever", "whitworth", "power-4-points", "power-5-points", "evans", "peaucellier"),
+)
+SLOWER = (
+    "test_random_proof.py proves all kinds; many solutions, or one more of a kind, take seconds"
+)
 EVERY = [
-    pytest.param(kind, name, marks=pytest.mark.slow)
-    if QUICK.get(kind, name) != name
-    else (kind, name)
+    (kind, name) if name in QUICK else slowly(kind, name, reason=SLOWER)
     for kind, names in shipped_tasks().items()
     for name in names
 ]
 
 
+@functools.cache
 def best(kind: str, name: str) -> tuple[Examined, TaskTable]:
     task = load_task(kind, name)
     return solutions_of(task).examined[0], task
@@ -39,6 +45,15 @@ def best(kind: str, name: str) -> tuple[Examined, TaskTable]:
 @pytest.mark.parametrize(("kind", "name"), EVERY)
 def test_shipped_tasks_are_met_by_the_reference_and_the_engines(kind: str, name: str) -> None:
     one, task = best(kind, name)
+    _hold(one, task, name)
+
+
+def test_a_path_is_met_by_the_reference_and_the_engines() -> None:
+    task = load_task("path", "oval").model_copy(update={"starts": 3})
+    _hold(solutions_of(task).examined[0], task, "oval")
+
+
+def _hold(one: Examined, task: TaskTable, name: str) -> None:
     if name in ("five-positions", "power-5-points"):
         assert one.defects, "the one mechanism that there is"
         return

@@ -8,9 +8,11 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner, Result
 
+from analytic.synthesis import coupler
 from models.files import read_scene
 from models.tasks.files import find_task
 from reports.cli import app
+from reports.cli.commands import synth as command
 
 
 def synth(*arguments: str) -> Result:
@@ -24,12 +26,19 @@ def test_kinds_and_shipped_tasks_are_listed() -> None:
     assert "coupler" not in synth("stroke").output
 
 
-def test_solutions_are_written_as_scenes(tmp_path: Path) -> None:
-    result = synth("coupler", "three-positions", "-o", str(tmp_path / "out"))
+@pytest.fixture(scope="module")
+def three_positions(tmp_path_factory: pytest.TempPathFactory) -> tuple[Result, Path]:
+    """What is said of that task and its proof, and the folder of its files."""
+    folder = tmp_path_factory.mktemp("three") / "out"
+    return synth("coupler", "three-positions", "--prove", "-o", str(folder)), folder
+
+
+def test_solutions_are_written_as_scenes(three_positions: tuple[Result, Path]) -> None:
+    result, folder = three_positions
     assert result.exit_code == 0, result.output + result.stderr
     assert "2 mechanisms looked at, 2 examined, 2 without a defect" in result.output
-    frame = pd.read_csv(tmp_path / "out/solutions.csv")
-    scene = read_scene(tmp_path / "out/solution-1.toml")
+    frame = pd.read_csv(folder / "solutions.csv")
+    scene = read_scene(folder / "solution-1.toml")
     assert scene.links["input"].points["D"][0] == frame.loc[0, "input_O4D_m"]
     assert scene.ground["O2"][0] == frame.loc[0, "O2_x_m"]
 
@@ -38,6 +47,7 @@ def test_a_proof_names_every_engine(tmp_path: Path) -> None:
     result = synth("rocker", "by-angle", "--prove", "--best", "1", "-o", str(tmp_path))
     assert result.exit_code == 0, result.output + result.stderr
     assert "PROVEN" in result.output
+    assert "left there" not in result.output
     proof = pd.read_csv(tmp_path / "proof.csv")
     assert set(proof["engine"]) == {"reference", "mujoco", "pymunk"}
     assert proof["within"].all()
@@ -63,9 +73,10 @@ def test_a_task_that_only_defects_answer_is_an_exit_code() -> None:
     assert "nothing to prove" in result.output
 
 
-def test_tolerances_are_told() -> None:
+def test_tolerances_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(command, "SAMPLES", 50)
     result = synth("stroke", "central", "--best", "1", "--vary", "1e-5")
-    assert "mechanisms meet the task" in result.output
+    assert "of 50 mechanisms meet the task" in result.output
     assert "radial clearance" in result.output
 
 
@@ -168,11 +179,14 @@ FOUR = "positions = [" + ", ".join(
 ) + "]\n"  # fmt: skip
 
 
-def test_fixed_pivots_stand_where_they_are_wished(tmp_path: Path) -> None:
+def test_fixed_pivots_stand_where_they_are_wished(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(coupler, "CHOSEN", 4)
     task = tmp_path / "task.toml"
     region = "pivots_in = { from_m = [-0.3, -0.3], to_m = [0.8, 0.8] }\n"
     task.write_text(f'name = "x"\nsource = "a test"\n{FOUR}{region}', encoding="utf-8")
-    assert synth("coupler", str(task), "-o", str(tmp_path / "out")).exit_code == 0
+    assert synth("coupler", str(task), "--best", "2", "-o", str(tmp_path / "out")).exit_code == 0
     frame = pd.read_csv(tmp_path / "out/solutions.csv")
     for column in ("O2_x_m", "O2_y_m", "O4_x_m", "O4_y_m"):
         assert frame[column].between(-0.3, 0.8).all()
@@ -193,21 +207,22 @@ def load_text(kind: str, name: str) -> str:
 
 
 def test_what_an_earlier_run_left_is_told(tmp_path: Path) -> None:
-    first = synth("rocker", "by-angle", "--best", "2", "-o", str(tmp_path))
-    assert "left there" not in first.output
-    (tmp_path / "mine.toml").write_text("x = 1\n", encoding="utf-8")
+    left = ("construction-2.html", "construction-2.svg", "solution-2.toml")
+    for name in (*left, "mine.toml"):
+        (tmp_path / name).write_text("x = 1\n", encoding="utf-8")
     told = " ".join(synth("rocker", "by-angle", "--best", "1", "-o", str(tmp_path)).output.split())
-    left = "construction-2.html, construction-2.svg, solution-2.toml"
-    assert told.endswith(f"left there by an earlier run: {left}")
+    assert told.endswith(f"left there by an earlier run: {', '.join(left)}")
 
 
-def test_the_page_leads_to_every_file_that_is_written(tmp_path: Path) -> None:
-    synth("coupler", "three-positions", "-o", str(tmp_path), "--prove")
-    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+def test_the_page_leads_to_every_file_that_is_written(
+    three_positions: tuple[Result, Path],
+) -> None:
+    _, folder = three_positions
+    page = (folder / "index.html").read_text(encoding="utf-8")
     assert "Every position is met." in page
     for number in (1, 2):
         for name in (f"solution-{number}.toml", f"construction-{number}.html"):
-            assert (tmp_path / name).exists()
+            assert (folder / name).exists()
             assert f'href="{name}"' in page
 
 
@@ -218,7 +233,8 @@ def test_loads_are_weighed(tmp_path: Path) -> None:
     for force in (100.0, 200.0):
         text = load_text("coupler", "three-positions") + "speed_rad_s = 0.01\n" + load.format(force)
         task.write_text(text, encoding="utf-8")
-        assert synth("coupler", str(task), "-o", str(tmp_path / "out")).exit_code == 0
+        told = synth("coupler", str(task), "--best", "1", "-o", str(tmp_path / "out"))
+        assert told.exit_code == 0
         torques.append(pd.read_csv(tmp_path / "out/solutions.csv")["largest_torque_n_m"][0])
     assert torques[1] == pytest.approx(2.0 * torques[0], rel=1e-3)
 
