@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,8 +16,10 @@ from models.loads import Load
 from models.scene import Scene
 from reports.cli.commands.sweep import asked
 from reports.cli.measuring import SweepRequest
+from reports.judge.cell import Cell
 from reports.plan.chosen_study import StudyChoice, chosen_study
 from reports.plan.grid import grid
+from reports.plan.key import digest, line_key
 from reports.plan.study import Study, Variant, load_study
 
 TOML = """
@@ -49,6 +52,19 @@ def written(folder: Path, name: str, text: str) -> Path:
     path = folder / name
     path.write_text(text, encoding="utf-8")
     return path
+
+
+def asked_for(**options: Any) -> Study:
+    """The study of a sweep with these options."""
+    return asked(SweepRequest(Path("x"), **options))
+
+
+def study_of(*variants: Variant, scene: str = "fourbar-lecture-1", **more: Any) -> Study:
+    """A study of one scene."""
+    return Study(**{"scenes": [scene], "variants": variants, "steps_per_turn": [90.0]} | more)
+
+
+TUNED = Variant(engine="pymunk", profile="tuned")
 
 
 def test_toml_and_yaml_say_the_same(tmp_path: Path) -> None:
@@ -85,55 +101,38 @@ def test_a_line_holds_the_cells_that_differ_in_step_only() -> None:
 
 
 def test_the_same_settings_under_two_names_are_one_cell() -> None:
-    twice = Study(
-        scenes=["fourbar-lecture-1"],
-        variants=[
-            Variant(engine="pymunk", profile="tuned"),
-            Variant(engine="pymunk", profile="tuned", settings={"iterations": 150}, name="same"),
-        ],
-        steps_per_turn=[90.0],
-    )
-    assert [task.variant for task in grid(twice).tasks] == ["tuned"]
+    same = TUNED.model_copy(update={"settings": {"iterations": 150}, "name": "same"})
+    assert [task.variant for task in grid(study_of(TUNED, same)).tasks] == ["tuned"]
 
 
 def test_options_take_the_place_of_what_the_study_says() -> None:
-    base = SweepRequest(Path("x"))
-    study = asked(
-        SweepRequest(Path("x"), scenes=["shaper"], engines=["pymunk"], steps_per_turn="90,99")
-    )
+    study = asked_for(scenes=["shaper"], engines=["pymunk"], steps_per_turn="90,99")
     assert study.scenes == ["shaper"]
     assert study.steps_per_turn == [90.0, 99.0]
     assert {variant.engine for variant in study.variants} == {"pymunk"}
     assert len(study.variants) == 4
-    assert asked(base) == load_study(None)
-    profiles = asked(SweepRequest(Path("x"), profiles=["tuned"])).variants
+    assert asked_for() == load_study(None)
+    profiles = asked_for(profiles=["tuned"]).variants
     assert [(v.engine, v.profile) for v in profiles] == [("mujoco", "tuned"), ("pymunk", "tuned")]
 
 
 def test_an_extra_engine_is_swept_where_it_is_named_with_all_its_profiles() -> None:
-    named = asked(SweepRequest(Path("x"), engines=["pymunk", "exudyn"])).variants
+    named = asked_for(engines=["pymunk", "exudyn"]).variants
     assert [v.profile for v in named if v.engine == "exudyn"] == ["as-shipped", "tuned"]
     assert len(named) == 4 + 2
-    only = asked(SweepRequest(Path("x"), engines=["exudyn"], profiles=["tuned"])).variants
+    only = asked_for(engines=["exudyn"], profiles=["tuned"]).variants
     assert [(v.engine, v.profile) for v in only] == [("exudyn", "tuned")]
 
 
 def test_a_study_of_ones_own_names_the_engines_that_it_has() -> None:
-    study = Study(
-        scenes=["shaper"],
-        steps_per_turn=[90],
-        variants=[
-            Variant(engine="exudyn", profile="tuned"),
-            Variant(engine="pymunk", profile="tuned"),
-        ],
-    )
+    study = study_of(Variant(engine="exudyn", profile="tuned"), TUNED, scene="shaper")
     assert chosen_study(study, StudyChoice(), is_shipped=False).variants == study.variants
     with pytest.raises(CrankcheckError, match="--engine mujoco: the study has no variant of it"):
         chosen_study(study, StudyChoice(engines=["mujoco", "exudyn"]), is_shipped=False)
 
 
 def test_set_makes_one_variant_for_each_value() -> None:
-    study = asked(SweepRequest(Path("x"), settings=["mujoco.iterations=1,2", "mujoco.solver=CG"]))
+    study = asked_for(settings=["mujoco.iterations=1,2", "mujoco.solver=CG"])
     each = [one for variant in study.variants for one in variant.each()]
     assert [v.name for v in each] == [
         "tuned, iterations=1, solver=CG",
@@ -145,32 +144,26 @@ def test_set_makes_one_variant_for_each_value() -> None:
 
 
 @pytest.mark.parametrize(
-    ("request_", "words"),
+    ("options", "words"),
     [
-        (
-            SweepRequest(Path("x"), settings=["iterations=2"]),
-            "write it like --set mujoco.iterations",
-        ),
-        (
-            SweepRequest(Path("x"), settings=["bullet.iterations=2"]),
-            "'bullet' is no engine of this",
-        ),
-        (SweepRequest(Path("x"), settings=["mujoco.iterations="]), "write it like"),
-        (SweepRequest(Path("x"), settings=["mujoco.iteratoins=2"]), "did you mean iterations"),
-        (SweepRequest(Path("x"), settings=["mujoco.iterations=some"]), "it takes a whole number"),
-        (SweepRequest(Path("x"), steps_per_turn="90;180"), "numbers with commas"),
-        (SweepRequest(Path("x"), steps_per_turn=""), "numbers with commas"),
-        (SweepRequest(Path("x"), steps_per_turn="4"), "a turn needs at least 8"),
-        (SweepRequest(Path("x"), steps_per_turn="nan"), "--steps-per-turn nan"),
-        (SweepRequest(Path("x"), turns=0.0), "--turns 0"),
-        (SweepRequest(Path("x"), scenes=["fourbar"]), "Did you mean fourbar"),
-        (SweepRequest(Path("x"), engines=["mujoko"]), "did you mean mujoco"),
-        (SweepRequest(Path("x"), profiles=["tunde"]), "none of that name"),
+        ({"settings": ["iterations=2"]}, "write it like --set mujoco.iterations"),
+        ({"settings": ["bullet.iterations=2"]}, "'bullet' is no engine of this"),
+        ({"settings": ["mujoco.iterations="]}, "write it like"),
+        ({"settings": ["mujoco.iteratoins=2"]}, "did you mean iterations"),
+        ({"settings": ["mujoco.iterations=some"]}, "it takes a whole number"),
+        ({"steps_per_turn": "90;180"}, "numbers with commas"),
+        ({"steps_per_turn": ""}, "numbers with commas"),
+        ({"steps_per_turn": "4"}, "a turn needs at least 8"),
+        ({"steps_per_turn": "nan"}, "--steps-per-turn nan"),
+        ({"turns": 0.0}, "--turns 0"),
+        ({"scenes": ["fourbar"]}, "Did you mean fourbar"),
+        ({"engines": ["mujoko"]}, "did you mean mujoco"),
+        ({"profiles": ["tunde"]}, "none of that name"),
     ],
 )
-def test_what_can_not_be_run_is_said_before(request_: SweepRequest, words: str) -> None:
+def test_what_can_not_be_run_is_said_before(options: dict[str, Any], words: str) -> None:
     with pytest.raises(CrankcheckError, match=words):
-        grid(asked(request_))
+        grid(asked_for(**options))
 
 
 @pytest.mark.parametrize(
@@ -198,12 +191,7 @@ def test_a_study_file_that_is_not_there(tmp_path: Path) -> None:
 
 
 def test_turns_that_the_steps_do_not_divide_leave_one_line() -> None:
-    study = Study(
-        scenes=["fourbar-lecture-1"],
-        variants=[Variant(engine="pymunk", profile="tuned")],
-        steps_per_turn=[90.0, 185.0, 365.0],
-        turns=1.23,
-    )
+    study = study_of(TUNED, steps_per_turn=[90.0, 185.0, 365.0], turns=1.23)
     tasks = grid(study).tasks
     assert len({task.cell.turns for task in tasks}) == 3
     assert len({task.line for task in tasks}) == 1
@@ -224,16 +212,12 @@ def test_turns_that_the_steps_do_not_divide_leave_one_line() -> None:
 def test_variants_that_would_mislead_are_refused(
     variants: list[tuple[str, str, dict[str, int | float | str]]], words: str
 ) -> None:
-    study = Study(
-        scenes=["fourbar-lecture-1"],
-        variants=[
-            Variant(engine="pymunk", name=name, profile=profile, settings=dict(settings))
-            for name, profile, settings in variants
-        ],
-        steps_per_turn=[90.0],
-    )
+    each = [
+        Variant(engine="pymunk", name=name, profile=profile, settings=dict(settings))
+        for name, profile, settings in variants
+    ]
     with pytest.raises(CrankcheckError, match=words):
-        grid(study)
+        grid(study_of(*each))
 
 
 @pytest.mark.parametrize("values", ["[]", "true", "[1, false]"])
@@ -243,23 +227,14 @@ def test_a_setting_has_values_and_no_switches(tmp_path: Path, values: str) -> No
         load_study(written(tmp_path, "s.toml", text))
 
 
-def test_the_order_of_links_makes_another_scene() -> None:
-    from reports.plan.key import digest
-
-    assert digest("[a]\nx = 1\n[b]\nx = 2") != digest("[b]\nx = 2\n[a]\nx = 1")
-
-
-def test_comments_in_a_scene_do_not_make_another_scene() -> None:
-    from reports.plan.key import digest
-
+def test_comments_make_no_other_scene_and_the_order_of_links_does() -> None:
     assert digest("a = 1.0 # one") == digest("# so\na   = 1.0")
     assert digest("a = 1.0") != digest("a = 1.1")
+    assert digest("[a]\nx = 1\n[b]\nx = 2") != digest("[b]\nx = 2\n[a]\nx = 1")
 
 
 def test_only_loads_and_friction_make_other_names_than_before_engines_took_them() -> None:
     """The name of the plain line is written out: stores hold it."""
-    from reports.judge.cell import Cell
-    from reports.plan.key import line_key
 
     def named(scene: Scene) -> str:
         cell = Cell(scene, "mujoco", "tuned", dt_s=0.001, steps=9)

@@ -18,6 +18,13 @@ def of(*rows: Row) -> Recommendation:
     return found
 
 
+def on(
+    scenes: str, variant: str, steps: float, error: float, us: float, **more: object
+) -> list[Row]:
+    """The same cell on each of these scenes."""
+    return [cell(scene, variant, steps, error, us, **more) for scene in scenes]
+
+
 def variant(found: Recommendation) -> str | None:
     """The variant that is recommended, if any."""
     return None if found.reason else found.best.variant
@@ -29,8 +36,7 @@ def test_the_cheapest_that_reaches_the_target_on_every_scene_is_chosen() -> None
         cell("b", "cheap", 90, 2e-3, 1.0),  # misses on one scene
         cell("a", "good", 90, 5e-4, 4.0),
         cell("b", "good", 90, 9e-4, 9.0),
-        cell("a", "dear", 90, 1e-4, 9.0),
-        cell("b", "dear", 90, 1e-4, 9.0),
+        *on("ab", "dear", 90, 1e-4, 9.0),
     )
     assert variant(found) == "good"
     assert found.best.steps_per_turn == 90
@@ -93,8 +99,7 @@ def test_what_comes_nearest_is_named_where_nothing_does() -> None:
         cell("b", "x", 90, 5e-1, 1.0),
         cell("a", "y", 180, 5e-4, 1.0),
         cell("b", "y", 180, 4e-3, 1.0),
-        cell("a", "z", 180, 2e-3, 1.0),
-        cell("b", "z", 180, 2e-3, 1.0),
+        *on("ab", "z", 180, 2e-3, 1.0),
     )
     assert variant(found) is None
     assert (found.best.variant, found.best.steps_per_turn) == ("y", 180)
@@ -117,8 +122,7 @@ def test_a_cost_that_is_missing_on_one_scene_is_no_cost() -> None:
     found = of(
         cell("a", "x", 90, 1e-4, 1.0),
         untimed(cell("b", "x", 90, 1e-4, 1.0)),
-        cell("a", "y", 90, 1e-4, 9.0),
-        cell("b", "y", 90, 1e-4, 9.0),
+        *on("ab", "y", 90, 1e-4, 9.0),
     )
     assert variant(found) == "y"
 
