@@ -63,7 +63,7 @@ report: $(VENV)/crankcheck
 hard: $(VENV)/crankcheck
 	$(BIN)/crankcheck stability -o out/hard
 
-slow: $(VENV)/test
+slow: $(VENV)/test browser
 	$(BIN)/python -m pytest -q -n 2 --dist worksteal -m "slow and not long" $(PYTEST)
 
 docs: $(VENV)/docs
