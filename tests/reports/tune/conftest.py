@@ -35,7 +35,7 @@ def timed(_: object, cells: Sequence[tuple[Cell, float]], rounds: int) -> list[o
     return [((n + 9.0, float(n)), (1.1 * n, 2.0 * n)) for n, _ in enumerate(cells, 1)]
 
 
-@pytest.fixture(autouse=True, scope="package")
+@pytest.fixture(autouse=True, scope="module")
 def _in_this_process() -> object:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("reports.tune.attempt.Isolated", Remembering)
