@@ -19,7 +19,6 @@ UNTIL_S = 0.4
 
 
 def test_control_takes_out_what_rings_without_it() -> None:
-    """The motion twice over, some 3 s."""
     scene = load_scene("fourbar-elastic-controlled")
     motion = control_elastic(scene, UNTIL_S, Modes(1))
     course = drawn_course(motion, np.linspace(0.0, UNTIL_S, 201))

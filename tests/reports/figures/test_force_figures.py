@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
-from matplotlib.transforms import Bbox
 
 from analytic.forces.kinetostatics import forces
 from models.files import load_scene
@@ -21,33 +20,28 @@ from reports.figures.forces.all_figures import FORCE_FIGURES
 from reports.figures.forces.force_turn import force_turn
 from reports.figures.forces.torque import mean_torque
 from reports.figures.style import styled
-from tests.reports.figures.test_layout import boxes
+from tests.reports.figures.room import has_room
+from tests.worlds.tiers import few
 
 FOUR_STROKES = Tabulated((0.0, 3.0, 6.0, 12.0), (0.0, 5.0, -2.0, 0.0), period=4.0 * math.pi)
 WORK = Load("work", "crank", None, FOUR_STROKES, "angle")
 
 
+turn_of = cache(lambda name: force_turn(load_scene(name)))
 DRAWN = [
     (name, figure)
     for name in ("shaper", "tangent", "slider-crank-self-locking")
     for figure in FORCE_FIGURES
     if figure != "efficiency" or load_scene(name).friction
 ]
+QUICK = {case for case in DRAWN if case[0] == "shaper" or case[1] == "efficiency"}
 
 
-@pytest.mark.parametrize(("name", "figure"), DRAWN)
-def test_words_of_a_figure_keep_off_each_other_and_off_the_edge(name: str, figure: str) -> None:
+@pytest.mark.parametrize("drawn", few(DRAWN, QUICK, "the same figures, other curves"), ids=str)
+def test_words_of_a_figure_keep_off_each_other_and_off_the_edge(drawn: tuple[str, str]) -> None:
+    name, figure = drawn
     with styled():
-        drawn = FORCE_FIGURES[figure](force_turn(load_scene(name)))
-        assert drawn is not None
-        found = boxes(drawn)
-    page = drawn.bbox
-    for text, box in found:
-        inside = box.x0 >= -1 and box.y0 >= -1 and box.x1 <= page.x1 + 1 and box.y1 <= page.y1 + 1
-        assert inside, f"{text!r} leaves the sheet"
-    for (a, first), (b, second) in itertools.combinations(found, 2):
-        shared = Bbox.intersection(first, second)
-        assert shared is None or min(shared.width, shared.height) < 2.0, f"{a!r} on {b!r}"
+        has_room(FORCE_FIGURES[figure](turn_of(name)))
 
 
 def test_a_turn_like_every_other_is_drawn_from_0_to_360_deg(fourbar: Scene) -> None:
@@ -80,7 +74,7 @@ def test_the_mean_is_the_work_of_the_loads(fourbar: Scene) -> None:
 
 
 def test_beside_where_friction_locks_nothing_is_drawn_but_the_efficiency() -> None:
-    turn = force_turn(load_scene("slider-crank-self-locking"))
+    turn = turn_of("slider-crank-self-locking")
     degrees = np.degrees(turn.motion.links["crank"].theta) % 360.0
     is_drawn = np.isfinite(turn.acting.torque)
     # It locks from 80.6 to 99.4 and from 260.6 to 279.4 deg.

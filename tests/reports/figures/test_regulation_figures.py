@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 import pytest
-from matplotlib.transforms import Bbox
 
 from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
 from analytic.regulation.turning_machine import TurningMachine
@@ -14,7 +11,7 @@ from models.files import load_scene
 from reports.figures.regulation.all_figures import REGULATION_FIGURES
 from reports.figures.regulation.regulated import Regulated
 from reports.figures.style import styled
-from tests.reports.figures.test_layout import boxes
+from tests.reports.figures.room import has_room
 
 
 @pytest.fixture(scope="module")
@@ -26,15 +23,7 @@ def wanted() -> WantedFlywheel:
 def test_words_keep_off_each_other_and_off_the_edge(wanted: WantedFlywheel, name: str) -> None:
     with styled():
         drawn = REGULATION_FIGURES[name](Regulated(wanted.cycle, wanted))
-        assert drawn is not None
-        found = boxes(drawn)
-    page = drawn.bbox
-    for text, box in found:
-        inside = box.x0 >= -1 and box.y0 >= -1 and box.x1 <= page.x1 + 1 and box.y1 <= page.y1 + 1
-        assert inside, f"{text!r} leaves the sheet"
-    for (a, first), (b, second) in itertools.combinations(found, 2):
-        shared = Bbox.intersection(first, second)
-        assert shared is None or min(shared.width, shared.height) < 2.0, f"{a!r} on {b!r}"
+        has_room(drawn)
 
 
 def test_tangents_touch_the_curve_and_do_not_cross_it(wanted: WantedFlywheel) -> None:

@@ -21,6 +21,7 @@ from reports.sheets.paper import Box, Paper
 from reports.sheets.polygons.polygon_sheet import draw_sheet, laid_out
 from reports.sheets.position_sheet import draw_positions, positions
 from tests.reports.sheets.overlaps import overlaps
+from tests.worlds.tiers import slow
 
 A4, SMALLEST = Paper.of("A4"), Paper.of("180x120")
 ROOM = Box(10.0, 10.0, 160.0, 100.0)
@@ -97,7 +98,7 @@ def test_paper_too_low_for_the_bodies_of_a_sheet_is_refused_with_what_would_do()
     assert centres_of(drawn, "coupler", Paper.of("180x131")).scale > 0.0
 
 
-@pytest.mark.slow  # two sheets for each scene: a second each
+@slow("two sheets for each scene: a second each")
 @pytest.mark.parametrize("name", shipped())
 def test_labels_of_positions_are_clear(name: str) -> None:
     for divisions in (12, 24):
@@ -105,7 +106,7 @@ def test_labels_of_positions_are_clear(name: str) -> None:
         assert overlaps(draw_positions(sheet, "note").figure) == []
 
 
-@pytest.mark.slow  # sheets at six angles for each link of each scene
+@slow("sheets at six angles for each link of each scene")
 @pytest.mark.parametrize("name", shipped())
 def test_labels_of_centres_are_clear(name: str) -> None:
     for tag, canvas in centre_sheets(load_scene(name)):
@@ -123,7 +124,7 @@ def centre_sheets(scene: Scene) -> Iterator[tuple[str, Canvas]]:
             yield f"{link or 'none'} at {math.degrees(theta):.1f} deg", draw_centres(sheet, "note")
 
 
-@pytest.mark.slow  # sheets at six angles for each scene
+@slow("sheets at six angles for each scene")
 @pytest.mark.parametrize("name", shipped())
 def test_labels_of_polygons_are_clear(name: str) -> None:
     scene = load_scene(name)

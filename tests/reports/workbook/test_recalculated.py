@@ -26,6 +26,7 @@ from tests.worlds.live_tables import (
     scene_of,
     write_changed,
 )
+from tests.worlds.tiers import few, slow
 
 ALL_CHANGED = {
     "fourbar-lecture-1": {"BC": 0.28, "AD_deg": 20.0, "branch": -1.0, "omega": -7.0},
@@ -52,7 +53,7 @@ def by_library(table: FormulaTable, file: Path) -> Mapping[str, np.ndarray]:
 
 
 @pytest.mark.parametrize(
-    "kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind == KINDS[0])) for kind in KINDS]
+    "kind", few(KINDS, {"slotted-lever"}, "the library reads each formula anew: seconds")
 )
 def test_a_library_recalculates_a_changed_workbook_to_the_reference(
     kind: str, tmp_path: Path
@@ -97,10 +98,9 @@ def test_libreoffice_recalculates_changed_workbooks_and_says_what_is_open(tmp_pa
         _says_what_is_open(columns, live(kind)[1])
 
 
-@pytest.mark.slow
+@slow("a fault in one input is found by itself here; the quick test changes several at once")
 @pytest.mark.skipif(SOFFICE is None, reason=INSTALL)
 def test_libreoffice_follows_every_input_of_every_kind(tmp_path: Path) -> None:
-    """The other test changes several at once; a fault in one input is found by itself here."""
     changes = [(kind, {name: value}) for kind, name, value in EVERY]
     for (kind, change), columns in zip(changes, _changed(changes, tmp_path), strict=True):
         scene = scene_of(kind, inputs_of(live(kind)[1]) | change)
@@ -129,10 +129,10 @@ def _says_what_is_open(columns: Mapping[str, np.ndarray], table: FormulaTable) -
             assert np.isfinite(columns[name][~wrong].astype(float)).all(), name
 
 
-@pytest.mark.slow  # LibreOffice, which starts once for all, is asked for the same
-@pytest.mark.parametrize("kind", ["slotted-lever"])
-def test_a_library_says_what_is_open(kind: str, tmp_path: Path) -> None:
-    _, table = live(kind)
+@slow("LibreOffice, which starts once for all, is asked for the same")
+def test_a_library_says_what_is_open(tmp_path: Path) -> None:
+    kind = "slotted-lever"
+    table = live(kind)[1]
     write_changed(table, inputs_of(table) | OPEN[kind], tmp_path / "live.xlsx")
     _says_what_is_open(by_library(table, tmp_path / "live.xlsx"), table)
 
@@ -158,10 +158,9 @@ def drawn_inputs(kind: str, chance: random.Random) -> dict[str, float]:
             return inputs
 
 
-@pytest.mark.slow
+@slow("thirty of each: signs and places that no shipped scene has")
 @pytest.mark.parametrize("kind", KINDS)
 def test_random_mechanisms_are_the_reference_in_a_workbook(kind: str, tmp_path: Path) -> None:
-    """Thirty of each: signs and places that no shipped scene has."""
     chance = random.Random(17)
     for number in range(30):
         inputs = drawn_inputs(kind, chance)

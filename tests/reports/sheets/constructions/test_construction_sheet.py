@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import replace
+from functools import cache
 from xml.etree import ElementTree
 
 import numpy as np
@@ -16,6 +17,7 @@ from analytic.synthesis.examine import examine
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.figures.style import width_in
+from reports.sheets.canvas import Canvas
 from reports.sheets.constructions.construction_sheet import construction_sheet, laid_out
 from reports.sheets.constructions.construction_view import ConstructionView
 from reports.sheets.constructions.strokes import strokes, xy
@@ -27,6 +29,7 @@ from tests.reports.sheets.constructions.constructed import (
     three_positions,
 )
 from tests.reports.sheets.overlaps import overlaps
+from tests.worlds.tiers import few
 
 A4, A5, UPRIGHT = Paper.of("A4"), Paper.of("A5"), Paper.of("210x297")
 SVG = "{http://www.w3.org/2000/svg}"
@@ -38,6 +41,22 @@ EVERY = {
     "Burmester's curves": burmester_curves,
     "far pole": far_pole,
 }
+
+
+SHEETS = [(name, paper) for paper in (A4, UPRIGHT) for name in EVERY]
+QUICK = [("Burmester's curves", A4), ("far pole", UPRIGHT)]
+
+
+@cache
+def sheet_of(name: str, paper: Paper = A4) -> Canvas:
+    """The sheet, drawn once."""
+    return construction_sheet(EVERY[name](), paper)
+
+
+@cache
+def measured(name: str, paper: Paper = A4) -> dict[str, list[Array]]:
+    """The lines of the sheet, as they are in its file."""
+    return drawn_lines(sheet_of(name, paper).saved("svg", "lines"))
 
 
 def drawn_lines(svg: bytes) -> dict[str, list[Array]]:
@@ -60,9 +79,8 @@ def layers(svg: bytes) -> list[str]:
 def test_links_measured_off_the_sheet_are_those_of_the_scene(name: str) -> None:
     examined = examine(EVERY[name]())
     sheet = laid_out(examined, A4)
-    measured = drawn_lines(construction_sheet(examined, A4).saved("svg", "lines"))
     for link in examined.scene.links.values():
-        (line,) = measured[f"scheme-{link.name}"]
+        (line,) = measured(name)[f"scheme-{link.name}"]
         first, last = (link.points[point] for point in link.points)
         length = math.dist(line[0], line[1]) * sheet.scale
         assert length == pytest.approx(math.dist(first, last), abs=TENTH_MM * sheet.scale)
@@ -70,13 +88,12 @@ def test_links_measured_off_the_sheet_are_those_of_the_scene(name: str) -> None:
 
 def test_every_line_of_a_step_stands_where_the_construction_has_it() -> None:
     sheet = laid_out(three_positions(), A4)
-    measured = drawn_lines(construction_sheet(three_positions(), A4).saved("svg", "lines"))
     checked = 0
     for number, step in enumerate(sheet.view.steps, 1):
         for k, element in enumerate(step.elements, 1):
             if not isinstance(element, Segment):
                 continue
-            line = measured[f"step-{number}.{k}"][0]
+            line = measured("three positions")[f"step-{number}.{k}"][0]
             ends = [sheet.at(xy(end)) for end in (element.start, element.end)]
             more = 1.0 + 2.0 * element.beyond
             assert np.hypot(*(line[1] - line[0])) == pytest.approx(
@@ -91,8 +108,7 @@ def test_every_line_of_a_step_stands_where_the_construction_has_it() -> None:
 
 def test_the_radius_of_the_drawn_circle_is_the_crank() -> None:
     sheet = laid_out(rocker_by_angle(), A4)
-    measured = drawn_lines(construction_sheet(rocker_by_angle(), A4).saved("svg", "lines"))
-    (circle,) = measured["step-4.1"]
+    (circle,) = measured("rocker by its angle")["step-4.1"]
     crank = sheet.view.examined.scene.links["crank"].points
     assert np.ptp(circle[:, 0]) / 2 * sheet.scale == pytest.approx(
         math.dist(crank["O2"], crank["A"]), abs=TENTH_MM * sheet.scale
@@ -123,7 +139,7 @@ def test_positions_that_the_driver_can_not_lead_to_are_drawn_and_told() -> None:
 
 
 def test_there_is_a_layer_for_each_step_and_the_same_sheet_has_the_same_bytes() -> None:
-    svg = construction_sheet(rocker_by_angle(), A4).saved("svg", "layers")
+    svg = sheet_of("rocker by its angle").saved("svg", "layers")
     assert layers(svg) == [
         "frame",
         "positions",
@@ -136,22 +152,17 @@ def test_there_is_a_layer_for_each_step_and_the_same_sheet_has_the_same_bytes() 
         "letters",
     ]
     assert svg == construction_sheet(rocker_by_angle(), A4).saved("svg", "layers")
-    assert construction_sheet(rocker_by_angle(), A4).saved("pdf", "layers").startswith(b"%PDF")
+    assert sheet_of("rocker by its angle").saved("pdf", "layers").startswith(b"%PDF")
 
 
-@pytest.mark.parametrize("paper", [A4, UPRIGHT], ids=["A4", "upright"])
-@pytest.mark.parametrize("name", EVERY)
-def test_no_letter_is_on_a_line_and_none_off_the_sheet(name: str, paper: Paper) -> None:
-    assert overlaps(construction_sheet(EVERY[name](), paper).figure) == []
-
-
-@pytest.mark.parametrize("paper", [A4, UPRIGHT], ids=["A4", "upright"])
-@pytest.mark.parametrize("name", EVERY)
-def test_words_stay_in_their_column_and_lines_in_their_box(name: str, paper: Paper) -> None:
-    sheet = laid_out(EVERY[name](), paper)
-    canvas = construction_sheet(EVERY[name](), paper)
+@pytest.mark.parametrize("case", few(SHEETS, QUICK, "a second for a sheet"), ids=str)
+def test_no_letter_is_on_a_line_and_words_and_lines_stay_in_their_boxes(
+    case: tuple[str, Paper],
+) -> None:
+    name, paper = case
+    sheet, canvas = laid_out(EVERY[name](), paper), sheet_of(name, paper)
     low, high = sheet.box.corners
-    for gid, lines in drawn_lines(canvas.saved("svg", "lines")).items():
+    for gid, lines in measured(name, paper).items():
         if gid.startswith("step-"):
             places = np.concatenate(lines) * (1, -1) + (0, paper.height)
             assert np.all((places > low - 0.01) & (places < high + 0.01)), gid
@@ -162,6 +173,7 @@ def test_words_stay_in_their_column_and_lines_in_their_box(name: str, paper: Pap
         x, y = word.get_position()
         assert low[0] < x < x + MM_PER_IN * width_in(word.get_text()) < high[0]
         assert low[1] < y < high[1]
+    assert overlaps(canvas.figure) == []
 
 
 def test_an_arc_goes_from_its_one_angle_to_the_other() -> None:
@@ -185,9 +197,9 @@ def test_what_is_far_off_is_told_and_does_not_shrink_the_figure() -> None:
     assert "P12 at (-4.95, 25) m, 25.5 m from the middle towards 102°" in told
     assert any(words.startswith("a circle of step 5 with the radius 0.3 m") for words in told)
     assert not any("off the paper" in part.words.lower() for group in near.words for part in group)
-    measured = drawn_lines(construction_sheet(far_pole(), A4).saved("svg", "lines"))
+    lines = measured("far pole")
     # the line to the pole, and the arc about it, which is almost across that
-    (line,), (arc,) = measured["step-5.2"], measured["step-5.3"]
+    (line,), (arc,) = lines["step-5.2"], lines["step-5.3"]
     along, across = line[-1] - line[0], arc[-1] - arc[0]
     assert abs(along @ across) < 0.02 * math.hypot(*along) * math.hypot(*across)
 
@@ -202,8 +214,8 @@ def test_curves_that_run_to_infinity_do_not_shrink_the_figure_or_jump_across_it(
         ),
     )
     assert laid_out(proposal, A4).scale == laid_out(plain, A4).scale
-    svg = construction_sheet(proposal, A4).saved("svg", "curves")
-    pieces = [each for number in (3, 4) for each in drawn_lines(svg)[f"step-{number}.1"]]
+    lines = measured("Burmester's curves")
+    pieces = [each for number in (3, 4) for each in lines[f"step-{number}.1"]]
     steps = np.concatenate([np.hypot(*np.diff(piece, axis=0).T) for piece in pieces])
     assert len(steps) > 200
     assert steps.max() < 60.0
@@ -218,7 +230,7 @@ def test_words_that_do_not_fit_are_refused_with_a_paper_that_would_do() -> None:
 
 
 def test_the_title_tells_the_scale_and_the_note_the_source() -> None:
-    canvas = construction_sheet(three_positions(), A4)
+    canvas = sheet_of("three positions")
     words = [text.get_text() for text in canvas.named("frame").texts]
     scale = laid_out(three_positions(), A4).scale
     assert f"three-positions: construction, position 1 of 3, K_l = {scale:g} m/mm" in words
