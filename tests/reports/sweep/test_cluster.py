@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import re
 import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
 import pandas as pd
 import pytest
+from typer.testing import CliRunner
 
 from models.errors import CrankcheckError
 from models.scene import Scene
+from reports.cli import app
 from reports.judge.cell import Cell
 from reports.store.reader import read_store
 from reports.sweep import cluster as clusters
@@ -115,6 +118,37 @@ def test_no_cluster_is_said_in_one_line(
     monkeypatch.setitem(sys.modules, "distributed", cast(Any, None))
     with pytest.raises(CrankcheckError, match=r"^--dask: distributed is not installed; pip"):
         clusters.connected("tcp://there:1")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({}, ""),
+        ({"version": "0.1"}, "a worker has pymunk 0.1, here it is "),
+        ({"crankcheck": "0.1"}, "a worker has crankcheck 0.1, here it is "),
+        (
+            {"version": None, "status": "unsupported", "reason": "engine pymunk: not installed"},
+            r"a worker has no pymunk; install pymunk==\d",
+        ),
+    ],
+)
+def test_workers_with_other_packages_are_refused(
+    change: dict[str, Any], words: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def there(_: object, cells: Sequence[Cell], *__: object) -> Iterator[tuple[int, object]]:
+        found = measured(cells[0], False)
+        row = {**found.row, **{k: v for k, v in change.items() if k != "crankcheck"}}
+        yield 0, replace(found, row=row, crankcheck=change.get("crankcheck", found.crankcheck))
+
+    dask(monkeypatch, Cluster())
+    monkeypatch.setattr("reports.sweep.running.on_cluster", there)
+    options = ("--engine", "pymunk", "--profile", "tuned", "--no-timing", "-o", str(tmp_path / "s"))
+    asked = ["sweep", GRID[0], "--steps-per-turn", "90", "--dask", "tcp://there:1", *options]
+    done = CliRunner().invoke(app, asked, catch_exceptions=False)
+    assert done.exit_code == (2 if words else 0)
+    assert re.search(words, " ".join(done.output.split()))
+    if not words:
+        assert list(read_store(tmp_path / "s").cells.run_on) == ["cluster"]
 
 
 @pytest.fixture(scope="module")
