@@ -28,6 +28,7 @@ from models.scene_text import scene_text
 from models.waves import FourierSum, Pulse
 from sim.check import refuse_unknown_forces
 from sim.registry import ENGINES, engine
+from tests.worlds.tiers import slowly
 
 SCENE = load_scene("fourbar-elastic-controlled")
 LAW = SCENE.driver.law
@@ -49,28 +50,26 @@ def test_it_quells_what_rings_for_ever_under_a_crank_of_constant_speed() -> None
     """Both start straight; the periodic motion is what is left when nothing rings."""
     constant = ConstantSpeed(LAW.start_rad, LAW.speed_rad_s)
     driven = replace(SCENE, driver=replace(SCENE.driver, law=constant))
-    time_s = TURN_S * np.linspace(1.0, 1.3, 31)
+    time_s = TURN_S * np.linspace(0.8, 1.0, 21)
 
     def bent(start: Shape) -> Array:
-        by = DrivenElasticMotion(driven, 1.3 * TURN_S, Modes(1), start, stiffened=True)
+        by = DrivenElasticMotion(driven, TURN_S, Modes(1), start, stiffened=True)
         return by.at(time_s).elastic["coupler"].middle
 
     periodic = bent("periodic")
-    controlled = control_elastic(SCENE, 1.3 * TURN_S, Modes(1)).at(time_s)
+    controlled = control_elastic(SCENE, TURN_S, Modes(1)).at(time_s)
     assert largest(bent("straight") - periodic) > 0.5 * largest(periodic)
     assert largest(controlled.elastic["coupler"].middle - periodic) < 0.01 * largest(periodic)
 
 
 def test_with_multipliers_it_is_the_same_motion() -> None:
-    until_s = 0.1 * TURN_S
+    until_s = 0.05 * TURN_S
     time_s = np.linspace(0.0, until_s, 11)
     motion = control_elastic(SCENE, until_s, Modes(1)).at(time_s)
     other = release_multibody(
         SCENE, until_s, near=assembled(SCENE), flexible=flexible_links(SCENE, Modes(1)),
         acting=ControlledForces,
     ).at(time_s)  # fmt: skip
-    assert motion.forces is not None
-    assert other.forces is not None
     pairs = [
         (motion.elastic["coupler"].middle, other.elastic["coupler"].middle),
         (motion.links["crank"].alpha, other.links["crank"].alpha),
@@ -88,7 +87,6 @@ def test_the_torque_is_that_of_the_controller_and_all_work_there_is() -> None:
     crank = own.links["crank"]
     needed = forces(replace(SCENE, elastic={}), time_s, bound=False).torque
     told, speed, _ = LAW.at(time_s)
-    assert own.forces is not None
     np.testing.assert_allclose(
         own.forces.torque, needed - 10.0 * (crank.theta - told) - 0.1 * (crank.omega - speed),
         atol=1e-12,
@@ -148,20 +146,26 @@ def test_nobody_takes_it_for_a_crank_that_is_told() -> None:
 def test_let_go_it_has_no_controller() -> None:
     time_s = np.array([0.0, 0.01])
     free = release_elastic(SCENE, 0.01, Modes(1)).at(time_s)
-    assert free.forces is not None
     assert largest(free.forces.torque) == 0.0
 
 
-@pytest.mark.parametrize(("kp", "kd"), [(10.0, 0.1), (10.0, 0.0), (0.0, 0.1)])
+@pytest.mark.parametrize(
+    ("kp", "kd"),
+    [
+        (10.0, 0.1),
+        slowly(10.0, 0.0, reason="both at once show it"),
+        slowly(0.0, 0.1, reason="both at once show it"),
+    ],
+)
 def test_let_go_with_the_controllers_torque_as_loads_it_moves_as_under_control(
     kp: float, kd: float
 ) -> None:
     scene = with_gains(replace(SCENE, gravity_m_s2=(0.0, -9.81)), kp, kd)
-    times = np.linspace(0.0, 0.1, 50)
+    times = np.linspace(0.0, 0.05, 25)
     loose = released_under_control(scene)
     assert loose.is_free
-    ours = release_elastic(loose, 0.1, Modes(2)).at(times)
-    theirs = control_elastic(scene, 0.1, Modes(2)).at(times)
+    ours = release_elastic(loose, 0.05, Modes(2)).at(times)
+    theirs = control_elastic(scene, 0.05, Modes(2)).at(times)
     assert largest(ours.links["crank"].theta - theirs.links["crank"].theta) < 1e-12
     assert largest(ours.links["crank"].alpha - theirs.links["crank"].alpha) < 1e-8
 

@@ -21,7 +21,7 @@ from tests.analytic.elastic.turning import FEW, form_of, fourbar
 
 @pytest.fixture(scope="module")
 def over() -> OverSpeeds:
-    return over_speeds(fourbar(), FEW, np.linspace(11.0, 24.0, 27))
+    return over_speeds(fourbar(), FEW, np.linspace(11.0, 24.0, 9))
 
 
 def test_critical_speeds_are_those_next_to_whole_ratios(over: OverSpeeds) -> None:
@@ -44,7 +44,7 @@ def test_motions_are_refused_within_the_band_and_not_outside(over: OverSpeeds) -
 
 
 def test_a_point_is_the_linear_theory_at_its_speed(over: OverSpeeds) -> None:
-    point = over.points[2]
+    point = over.points[1]
     vibration = steady_vibration(at_speed(over.scene, point.speed_rad_s), FEW)
     assert point.share == pytest.approx(vibration.theories["linear"]["coupler"].share, rel=1e-6)
     assert point.ratio == pytest.approx(lowest_rad_s(over.scene) / point.speed_rad_s)
@@ -54,7 +54,7 @@ def test_spectra_hold_the_whole_deflection(over: OverSpeeds) -> None:
     wave = np.cos(2.0 * np.pi * 3.0 * np.arange(65) / 65)
     assert spectrum(2.0 + 0.5 * wave)[[0, 3, 4]] == pytest.approx([2.0, 0.5, 0.0], abs=1e-12)
     amplitudes = spectra(over, "coupler")
-    assert amplitudes.shape == (27, 33)
+    assert amplitudes.shape == (9, 33)
     middle = np.abs(over.points[0].swings["coupler"].middle).max() / 0.75
     assert amplitudes[0].max() <= middle <= amplitudes[0].sum()
 

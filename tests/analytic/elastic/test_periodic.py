@@ -151,8 +151,8 @@ def test_what_kinks_leave_out_of_the_series_is_in_the_doubt(
     scene = fourbar(10.5, damping_s=1e-3)
     scene = replace(scene, loads={"push": Load("push", "rocker", None, hat, "angle")})
     motion = DrivenElasticMotion(scene, 1.0, Modes(1), "periodic", stiffened=True)
-    closely = periodic_motion(motion.form, 513)
-    monkeypatch.setattr(periodic, "MOST", 129)
+    closely = periodic_motion(motion.form, 257)
+    monkeypatch.setattr(periodic, "MOST", 65)
     assert isinstance(motion.history, PeriodicMotion)
     time_s = instants(40, motion.form.period_s)
     true = np.abs(motion.history.at(time_s)[0] - closely.at(time_s)[0]).max()
@@ -161,7 +161,7 @@ def test_what_kinks_leave_out_of_the_series_is_in_the_doubt(
     assert true > 1e-8 * np.abs(closely.z).max()
 
 
-@pytest.mark.parametrize("by", [Elements(4), Segments(8, corrected=True)])
+@pytest.mark.parametrize("by", [Elements(3), Segments(6, corrected=True)])
 def test_links_swing_alike_by_coefficients_of_any_kind(by: Discretisation) -> None:
     """By slopes and angles as well as by lengths."""
     scene = fourbar(10.5)

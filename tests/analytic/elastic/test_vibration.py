@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -24,6 +25,9 @@ from models.scene import Scene
 from tests.analytic.elastic.driven import fourbar, with_elastic
 from tests.analytic.elastic.turning import form_of as turning_form
 from tests.analytic.elastic.turning import fourbar as turning_fourbar
+from tests.worlds.tiers import slowly
+
+STEPS = "many steps of the library: the equations are the same"
 
 
 def form_of(scene: Scene, by: Polynomials | Modes | Segments) -> ReducedForm:
@@ -47,14 +51,14 @@ def by_a_library(form: ReducedForm, until_s: float) -> np.ndarray:
     ("scene", "by"),
     [
         (fourbar(damping_s=1e-3), Polynomials(2)),
-        (load_scene("slider-crank-elastic"), Modes(2)),
-        (fourbar(), Segments(3)),
+        slowly(load_scene("slider-crank-elastic"), Modes(2), reason=STEPS),
+        slowly(fourbar(), Segments(3), reason=STEPS),
     ],
 )
 def test_a_straight_start_rings_as_a_library_integrates_it(
     scene: Scene, by: Polynomials | Modes | Segments
 ) -> None:
-    form, until = form_of(scene, by), 0.03
+    form, until = form_of(scene, by), 0.015
     expected = by_a_library(form, until)
     still = np.zeros(form.size)
     history = vibrate(form, still, still, until, 6)
@@ -68,7 +72,7 @@ def test_windows_end_at_kinks_and_in_between_the_motion_is_smooth() -> None:
     rise = 0.31
     law = FromRest(scene.driver.law.offset_rad, 8.0, rise)
     scene = replace(scene, driver=replace(scene.driver, law=law))
-    motion = DrivenElasticMotion(scene, 0.6, Polynomials(6), "straight", stiffened=True)
+    motion = DrivenElasticMotion(scene, 0.6, Polynomials(5), "straight", stiffened=True)
     edges = motion.history.edges_s
     assert rise in edges
     assert len(edges) >= 16
@@ -79,17 +83,25 @@ def test_windows_end_at_kinks_and_in_between_the_motion_is_smooth() -> None:
     )
 
 
-@pytest.mark.parametrize("start", ["straight", "quasi-static", "periodic"])
+ENERGY = {
+    "four-bar": fourbar(),
+    "both, damped": fourbar(axial_n=3e4, damping_s=2e-4),
+    "slider-crank, damped": with_elastic(load_scene("slider-crank-elastic"), damping_s=1e-3),
+}
+STARTS: tuple[Shape, ...] = ("straight", "quasi-static", "periodic")
+
+
 @pytest.mark.parametrize(
-    "scene",
+    ("name", "start"),
     [
-        fourbar(),
-        fourbar(axial_n=3e4, damping_s=2e-4),
-        with_elastic(load_scene("slider-crank-elastic"), damping_s=1e-3),
+        case
+        if case in (("both, damped", "straight"), ("slider-crank, damped", "periodic"))
+        else slowly(*case, reason="a third of a second each: any start of any scene does")
+        for case in itertools.product(ENERGY, STARTS)
     ],
-    ids=["four-bar", "both, damped", "slider-crank, damped"],
 )
-def test_the_drive_gives_what_energy_and_damping_take(scene: Scene, start: Shape) -> None:
+def test_the_drive_gives_what_energy_and_damping_take(name: str, start: Shape) -> None:
+    scene = ENERGY[name]
     until = 0.3
     motion = DrivenElasticMotion(scene, until, Polynomials(3, 1), start, stiffened=True, halved=2)
     rule, edges = gauss(10), np.linspace(0.0, until, 129)
@@ -128,7 +140,7 @@ def test_a_link_that_hardly_bends_takes_no_more_windows_than_it_needs() -> None:
 
 
 def test_a_window_that_is_too_long_is_halved() -> None:
-    form = turning_form(turning_fourbar(1.3))
+    form = turning_form(turning_fourbar(1.3), Modes(1, 0))
     still = np.zeros(form.size)
     long, short = (vibrate(form, still, still, form.period_s, count) for count in (2, 30))
     middle = np.array([0.5 * form.period_s])

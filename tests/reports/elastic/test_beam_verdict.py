@@ -42,9 +42,7 @@ def cell(
 
 def off(checked: Checked, quantity: str = "deflection") -> float:
     assert checked.status == "ok", checked.reason
-    assert checked.errors is not None
     worst = checked.errors.worst(quantity)
-    assert worst is not None
     return worst.pure
 
 
@@ -57,9 +55,7 @@ def test_eight_elements_are_within_a_thousandth_of_the_beam(checked: Checked) ->
     assert checked.verdict == "within", [finding.text for finding in checked.failures]
     assert off(checked) < 1e-4
     assert max(off(checked, "reaction"), off(checked, "torque")) < 1e-4
-    assert checked.errors is not None
     facts = checked.errors.elastic
-    assert facts is not None
     slope = math.pi * 1.051e-3 / 0.75  # of a half-wave as high as its largest deflection
     assert facts.doubt == pytest.approx(slope**2, rel=2e-3)
     # They are given next to nothing for their start.
@@ -67,7 +63,6 @@ def test_eight_elements_are_within_a_thousandth_of_the_beam(checked: Checked) ->
 
 
 def test_nothing_is_compared_with_a_chain_of_segments(checked: Checked) -> None:
-    assert checked.errors is not None
     assert checked.errors.worst("segments") is None
     assert {row.kind for row in checked.errors.rows} == {"total", "start"} | {
         row.kind for row in checked.errors.rows if row.kind != "chain"
@@ -84,8 +79,6 @@ def test_a_beam_near_its_frequency_is_as_far_off_as_the_theory_of_small_slopes(
 ) -> None:
     """Bent by a half of a per cent of its length: slopes of 0.017, whose square is left out."""
     found = check(cell(at_speed(scene, lowest_rad_s(scene) / 5.5)))
-    assert found.errors is not None
-    assert found.errors.elastic is not None
     assert found.errors.elastic.doubt == pytest.approx(2.8e-4, rel=0.1)
     assert off(found) < found.errors.elastic.doubt
 
@@ -94,8 +87,6 @@ def test_elements_come_to_the_beam_with_more_than_their_fourth_power(scene: Scen
     coarse = check(cell(scene, 2))
     least, more = off(coarse), off(check(cell(scene, 4)))
     assert least > 16.0 * more
-    assert coarse.errors is not None
-    assert coarse.errors.elastic is not None
     assert coarse.errors.elastic.chain == pytest.approx(least, rel=0.3)  # what they lock by
 
 
@@ -167,7 +158,6 @@ def test_what_few_elements_lock_by_is_no_fault_of_the_engine(
     """They start off pushed apart: the rocker by 0.13 of the speed squared with 2."""
     found = check(cell(scene, elements, steps=steps, with_forces=True))
     assert found.verdict == "within", [finding.text for finding in found.failures]
-    assert found.errors is not None
     rows = [row for row in found.errors.rows if row.kind == "start"]
     pushed = max(row.pure for row in rows if row.quantity == "acceleration")
     assert pushed == pytest.approx(2.15 / elements**4, rel=0.1)

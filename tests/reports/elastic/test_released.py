@@ -50,7 +50,6 @@ def cell(name: str = PULSE, engine: str = "mujoco", **changes: object) -> Cell:
 
 
 def worst(checked: Checked, quantity: str) -> float:
-    assert checked.errors is not None
     error = checked.errors.worst(quantity)
     assert error is not None, quantity
     return error.pure
@@ -73,7 +72,6 @@ def test_an_engine_comes_to_its_exact_chain_as_the_square_of_the_step(
     found = check(cell(name, engine, converge=True))
     assert found.verdict == "within", [finding.text for finding in found.failures]
     assert worst(found, "segments") < most
-    assert found.convergence is not None
     assert found.convergence.order > 1.8  # MuJoCo's springs ring with the fourth
 
 
@@ -86,13 +84,10 @@ def test_the_segments_are_told_from_the_engine_and_the_phase_is_that_of_the_beam
     checked: Checked,
 ) -> None:
     errors = checked.errors
-    assert errors is not None
-    assert errors.elastic is not None
     assert errors.elastic.chain == pytest.approx(worst(checked, "deflection"), rel=0.01)
     assert errors.elastic.chain == pytest.approx(0.05, rel=0.1)  # 0.80/n^2
     assert errors.elastic.doubt < 1e-5
     raw = errors.worst("phase", kind="raw")
-    assert raw is not None
     assert raw.pure == pytest.approx(errors.elastic.apart["phase"], rel=0.01)
     assert worst(checked, "phase") < raw.pure  # over how a small change of the start has grown
     assert worst(checked, "energy") < 1e-6
@@ -102,7 +97,6 @@ def test_the_segments_are_told_from_the_engine_and_the_phase_is_that_of_the_beam
 
 
 def test_there_is_no_geometry_at_the_drivers_angle_where_links_bend(checked: Checked) -> None:
-    assert checked.errors is not None
     assert checked.errors.worst("geometry") is None
     assert "no geometry: where links bend" in " ".join(checked.errors.notes)
 
@@ -134,7 +128,6 @@ def test_the_footer_says_what_stands_under_its_heads(checked: Checked) -> None:
 
 
 def test_the_words_under_errors_are_those_of_what_links_were_given_as(checked: Checked) -> None:
-    assert checked.errors is not None
     assert checked.errors.elastic is not None
     told = held_to(free=True, elastic=checked.errors.elastic)
     assert "segments against the exact chain of as many; let go, angles" in told
@@ -159,7 +152,6 @@ def test_a_step_that_the_springs_do_not_hold_says_which_would() -> None:
 def test_the_velocities_of_half_a_step_before_the_start_have_a_truth() -> None:
     """As MuJoCo ships it is half a step off, before the start and before the end."""
     found = check(cell(profile="as-shipped"))
-    assert found.errors is not None
     assert [error.finite for error in found.errors.rows] == [True] * len(found.errors.rows)
 
 
@@ -168,20 +160,16 @@ def test_a_truth_that_is_in_doubt_ends() -> None:
     assert isinstance(truth, ReleasedElasticTruth)
     assert 0.0 < truth.known_s < LASTS_S[PULSE]
     found = check(cell(tolerance={"phase": 1e-11}))
-    assert found.errors is not None
-    assert found.errors.free is not None
     assert found.errors.free.left_out > 0
     assert "the truth ends" in " ".join(found.errors.notes)
 
 
 def test_a_run_is_compared_with_the_beam_that_it_was_let_go_from() -> None:
-    done = simulated(PULSE, duration_s=0.1, segments=4)
+    done = simulated(PULSE, duration_s=LASTS_S[PULSE], segments=SEGMENTS)
     assert done.drive == "free"
-    assert done.motion is not None
     assert set(done.motion.links) == {"crank", "coupler", "rocker"}
     found = compare(PULSE, done)
     error = found.worst("segments")
-    assert error is not None
     assert error.pure < 1e-5
 
 
@@ -204,7 +192,6 @@ def test_what_rings_is_let_go_for_a_few_swings_of_it_unless_more_is_asked_for() 
 
 def test_what_starts_straight_is_off_by_its_fast_waves_too(checked: Checked) -> None:
     errors = checked.errors
-    assert errors is not None
     assert errors.elastic is not None
 
     def limit(step: float, *, straight: bool) -> float:

@@ -36,11 +36,7 @@ def checked(scene: Scene) -> Checked:
 def test_the_engine_and_the_segments_are_told_apart(checked: Checked) -> None:
     assert checked.verdict == "within"
     errors = checked.errors
-    assert errors is not None
-    assert errors.elastic is not None
     engine, beam = errors.worst("segments"), errors.worst("deflection")
-    assert engine is not None
-    assert beam is not None
     assert engine.pure < 1e-4
     assert beam.pure == pytest.approx(0.05, rel=0.1)  # 0.80/n^2
     assert errors.elastic.chain == pytest.approx(beam.pure, rel=0.01)
@@ -77,9 +73,7 @@ def test_a_step_that_the_springs_do_not_hold_says_which_would(scene: Scene) -> N
 def test_corrected_springs_have_the_sag_of_the_beam(scene: Scene) -> None:
     found = check(cell(scene, springs="corrected"))
     assert found.verdict == "within"
-    assert found.errors is not None
     beam = found.errors.worst("deflection")
-    assert beam is not None
     assert beam.pure < 3e-3
 
 
@@ -87,10 +81,7 @@ def test_corrected_springs_have_the_sag_of_the_beam(scene: Scene) -> None:
 def test_reactions_and_torque_are_those_of_the_beam(scene: Scene, engine: str) -> None:
     found = check(cell(scene, engine, with_forces=True))
     assert found.verdict == "within", [finding.text for finding in found.failures]
-    assert found.errors is not None
     reaction, torque = found.errors.worst("reaction"), found.errors.worst("torque")
-    assert reaction is not None
-    assert torque is not None
     assert max(reaction.pure, torque.pure) < 0.01
 
 
