@@ -231,17 +231,10 @@ def test_a_link_that_hangs_on_nothing_is_named() -> None:
     state = start_of(scene)
     loose = replace(scene.links["rocker"], name="loose", points={"X": (0.0, 0.0), "Y": (1.0, 0.0)})
     scene = replace(scene, links={**scene.links, "loose": loose})
-    place = {**state.position, "X": (0.0, 0.0), "Y": (1.0, 0.0)}
-    speed = {**state.velocity, "X": (0.0, 0.0), "Y": (0.0, 0.0)}
-    state = replace(
-        state,
-        theta={**state.theta, "loose": 0.0},
-        omega={**state.omega, "loose": 0.0},
-        alpha={**state.alpha, "loose": 0.0},
-        position=place,
-        velocity=speed,
-        acceleration={**state.acceleration, "X": (0.0, 0.0), "Y": (0.0, 0.0)},
-    )
+    angles = {key: {**getattr(state, key), "loose": 0.0} for key in ("theta", "omega", "alpha")}
+    still = {"X": (0.0, 0.0), "Y": (0.0, 0.0)}
+    rates = {key: {**getattr(state, key), **still} for key in ("velocity", "acceleration")}
+    state = replace(state, position={**state.position, **loose.points}, **angles, **rates)
     with pytest.raises(EngineError, match="loose hangs on nothing"):
         build(scene, state)
 

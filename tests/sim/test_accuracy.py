@@ -326,12 +326,6 @@ def test_accelerations_of_mujoco_belong_to_the_logged_state() -> None:
     assert off[1] > 5.0 * off[0]
 
 
-def test_pymunk_reports_no_accelerations() -> None:
-    result = ran(load_scene(FOURBAR), "pymunk", turns=0.1)
-    assert np.isnan(result.motion.links["rocker"].alpha).all()
-    assert np.isnan(result.motion.points["C"].acceleration).all()
-
-
 @pytest.mark.parametrize("close", ["C", "D", "B"])
 def test_any_pin_of_the_loop_may_be_the_closed_one(close: str) -> None:
     scene = load_scene(FOURBAR)
