@@ -127,12 +127,12 @@ def run(*cells: StoredCell, label: str = "x") -> StoredRun:
     return StoredRun(label, {one.name: one for one in cells})
 
 
-@pytest.fixture(name="cell")
+@pytest.fixture(scope="session", name="cell")
 def made_cell() -> Callable[..., StoredCell]:
     return cell
 
 
-@pytest.fixture(name="run")
+@pytest.fixture(scope="session", name="run")
 def made_run() -> Callable[..., StoredRun]:
     return run
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from reports.cli import app
+from tests.worlds.command_line import crank, flat, refused
+from tests.worlds.tiers import few
 
 PISTON, COUPLER = "slider-crank-by-piston", "fourbar-by-coupler"
 SHOWN = {
@@ -50,24 +50,21 @@ REFUSED = {
 @pytest.mark.parametrize("what", SHOWN)
 def test_the_driver_is_told_in_its_own_words_and_units(what: str) -> None:
     line, said = SHOWN[what]
-    told = CliRunner().invoke(app, line)
+    told = crank(*line)
     assert told.exit_code == 0, told.output
-    words = " ".join(told.output.split())
-    assert [text for text in said if text not in words] == []
+    assert [text for text in said if text not in flat(told.output)] == []
 
 
 @pytest.mark.parametrize("what", REFUSED)
 def test_what_only_a_crank_has_is_refused_with_what_drives(what: str) -> None:
     line, said = REFUSED[what]
-    told = CliRunner().invoke(app, line)
-    assert told.exit_code == 2, told.output
-    assert said in " ".join(told.output.split())
+    refused(crank(*line), said)
 
 
-@pytest.mark.parametrize("scene", [PISTON, COUPLER])
+@pytest.mark.parametrize("scene", few([PISTON, COUPLER], [PISTON], "the same sheet"))
 def test_positions_are_numbered_along_what_is_driven(scene: str, tmp_path: Path) -> None:
     sheet = tmp_path / "sheet.svg"
-    told = CliRunner().invoke(app, ["positions", scene, "-o", str(sheet)])
+    told = crank("positions", scene, "-o", sheet)
     assert told.exit_code == 0, told.output
     assert f"12 positions of {scene}" in told.output
     assert "locus-B" in sheet.read_text(encoding="utf-8")
@@ -76,11 +73,9 @@ def test_positions_are_numbered_along_what_is_driven(scene: str, tmp_path: Path)
 def test_what_a_slider_drives_is_drawn_with_its_forces_and_logged_in_newtons(
     tmp_path: Path,
 ) -> None:
-    runner = CliRunner()
-    drawn = tmp_path / "motion.png"
-    assert runner.invoke(app, ["view", PISTON, "--forces", "-o", str(drawn)]).exit_code == 0
+    assert crank("view", PISTON, "--forces", "-o", tmp_path / "motion.png").exit_code == 0
     log = tmp_path / "log.csv"
-    assert runner.invoke(app, ["solve", PISTON, "--forces", "-o", str(log)]).exit_code == 0
+    assert crank("solve", PISTON, "--forces", "-o", log).exit_code == 0
     heads = log.read_text(encoding="utf-8").partition("\n")[0].split(",")
     assert "drive_force_n" in heads
     assert "torque_n_m" not in heads

@@ -12,8 +12,9 @@ from PIL import Image
 
 from analytic.free.release import release
 from models.files import load_scene
-from tests.worlds.command_line import crank
+from tests.worlds.command_line import crank, flat, refused
 from tests.worlds.let_go import EVERYTHING
+from tests.worlds.without_pdf import without_pdf
 
 SHORT = ("solve", "fourbar-swing", "--duration", "0.5")
 
@@ -21,7 +22,7 @@ SHORT = ("solve", "fourbar-swing", "--duration", "0.5")
 def test_the_free_motion_is_told_with_its_energy_and_how_sure_it_is() -> None:
     result = crank(*SHORT, "--steps", "4")
     assert result.exit_code == 0
-    said = " ".join(result.output.split())
+    said = flat(result.output)
     assert "mobility 1; driver crank, let go at rest at 0 deg, for 10 s; groups" in said
     assert re.search(r"the angle of crank is off by at most \d.\de-\d\d rad at 0.5 s\.", said)
     assert re.search(r"Sensitivity [\d.]+: what the start is changed by", said)
@@ -36,7 +37,7 @@ def test_the_free_motion_is_told_with_its_energy_and_how_sure_it_is() -> None:
 
 def test_limits_and_instants_on_the_way_are_told(tmp_path: Path) -> None:
     result = crank("solve", "fourbar-double-rocker-swing", "--duration", "0.5", "--steps", "2")
-    said = " ".join(result.output.split())
+    said = flat(result.output)
     assert "Limits in which driver turns back: -92.866 deg at 0.415855 s (C)." in said
     path = tmp_path / "everything.toml"
     path.write_text(EVERYTHING, encoding="utf-8")
@@ -62,7 +63,8 @@ def test_a_file_has_the_motion_the_energies_and_the_sensitivity(tmp_path: Path) 
 
 def test_figures_and_a_page_are_written(tmp_path: Path) -> None:
     page, folder = tmp_path / "page.html", tmp_path / "figures"
-    result = crank(*SHORT, "--figures", str(folder), "-o", str(page))
+    with without_pdf():
+        result = crank(*SHORT, "--figures", folder, "-o", page)
     assert result.exit_code == 0
     names = {each.name for each in folder.iterdir()}
     assert names == {f"{n}.{k}" for n in ("over-time", "energy", "phase") for k in ("svg", "pdf")}
@@ -76,7 +78,7 @@ def test_a_picture_shows_it_moving(tmp_path: Path) -> None:
     path = tmp_path / "pulse.png"
     result = crank("view", "fourbar-pulse", "-o", str(path))
     assert result.exit_code == 0
-    assert "fourbar-pulse in free motion" in " ".join(result.output.split())
+    assert "fourbar-pulse in free motion" in flat(result.output)
     with Image.open(path) as picture:
         assert picture.size[0] > 1000
 
@@ -107,9 +109,7 @@ def test_what_makes_no_sense_of_a_free_motion_is_refused(
     line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    result = crank(*line.split())
-    assert result.exit_code == 2
-    assert REFUSED[line] in " ".join(result.stderr.split())
+    refused(crank(*line.split()), REFUSED[line])
     assert not list(tmp_path.iterdir())
 
 
@@ -126,14 +126,13 @@ def test_what_shows_on_the_way_is_one_message(fault: str, tmp_path: Path) -> Non
     path = tmp_path / "scene.toml"
     path.write_text(EVERYTHING.replace(old, new), encoding="utf-8")
     result = crank("solve", str(path), "--duration", "0.3")
-    assert result.exit_code == 2
-    assert said in " ".join(result.stderr.split())
+    refused(result, said)
     assert result.stderr.startswith("crankcheck: ")
 
 
 def test_of_several_freedoms_the_mobility_is_told() -> None:
     result = crank("solve", "double-pendulum", "--duration", "0.1", "--steps", "2")
     assert result.exit_code == 0
-    said = " ".join(result.output.split())
+    said = flat(result.output)
     assert "mobility 2; driver upper, let go at rest at -50 deg" in said
     assert "every link's angle is off by at most" in said

@@ -19,6 +19,7 @@ from reports.cli.checking import VerifyRequest
 from reports.cli.commands import verify as command
 from reports.judge.rules import RULES
 from tests.worlds.command_line import crank, crank_alone, refused
+from tests.worlds.tiers import slowly
 
 FAST = ["--steps-per-turn", "360", "--turns", "1", "--no-convergence"]
 ONE = ["verify", "fourbar-lecture-1", *FAST]
@@ -55,7 +56,7 @@ def test_a_profile_that_is_named_is_gated() -> None:
     assert "profile as-shipped (gated)" in result.output
 
 
-@pytest.mark.parametrize("dt", ["1e-3", "1e-4"])
+@pytest.mark.parametrize("dt", ["1e-3", slowly("1e-4", reason="ten times as many steps")])
 def test_the_table_says_that_mujoco_as_shipped_does_not_shrink(dt: str) -> None:
     result = crank("verify", "fourbar-lecture-1", "--engine", "mujoco", "--profile",
                    "as-shipped", "--dt", dt, "--turns", "1")  # fmt: skip
