@@ -18,6 +18,7 @@ from reports.page.build import page, stability_page
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored, read_store
 from tests.reports.page import hard_runs
+from tests.reports.page.hostile import evil
 from tests.reports.page.tab import PHONE, WIDE, Tab
 from tests.worlds.in_process import in_this_process
 
@@ -90,6 +91,12 @@ def small_page(small: Stored, written: Callable[[str], Path]) -> Path:
 
 
 @pytest.fixture(scope="session")
+def evil_page(small: Stored, written: Callable[[str], Path]) -> Path:
+    """The page of the small store with hostile text in it, as a file."""
+    return written(page(evil(small)))
+
+
+@pytest.fixture(scope="session")
 def hard_matrix() -> Matrix:
     """Three scenes in ever larger steps, in both engines with both profiles."""
     return hard_runs.matrix()
@@ -99,6 +106,12 @@ def hard_matrix() -> Matrix:
 def hard_page(hard_matrix: Matrix, written: Callable[[str], Path]) -> Path:
     """The page of the hard cases alone, as a file."""
     return written(stability_page(hard_matrix))
+
+
+@pytest.fixture(scope="session")
+def both_page(small: Stored, hard_matrix: Matrix, written: Callable[[str], Path]) -> Path:
+    """The page of the small store with the hard cases beside it, as a file."""
+    return written(page(small, hard_matrix))
 
 
 def chromium() -> str:

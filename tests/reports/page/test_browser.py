@@ -13,7 +13,7 @@ from reports.page.build import page
 from reports.store.reader import Stored
 from tests.reports.page.conftest import chromium
 from tests.reports.page.tab import Tab
-from tests.reports.page.test_page import evil
+from tests.worlds.tiers import slow
 
 SECTIONS = ("precision", "convergence", "motion")
 LINKS = "#motion-picture .reference .link"
@@ -60,12 +60,16 @@ def test_without_a_browser_the_tests_are_skipped_and_fail_in_ci(
         assert raised.type is end
 
 
-@pytest.mark.parametrize("size", ["wide", "phone"])
-def test_no_error_and_no_request_in_a_whole_visit(
-    size: str, small_page: Path, request: pytest.FixtureRequest
-) -> None:
-    tab: Tab = request.getfixturevalue(size)
-    tab.visit(small_page, *SECTIONS).no_error_and_no_request("#motion-visible")
+def test_printing_draws_what_was_not_scrolled_to(wide: Tab, small_page: Path) -> None:
+    page = wide.open(small_page).page
+    page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    page.wait_for_function(
+        "() => [...document.querySelectorAll('.chart')].every(each => each.querySelector('svg'))"
+    )
+
+
+def test_no_error_and_no_request_in_a_whole_visit(opened: Tab) -> None:
+    opened.no_error_and_no_request("#motion-visible")
 
 
 def test_a_switch_of_the_legend_takes_a_trace_out_and_brings_it_back(opened: Tab) -> None:
@@ -249,10 +253,6 @@ def test_the_parts_of_the_error_are_drawn_and_can_be_switched(opened: Tab) -> No
     assert sums < 1e-4
 
 
-def test_nothing_runs_out_of_a_phone(phone: Tab, small_page: Path) -> None:
-    phone.visit(small_page, *SECTIONS).nothing_runs_out()
-
-
 def test_every_control_has_a_name_and_is_reached_by_tab(opened: Tab) -> None:
     opened.every_control_has_a_name()
     opened.every_control_is_reached_by_tab()
@@ -300,18 +300,8 @@ def test_the_theme_is_the_systems_and_the_button_changes_it(opened: Tab) -> None
     opened.path = None  # no diagram is drawn
 
 
-def test_printing_draws_what_was_not_scrolled_to(wide: Tab, small_page: Path) -> None:
-    page = wide.open(small_page).page
-    page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
-    page.wait_for_function(
-        "() => [...document.querySelectorAll('.chart')].every(each => each.querySelector('svg'))"
-    )
-
-
-def test_hostile_text_does_nothing(
-    wide: Tab, small: Stored, written: Callable[[str], Path]
-) -> None:
-    wide.open(written(page(evil(small))), *SECTIONS)
+def test_hostile_text_does_nothing(wide: Tab, evil_page: Path) -> None:
+    wide.open(evil_page, *SECTIONS)
     wide.page.evaluate(
         "() => Plotly.Fx.hover('precision-chart', [{curveNumber: 2, pointNumber: 1}])"
     )
@@ -321,6 +311,17 @@ def test_hostile_text_does_nothing(
     assert wide.said == []
 
 
+def test_nothing_runs_out_of_a_phone(phone: Tab, small_page: Path) -> None:
+    phone.visit(small_page, *SECTIONS).nothing_runs_out()
+    assert phone.said == []
+
+
+@slow("the same scripts as on a computer: what a finger makes other is that nothing is zoomed")
+def test_no_error_and_no_request_in_a_whole_visit_by_phone(phone: Tab, small_page: Path) -> None:
+    phone.visit(small_page, *SECTIONS).no_error_and_no_request("#motion-visible")
+
+
+@slow("a section that has less to show is read as text by `test_page`")
 def test_a_page_without_times_and_with_one_scene_works(
     wide: Tab, small: Stored, written: Callable[[str], Path]
 ) -> None:

@@ -10,6 +10,7 @@ import pytest
 from reports.page.comment import summary
 from reports.store.reader import Stored, read_store
 from tests.reports.results.made import Row, cell, stored, untimed
+from tests.worlds.tiers import slowly
 
 LIMIT = 60_000
 NASTY = "a|b `c` <d> [e](f) @team *g* $h$ #1 \\ 中文"
@@ -81,7 +82,7 @@ def test_it_is_whole_and_says_what_a_reviewer_asks(store: Path) -> None:
     assert "| pymunk no bias | error\\_bias 0 |" in text
 
 
-@pytest.mark.parametrize("number", [1, 80])
+@pytest.mark.parametrize("number", [1, 20, slowly(80, reason="240 cells: a second")])
 def test_a_large_store_fits_into_a_comment(number: int) -> None:
     text = summary(
         made(number, gated=True, verdict="out", failed_rules="CC103 CC105", reason="r" * 3000)
@@ -90,9 +91,10 @@ def test_a_large_store_fits_into_a_comment(number: int) -> None:
     assert ("more" in text) == (number > 1)
 
 
-def test_a_large_store_of_failures_with_long_names_fits() -> None:
+@pytest.mark.parametrize("number", [40, slowly(160, reason="480 cells: a second")])
+def test_a_large_store_of_failures_with_long_names_fits(number: int) -> None:
     names = f"{NASTY} " * 4
-    assert_whole(summary(made(160, variant=names, status="diverged", reason=NASTY * 40)))
+    assert_whole(summary(made(number, variant=names, status="diverged", reason=NASTY * 40)))
 
 
 def test_what_is_out_of_tolerance_is_named_with_its_rules() -> None:

@@ -29,6 +29,7 @@ from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store
 from tests.reports.page.tab import OUT, Tab
 from tests.worlds.in_process import in_this_process
+from tests.worlds.tiers import few
 
 SCENE = "fourbar-elastic"
 
@@ -122,7 +123,9 @@ def test_settings_are_recommended_by_the_deflection(small: Stored, bent: Stored)
     assert "/ D" in both
 
 
-@pytest.mark.parametrize("size", ["wide", "phone"])
+@pytest.mark.parametrize(
+    "size", few(["wide", "phone"], {"wide"}, "sections of a page share their style")
+)
 def test_the_section_draws_and_keeps_within_the_window(
     bent_path: Path, size: str, request: pytest.FixtureRequest
 ) -> None:

@@ -6,6 +6,7 @@ import json
 import math
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -21,12 +22,13 @@ from reports.stability.critical import command
 from reports.stability.grades import MEANINGS
 from reports.stability.matrix import FILE, OUTCOMES, Matrix, Picture, read_matrix, to_json
 from reports.store.reader import Stored
-from tests.reports.page.test_page import EVIL, MEGABYTES_8, Outline
+from tests.reports.page.hostile import EVIL, Outline
+from tests.reports.page.test_page import MEGABYTES_8
 
 
 @pytest.fixture(scope="module")
-def text(hard_matrix: Matrix) -> str:
-    return stability_page(hard_matrix)
+def text(hard_page: Path) -> str:
+    return hard_page.read_text(encoding="utf-8")
 
 
 def buttons(text: str) -> dict[int, dict[str, str | None]]:
@@ -277,9 +279,9 @@ def test_hostile_text_is_shown_and_not_read(hard_matrix: Matrix) -> None:
 
 
 def test_the_hard_cases_stand_in_the_report_and_change_no_other_section(
-    small: Stored, hard_matrix: Matrix
+    small_page: Path, both_page: Path
 ) -> None:
-    without, found = page(small), page(small, hard_matrix)
+    without, found = (path.read_text(encoding="utf-8") for path in (small_page, both_page))
     # Neither were forces asked for, nor was one let go, nor has one elastic links.
     there = [name for name in SECTIONS if name not in ("reading_forces", "free", "elastic")]
     assert [each["id"] for each in Outline(found).named("section")] == there
@@ -319,9 +321,9 @@ def test_a_page_of_many_large_pictures_is_below_8_megabytes(
 
 
 def test_pictures_give_way_where_the_report_gets_too_large(
-    small: Stored, hard_matrix: Matrix, monkeypatch: pytest.MonkeyPatch
+    small: Stored, hard_matrix: Matrix, both_page: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole = page(small, hard_matrix)
+    whole = both_page.read_text(encoding="utf-8")
     most = len(whole.encode()) - 30_000
     monkeypatch.setattr(build, "MOST_BYTES", most)
     found = page(small, hard_matrix)

@@ -12,11 +12,11 @@ import pytest
 from playwright.sync_api import Locator, Page
 
 from reports.drawing.packed import packed
-from reports.page.build import page, stability_page
+from reports.page.build import stability_page
 from reports.stability.matrix import Matrix
-from reports.store.reader import Stored
 from tests.reports.page.tab import OUT, Tab
 from tests.reports.page.test_hard import evil, one_case
+from tests.worlds.tiers import slow
 
 TRUTH, RUN = "#hard-picture .reference .link", "#hard-picture .overlays .link"
 Write = Callable[[str], Path]
@@ -63,12 +63,8 @@ def first(matrix: Matrix, outcome: str) -> int:
     return next(n for n, run in enumerate(matrix.runs) if run.grid and run.outcome == outcome)
 
 
-@pytest.mark.parametrize("size", ["wide", "phone"])
-def test_no_error_and_no_request_in_a_whole_visit(
-    size: str, hard_page: Path, request: pytest.FixtureRequest
-) -> None:
-    tab: Tab = request.getfixturevalue(size)
-    tab.open(hard_page).no_error_and_no_request()
+def test_no_error_and_no_request_in_a_whole_visit(wide: Tab, hard_page: Path) -> None:
+    wide.open(hard_page).no_error_and_no_request()
 
 
 def test_the_map_is_one_stop_of_tab_and_arrows_go_from_cell_to_cell(opened: Tab) -> None:
@@ -246,18 +242,6 @@ def test_the_command_is_copied(opened: Tab) -> None:
     )
 
 
-def test_nothing_runs_out_of_a_phone(phone: Tab, hard_page: Path) -> None:
-    as_opened(phone, hard_page).nothing_runs_out()
-    frame = "each => [each.scrollWidth, each.clientWidth]"
-    inner, outer = phone.page.locator("#hard .map").evaluate(frame)
-    assert inner > outer  # the map scrolls in its own box
-    panel = phone.page.locator("#hard-panel")
-    assert panel.evaluate("each => each.getBoundingClientRect().right") <= 390
-    phone.page.locator("#hard .map").evaluate("each => { each.scrollLeft = 200; }")
-    assert panel.evaluate("each => each.getBoundingClientRect().left") >= 0
-    phone.page.locator("#hard .map").evaluate("each => { each.scrollLeft = 0; }")
-
-
 def test_a_wide_page_needs_no_sideways_scrolling(opened: Tab) -> None:
     assert opened.page.evaluate("() => document.documentElement.scrollWidth") <= 1280
     inner, outer = opened.page.locator("#hard .map").evaluate(
@@ -290,19 +274,6 @@ def test_hostile_text_does_nothing(wide: Tab, hard_matrix: Matrix, written: Writ
     assert wide.said == []
 
 
-def test_a_page_without_pictures_and_with_what_is_not_known_works(
-    phone: Tab, hard_matrix: Matrix, written: Write
-) -> None:
-    lost = dict.fromkeys(("error", "gap", "drive", "sine", "dt_s", "wall_s"), float("nan"))
-    one = one_case(hard_matrix, outcome="exploded", reason="bang " * 400, **lost)
-    phone.open(written(stability_page(one)))
-    cell(phone.page, 0).click()
-    assert "exploded" in phone.page.locator("#hard-told").inner_text()
-    assert "no moving picture" in phone.page.locator("#hard-note").inner_text()
-    assert phone.page.evaluate(OUT) == []
-    assert phone.said == []
-
-
 def test_a_run_and_a_truth_with_missing_samples_are_drawn_as_far_as_they_go(
     wide: Tab, hard_matrix: Matrix, written: Write
 ) -> None:
@@ -323,10 +294,11 @@ def test_a_run_and_a_truth_with_missing_samples_are_drawn_as_far_as_they_go(
     assert wide.said == []
 
 
+@slow("each section has scripts of its own, which `test_browser` and this file run apart")
 def test_hard_cases_work_in_the_report_beside_its_other_sections(
-    wide: Tab, small: Stored, hard_matrix: Matrix, written: Write
+    wide: Tab, both_page: Path, hard_matrix: Matrix
 ) -> None:
-    wide.open(written(page(small, hard_matrix)), "motion")
+    wide.open(both_page, "motion")
     cell(wide.page, first(hard_matrix, "diverged")).click()
     wide.elapse(0)
     wide.page.locator("#hard-play").click()
@@ -334,3 +306,33 @@ def test_hard_cases_work_in_the_report_beside_its_other_sections(
     assert wide.page.locator("#motion-play").inner_text() == "Play"
     assert "diverged" in wide.page.locator("#hard-told").inner_text()
     assert wide.said == []
+
+
+def test_nothing_runs_out_of_a_phone(phone: Tab, hard_page: Path) -> None:
+    as_opened(phone, hard_page).nothing_runs_out()
+    frame = "each => [each.scrollWidth, each.clientWidth]"
+    inner, outer = phone.page.locator("#hard .map").evaluate(frame)
+    assert inner > outer  # the map scrolls in its own box
+    panel = phone.page.locator("#hard-panel")
+    assert panel.evaluate("each => each.getBoundingClientRect().right") <= 390
+    phone.page.locator("#hard .map").evaluate("each => { each.scrollLeft = 200; }")
+    assert panel.evaluate("each => each.getBoundingClientRect().left") >= 0
+    phone.page.locator("#hard .map").evaluate("each => { each.scrollLeft = 0; }")
+
+
+@slow("the same scripts as on a computer")
+def test_no_error_and_no_request_in_a_whole_visit_by_phone(phone: Tab, hard_page: Path) -> None:
+    phone.open(hard_page).no_error_and_no_request()
+
+
+def test_a_page_without_pictures_and_with_what_is_not_known_works(
+    phone: Tab, hard_matrix: Matrix, written: Write
+) -> None:
+    lost = dict.fromkeys(("error", "gap", "drive", "sine", "dt_s", "wall_s"), float("nan"))
+    one = one_case(hard_matrix, outcome="exploded", reason="bang " * 400, **lost)
+    phone.open(written(stability_page(one)))
+    cell(phone.page, 0).click()
+    assert "exploded" in phone.page.locator("#hard-told").inner_text()
+    assert "no moving picture" in phone.page.locator("#hard-note").inner_text()
+    assert phone.page.evaluate(OUT) == []
+    assert phone.said == []

@@ -17,6 +17,7 @@ from tests.reports.page.judged_logs import FACTS, SCENE, TURN_S, angles, judged,
 from tests.reports.page.tab import Tab
 from tests.reports.page.test_browser import corners
 from tests.reports.page.test_log_page import NASTY
+from tests.worlds.tiers import slow
 
 Write = Callable[[str], Path]
 DRAWN = ("channels", "motion")
@@ -181,10 +182,6 @@ def test_the_first_and_the_last_turn_are_chosen(opened: Tab) -> None:
     assert float(told.split()[2]) == pytest.approx(2.0 * TURN_S, rel=1e-4)
 
 
-def test_nothing_runs_out_of_a_phone(phone: Tab, hostile: Path) -> None:
-    phone.visit(hostile, *DRAWN).nothing_runs_out()
-
-
 def test_every_control_has_a_name_and_is_reached_by_tab(opened: Tab) -> None:
     opened.every_control_has_a_name()
     opened.every_control_is_reached_by_tab()
@@ -201,17 +198,7 @@ def test_the_dark_theme_reaches_the_diagram(opened: Tab) -> None:
     assert light[1] != dark[1]
 
 
-def test_hostile_text_does_nothing(phone: Tab, hostile: Path) -> None:
-    page = phone.visit(hostile, *DRAWN).page
-    page.evaluate("() => Plotly.Fx.hover('channels-chart', [{curveNumber: 1, pointNumber: 1}])")
-    assert page.evaluate("() => window.hacked") is None
-    assert page.locator("main img").count() == 0
-    assert "{{ 7 * 7 }}" in page.locator("#channels-told").inner_text()
-    assert "\u202e" not in page.locator("body").inner_text()
-    assert "\\u202e" in page.locator("#verdict").inner_text()
-    assert phone.said == []
-
-
+@slow("`test_log_page` reads the instants that the page carries")
 def test_times_far_from_zero_keep_their_digits(wide: Tab, written: Write) -> None:
     turn = motion_of(samples=91)
     late = 12345.678 + turn.time_s
@@ -224,13 +211,7 @@ def test_times_far_from_zero_keep_their_digits(wide: Tab, written: Write) -> Non
     assert float(told.split()[2]) == pytest.approx(late[-1], abs=1e-4)
 
 
-def test_what_the_log_has_not_is_not_drawn_over_the_truth(phone: Tab, hostile: Path) -> None:
-    page = phone.visit(hostile, *DRAWN).page
-    assert page.locator("#motion-picture .reference .link").count() == 3
-    assert page.locator("#motion-picture .run .link").count() == 1
-    assert "crank, rocker" in page.locator("#motion p", has_text="Left out").inner_text()
-
-
+@slow("`test_log_page` reads the spike that the page carries, `test_log_curves` how it is thinned")
 def test_the_spike_of_a_long_log_is_seen_and_looked_at_closely(wide: Tab, written: Write) -> None:
     motion = motion_of(turns=40.0, samples=40_001)
     off = np.zeros(40_001)
@@ -248,3 +229,25 @@ def test_the_spike_of_a_long_log_is_seen_and_looked_at_closely(wide: Tab, writte
     page.select_option("#channels-against", "phase")
     assert trace(page, "logged")["mode"] == "markers"  # lines would join other turns
     assert wide.said == []
+
+
+def test_nothing_runs_out_of_a_phone(phone: Tab, hostile: Path) -> None:
+    phone.visit(hostile, *DRAWN).nothing_runs_out()
+
+
+def test_hostile_text_does_nothing(phone: Tab, hostile: Path) -> None:
+    page = phone.visit(hostile, *DRAWN).page
+    page.evaluate("() => Plotly.Fx.hover('channels-chart', [{curveNumber: 1, pointNumber: 1}])")
+    assert page.evaluate("() => window.hacked") is None
+    assert page.locator("main img").count() == 0
+    assert "{{ 7 * 7 }}" in page.locator("#channels-told").inner_text()
+    assert "\u202e" not in page.locator("body").inner_text()
+    assert "\\u202e" in page.locator("#verdict").inner_text()
+    assert phone.said == []
+
+
+def test_what_the_log_has_not_is_not_drawn_over_the_truth(phone: Tab, hostile: Path) -> None:
+    page = phone.visit(hostile, *DRAWN).page
+    assert page.locator("#motion-picture .reference .link").count() == 3
+    assert page.locator("#motion-picture .run .link").count() == 1
+    assert "crank, rocker" in page.locator("#motion p", has_text="Left out").inner_text()

@@ -23,8 +23,8 @@ from reports.page.build import _plotly
 from reports.page.log_page import log_page
 from reports.page.log_sections.motion import stretches
 from reports.page.log_sections.verdict import map_lines
+from tests.reports.page.hostile import EVIL, Outline
 from tests.reports.page.judged_logs import FACTS, TURN_S, angles, judged, motion_of, points
-from tests.reports.page.test_page import EVIL, Outline
 
 MOTION = motion_of()
 TIME_S = MOTION.time_s

@@ -15,10 +15,11 @@ from reports.own_model.judged import JudgedModel, judged_model
 from reports.page.build import _plotly
 from reports.page.model_page import model_page
 from sim.own_models import Disturbance
+from tests.reports.page.hostile import Outline
 from tests.reports.page.tab import OUT, Tab
 from tests.reports.page.test_log_page import NASTY, embedded, words
-from tests.reports.page.test_page import Outline
 from tests.worlds.own_models import ACTUATORS, CROWDED, FACTS, SLIDER_CRANK, judged
+from tests.worlds.tiers import slow
 
 Write = Callable[[str], Path]
 SECTIONS = ["verdict", "lines", "motion", "disturbing", "recommended", "made"]
@@ -146,16 +147,27 @@ def test_a_line_that_is_switched_off_is_drawn_nowhere(opened: Tab) -> None:
     assert "gap" in page.evaluate("document.getElementById('lines-course').layout.yaxis.title.text")
 
 
-def test_without_finer_steps_there_is_no_diagram_of_them(
-    wide: Tab, rubbing: JudgedModel, written: Write
-) -> None:
+@pytest.fixture(scope="module")
+def without_finer(written: Write, rubbing: JudgedModel) -> Path:
     request = replace(rubbing.account.request, converge=False)
     one = replace(rubbing, account=replace(rubbing.account, request=request))
-    wide.open(written(model_page(one, FACTS)), "lines")
+    return written(model_page(one, FACTS))
+
+
+def test_without_finer_steps_there_is_no_diagram_of_them(text: str, without_finer: Path) -> None:
+    found = without_finer.read_text(encoding="utf-8")
+    assert [len(re.findall('class="chart', each)) for each in (text, found)] == [2, 1]
+    assert [each["id"] for each in Outline(found).named("section")] == SECTIONS
+
+
+@slow("the page as text is another one; that its scripts take it is seen in no other way")
+def test_the_scripts_draw_a_page_without_finer_steps(wide: Tab, without_finer: Path) -> None:
+    wide.open(without_finer, "lines")
     assert wide.page.locator(".chart").count() == 1
     assert wide.said == []
 
 
+@slow("pages of stores and logs are laid out by the same style, and are read on a phone")
 def test_it_fits_a_phone(phone: Tab, path: Path) -> None:
     phone.open(path, "lines", color_scheme="dark")
     assert phone.page.evaluate("document.documentElement.scrollWidth") <= 390

@@ -85,7 +85,7 @@ def test_buttons_the_slider_and_the_words_go_to_a_step(wide: Tab, rocker: Path) 
 
 
 def test_those_who_want_no_motion_get_whole_steps(wide: Tab, rocker: Path) -> None:
-    page = wide.open(rocker).page
+    page = wide.visit(rocker).page
     wide.elapse(0)
     page.locator(PLAY).click()
     seen = [page.locator(PLACE).inner_text()]

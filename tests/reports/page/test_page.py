@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Mapping
 from dataclasses import replace
-from html.parser import HTMLParser
 from io import StringIO
 from pathlib import Path
 from types import ModuleType
@@ -18,41 +16,17 @@ from rich.console import Console
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.cli.commands.report import format_of, run_report
+from reports.page import build
 from reports.page.build import HERE, page
 from reports.page.sections import SECTIONS
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
+from tests.reports.page.hostile import Outline
+from tests.worlds.tiers import slow
 
 MEGABYTES_8 = 8_000_000
-VOID = {"meta", "link", "input", "br", "img", "col"}
 STORED = [name for name in SECTIONS if name not in ("hard", "reading_forces", "free", "elastic")]
 """The sections of a driven store without forces and without hard cases beside it."""
-EVIL = '</script><img src=x onerror="window.hacked=1"><b>\'&amp;{{ 7 * 7 }}'
-
-
-class Outline(HTMLParser):
-    """The elements of a page with their attributes; every element is closed by its own end."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.elements: list[tuple[str, dict[str, str | None]]] = []
-        self.open: list[str] = []
-        self.feed(text)
-        self.close()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.elements.append((tag, dict(attrs)))
-        if tag not in VOID:
-            self.open.append(tag)
-
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.elements.append((tag, dict(attrs)))
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.open.pop() == tag, f"</{tag}> closes another element"
-
-    def named(self, tag: str) -> list[dict[str, str | None]]:
-        return [attributes for name, attributes in self.elements if name == tag]
 
 
 def part_of(stored: Stored, keep: pd.Series) -> Stored:
@@ -101,27 +75,8 @@ def test_our_scripts_make_no_html_of_strings() -> None:
         assert "https:" not in script
 
 
-def evil(stored: Stored) -> Stored:
-    """The store with hostile text wherever a file may have it; drawings keep the scenes' names."""
-    cells = stored.cells.copy()
-    for column in ("variant", "reason", "status", "version", "warnings"):
-        cells[column] = [f"{EVIL}{value}" if value != "ok" else value for value in cells[column]]
-    cells["scene"] = [f"{EVIL}{name}" for name in cells["scene"]]
-    cells["asked"] = [json.dumps({EVIL: EVIL, **json.loads(asked)}) for asked in cells["asked"]]
-    scenes = {
-        f"{EVIL}{name}": text.replace("Crank-rocker", "</script><script>window.hacked=1//")
-        for name, text in stored.manifest.scenes.items()
-    }
-    runs = (
-        {"command": [EVIL], "started": EVIL, "study": {EVIL: EVIL}, "provenance": {EVIL: EVIL}},
-    )
-    found = Stored(stored.folder, Manifest(scenes, runs), cells, stored.timings)
-    vars(found)["_traces"] = stored._traces
-    return found
-
-
-def test_hostile_text_is_shown_and_not_read(small: Stored) -> None:
-    outline = Outline(page(evil(small)))
+def test_hostile_text_is_shown_and_not_read(evil_page: Path) -> None:
+    outline = Outline(evil_page.read_text(encoding="utf-8"))
     assert outline.open == []
     assert outline.named("img") == []
     ours = [each for each in outline.named("script") if each.get("type") != "application/json"]
@@ -160,7 +115,7 @@ class Large(Stored):
         return super().trace(key.partition(" ")[0])
 
 
-@pytest.mark.slow
+@slow("560 cells, of which a page takes 8 s: other tests make pages give way that are over")
 def test_the_page_of_the_default_study_is_below_8_megabytes(small: Stored) -> None:
     one = small.cells[(small.cells["scene"] == "shaper") & (small.cells["status"] == "ok")]
     lines = one[one["variant"] == "tuned"].iloc[[0, 1, 2, 0, 1, 2, 0]]
@@ -187,14 +142,11 @@ def test_the_page_of_the_default_study_is_below_8_megabytes(small: Stored) -> No
 
 
 def test_drawings_give_way_where_the_page_gets_too_large(
-    small: Stored, monkeypatch: pytest.MonkeyPatch
+    small: Stored, text: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from reports.page import build
-
-    whole = page(small)
-    monkeypatch.setattr(build, "MOST_BYTES", len(whole.encode()) - build.BUDGET + 1000)
+    monkeypatch.setattr(build, "MOST_BYTES", len(text.encode()) - build.BUDGET + 1000)
     thinned = page(small)
-    assert len(re.findall('"base64"', thinned)) < len(re.findall('"base64"', whole))
+    assert len(re.findall('"base64"', thinned)) < len(re.findall('"base64"', text))
 
 
 def test_the_command_writes_the_page_and_says_so(small_folder: Path, tmp_path: Path) -> None:
@@ -209,8 +161,9 @@ def test_the_command_without_a_file_names_one(
     small_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(build, "page", lambda *_: "<!doctype html>")
     run_report(small_folder, None, "html", Console(file=StringIO()))
-    assert (tmp_path / "report.html").is_file()
+    assert (tmp_path / "report.html").read_text() == "<!doctype html>"
 
 
 def test_the_command_gives_text_to_the_terminal_or_to_a_file(

@@ -1,0 +1,56 @@
+"""Hostile text in all that a file may hold, and the elements of a page in which it stands."""
+
+from __future__ import annotations
+
+import json
+from html.parser import HTMLParser
+
+from reports.store.manifest import Manifest
+from reports.store.reader import Stored
+
+VOID = {"meta", "link", "input", "br", "img", "col"}
+EVIL = '</script><img src=x onerror="window.hacked=1"><b>\'&amp;{{ 7 * 7 }}'
+
+
+class Outline(HTMLParser):
+    """The elements of a page with their attributes; every element is closed by its own end."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.open: list[str] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag, f"</{tag}> closes another element"
+
+    def named(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.elements if name == tag]
+
+
+def evil(stored: Stored) -> Stored:
+    """The store with hostile text wherever a file may have it; drawings keep the scenes' names."""
+    cells = stored.cells.copy()
+    for column in ("variant", "reason", "status", "version", "warnings"):
+        cells[column] = [f"{EVIL}{value}" if value != "ok" else value for value in cells[column]]
+    cells["scene"] = [f"{EVIL}{name}" for name in cells["scene"]]
+    cells["asked"] = [json.dumps({EVIL: EVIL, **json.loads(asked)}) for asked in cells["asked"]]
+    scenes = {
+        f"{EVIL}{name}": text.replace("Crank-rocker", "</script><script>window.hacked=1//")
+        for name, text in stored.manifest.scenes.items()
+    }
+    runs = (
+        {"command": [EVIL], "started": EVIL, "study": {EVIL: EVIL}, "provenance": {EVIL: EVIL}},
+    )
+    found = Stored(stored.folder, Manifest(scenes, runs), cells, stored.timings)
+    vars(found)["_traces"] = stored._traces
+    return found
