@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
+from itertools import cycle
 
 import numpy as np
 import pytest
 
 from models.files import load_scene
+from reports.causes import Cause, causes
 from tests.worlds.plantings import PLANTINGS
 from tests.worlds.sheets import Sheet, sheet
 
+SCENES = ("slider-crank-central", "fourbar-lecture-1", "sixbar-watt")
+FAULTS = [name for name, each in PLANTINGS.items() if each.names]
+TURN_ABOUT = dict(zip(FAULTS, cycle(SCENES), strict=False))
+"""The scene of each fault that is planted once."""
+Diagnosed = Callable[[str], tuple[Sheet, list[str], tuple[Cause, ...]]]
 Infected = Callable[..., tuple[Sheet, list[str]]]
 CLEAR = 3.0
 """Times its limit that the error of a planted fault is at least."""
@@ -35,3 +43,16 @@ def infected() -> Infected:
         raise LookupError(f"{fault} can not be planted in {scene}")
 
     return plant
+
+
+@pytest.fixture(scope="session")
+def diagnosed(infected: Infected) -> Diagnosed:
+    """A sheet with a fault, the columns that have it, and the causes that are told of it, which
+    several tests look at."""
+
+    @cache
+    def look(fault: str) -> tuple[Sheet, list[str], tuple[Cause, ...]]:
+        planted, columns = infected(fault, TURN_ABOUT[fault], rows=300)
+        return planted, columns, tuple(causes(planted.case))
+
+    return look

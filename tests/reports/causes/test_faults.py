@@ -3,31 +3,28 @@
 from __future__ import annotations
 
 from collections import Counter
-from itertools import cycle, islice
+from itertools import cycle
 
 import numpy as np
 import pytest
 
 from models.files import load_scene
 from reports.causes import causes
-from tests.reports.causes.conftest import CLEAR, Infected
+from tests.reports.causes.conftest import CLEAR, FAULTS, SCENES, Diagnosed, Infected
 from tests.worlds.plantings import PLANTINGS
 from tests.worlds.sheets import sheet
+from tests.worlds.tiers import slow
 
-SCENES = ("fourbar-lecture-1", "slider-crank-central", "sixbar-watt")
-FAULTS = [name for name, each in PLANTINGS.items() if each.names]
 NONE = [name for name, each in PLANTINGS.items() if not each.names]
-TURN_ABOUT = list(zip(FAULTS, islice(cycle(SCENES), len(FAULTS)), strict=True))
 MANY = 4
 """Plantings of each fault in each scene."""
 MISSED = 0.02
 """The part of them that chance may make two faults of: a mean and a delay in noise, say."""
 
 
-@pytest.mark.parametrize(("fault", "scene"), TURN_ABOUT)
-def test_a_fault_is_named_with_its_channels(fault: str, scene: str, infected: Infected) -> None:
-    planted, columns = infected(fault, scene, rows=300)
-    found = causes(planted.case)
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_is_named_with_its_channels(fault: str, diagnosed: Diagnosed) -> None:
+    planted, columns, found = diagnosed(fault)
     out = {reading.channel.column for reading in planted.case.out}
     assert {cause.name for cause in found} <= set(PLANTINGS[fault].names)
     told = {column for cause in found for column in cause.columns}
@@ -53,12 +50,11 @@ def test_healthy_logs_of_other_mechanisms_have_no_cause(scene: str) -> None:
         assert not causes(planted.case)
 
 
-@pytest.mark.slow
+@slow("only here are sizes of faults, lengths of logs, limits and noise at random")
 @pytest.mark.parametrize("scene", SCENES)
 def test_the_names_of_many_faults_at_random_are_not_mistaken(
     scene: str, infected: Infected
 ) -> None:
-    """Only here are sizes of faults, lengths of logs, limits and noise at random."""
     right: Counter[bool] = Counter()
     for fault, planting in PLANTINGS.items():
         for seed in range(MANY):

@@ -13,6 +13,7 @@ from reports.logs.columns import columns_of
 from reports.logs.meanings import understood
 from reports.own_log.judged import JudgedLog, LogRequest, judge_log
 from reports.own_log.log_limits import EVERY
+from tests.worlds.tiers import slowly
 
 TIME_S = np.linspace(0.0, 0.6, 301)
 FOURBAR = "fourbar-lecture-1"
@@ -34,7 +35,7 @@ def judged(scene: str, columns: dict[str, object]) -> JudgedLog:
         ("sixbar-watt", "C_vx_m_s"),
     ],
 )
-@pytest.mark.parametrize("value", [0.0, 37.3])
+@pytest.mark.parametrize("value", [slowly(0.0, reason="as at another number"), 37.3])
 def test_a_sensor_that_stands_still_is_out_and_said_to_stand(
     scene: str, column: str, value: float
 ) -> None:

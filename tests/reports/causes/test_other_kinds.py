@@ -20,6 +20,7 @@ from reports.logs.kinds import KINDS as KINDS_OF
 from tests.worlds.other_kinds import KINDS, PARTS, SAMPLING, infected, scene_of
 from tests.worlds.plantings import PLANTINGS
 from tests.worlds.sheets import Sheet
+from tests.worlds.tiers import few, slow
 
 TEN = (
     "two_swapped",
@@ -43,8 +44,8 @@ TURN_ABOUT = list(zip(
     islice(cycle(PARTS), len(KINDS) * (len(TEN) + 1)),
     strict=True,
 ))  # fmt: skip
-"""Each fault in each kind, of the parts in turn. The odd ones are looked at at once, so each fault
-in half of the kinds."""
+"""Each fault in each kind, of the parts in turn. Each fifth is looked at at once: each fault in one
+kind or two."""
 
 
 def false(planted: Sheet, fault: str) -> list[str]:
@@ -62,15 +63,9 @@ def false(planted: Sheet, fault: str) -> list[str]:
     return [each.text for each in found if each.name not in names and not as_good(each)]
 
 
-@pytest.mark.parametrize(
-    ("mechanism", "part"),
-    [
-        pytest.param(*each, marks=[] if number % 2 else pytest.mark.slow)
-        for number, each in enumerate(TURN_ABOUT)
-    ],
-)
-def test_nothing_false_is_told(mechanism: tuple[str, str], part: str) -> None:
-    kind, fault = mechanism
+@pytest.mark.parametrize("at", few(TURN_ABOUT, TURN_ABOUT[1::5], "the same fault in other kinds"))
+def test_nothing_false_is_told(at: tuple[tuple[str, str], str]) -> None:
+    (kind, fault), part = at
     planted = infected(kind, fault, part, "plain", LIMIT)
     if planted is None:
         return  # no turn to be lost in a log of lengths, say
@@ -90,11 +85,10 @@ def test_a_delay_is_found_though_a_nudge_of_it_takes_the_last_sample_out_of_the_
     assert cause.correction["delay_s"] == pytest.approx(-2.5 * step_s, rel=1e-6)
 
 
-@pytest.mark.slow
+@slow("only here is each fault planted at coarse and at few samples")
 @pytest.mark.parametrize("sampling", [name for name in SAMPLING if name != "plain"])
 @pytest.mark.parametrize("kind", KINDS)
 def test_nor_with_other_samples_and_other_limits(kind: str, sampling: str) -> None:
-    """Only here is each fault planted at coarse and at few samples."""
     told, limits = [], cycle((1e-4, 1e-2))
     faults = ("healthy", "noise", "wandering", *TEN)
     for (fault, part), limit in zip(

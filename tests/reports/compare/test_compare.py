@@ -13,7 +13,7 @@ import pytest
 from analytic.kinematics import solve
 from models.array import Array
 from models.files import load_scene
-from models.motion import Motion
+from models.motion import LinkMotion
 from models.scene import Scene
 from reports.compare.beside import SETTLING, Beside, Truth
 from reports.compare.compare import compare
@@ -28,18 +28,33 @@ Find = Callable[..., Errors]
 ROUNDING = 1e-12
 
 
-def compared(scene: Scene, run: Run) -> Errors | None:
+def compared(scene: Scene, run: Run) -> Errors:
     """The errors of a run beside its truth."""
     return compare(Beside.of(Truth(scene), run))
+
+
+@pytest.fixture(scope="module")
+def healthy(fourbar: Scene, disturbed: Callable[..., Run]) -> Run:
+    """A run of the four-bar without any error."""
+    return disturbed(fourbar)
+
+
+def link_of(run: Run, name: str = "rocker") -> LinkMotion:
+    return run.motion.links[name]
+
+
+def with_link(run: Run, name: str = "rocker", **series: Array) -> Run:
+    """The run with other series of a link."""
+    motion = run.motion
+    links = {**motion.links, name: replace(link_of(run, name), **series)}
+    return replace(run, motion=replace(motion, links=links))
 
 
 def pure(
     errors: Errors, quantity: str, source: Source = "reported", kind: ErrorKind = "total"
 ) -> float:
     """The worst error of a quantity as a pure number."""
-    row = errors.worst(quantity, source, kind)
-    assert row is not None, (quantity, source, kind)
-    return row.pure
+    return errors.worst(quantity, source, kind).pure
 
 
 def test_an_exact_run_has_errors_of_rounding_only(fourbar: Scene, errors_of: Find) -> None:
@@ -70,7 +85,6 @@ def test_an_angle_error_of_a_link_shows_in_that_link_with_its_size_and_place(
 
     errors = errors_of(fourbar, fake_engine.turned_link("rocker", bump))
     worst = errors.worst("angle")
-    assert worst is not None
     assert worst.body == "rocker"
     assert worst.maximum == pytest.approx(2e-5, rel=1e-6)
     assert worst.rms == pytest.approx(2e-5 / math.sqrt(2), rel=2e-3)
@@ -94,20 +108,16 @@ def test_a_gap_is_found_at_the_pin_that_opens(fourbar: Scene, errors_of: Find) -
     assert gaps["B"] < 1e-15
 
 
-def lagging(scene: Scene, lag_s: float, disturbed: Callable[..., Run]) -> Run:
+def lagging(scene: Scene, lag_s: float, healthy: Run) -> Run:
     """A healthy mechanism whose crank runs late: its motion is that of ``lag_s`` before."""
-    engine_run = disturbed(scene)
-    assert engine_run.motion is not None
-    time_s = engine_run.motion.time_s
-    motion = replace(solve(scene, time_s - lag_s), time_s=time_s)
-    return replace(engine_run, motion=motion)
+    time_s = healthy.motion.time_s
+    return replace(healthy, motion=replace(solve(scene, time_s - lag_s), time_s=time_s))
 
 
 def test_a_crank_that_lags_shows_in_drive_and_total_but_not_in_geometry(
-    fourbar: Scene, disturbed: Callable[..., Run]
+    fourbar: Scene, healthy: Run
 ) -> None:
-    errors = compared(fourbar, lagging(fourbar, 1e-6, disturbed))
-    assert errors is not None
+    errors = compared(fourbar, lagging(fourbar, 1e-6, healthy))
     assert pure(errors, "drive") == pytest.approx(1e-5, rel=1e-6)
     peak_ratio = 0.62  # of the rocker's speed to the crank's, largest over the turn
     assert pure(errors, "angle") == pytest.approx(1e-5 * peak_ratio, rel=0.05)
@@ -115,34 +125,25 @@ def test_a_crank_that_lags_shows_in_drive_and_total_but_not_in_geometry(
     assert pure(errors, "position", kind="geometric") < ROUNDING
 
 
-def test_a_clock_off_by_one_sample_shows_as_one_step_of_drive(
-    fourbar: Scene, disturbed: Callable[..., Run]
-) -> None:
-    run = disturbed(fourbar)
-    errors = compared(fourbar, lagging(fourbar, run.dt_s, disturbed))
-    assert errors is not None
+def test_a_clock_off_by_one_sample_shows_as_one_step_of_drive(fourbar: Scene, healthy: Run) -> None:
+    errors = compared(fourbar, lagging(fourbar, healthy.dt_s, healthy))
     assert pure(errors, "drive") == pytest.approx(errors.step_rad)
     assert pure(errors, "angle", kind="geometric") < ROUNDING
 
 
 def test_velocities_half_a_step_late_show_in_reported_velocity_alone(
-    fourbar: Scene, disturbed: Callable[..., Run]
+    fourbar: Scene, healthy: Run
 ) -> None:
-    run = disturbed(fourbar)
-    assert run.motion is not None
-    early = run.motion.time_s - run.dt_s / 2
+    own = healthy.motion
+    early = own.time_s - healthy.dt_s / 2
     there = solve(fourbar, early)
     motion = replace(
-        run.motion,
-        links={n: replace(m, omega=there.links[n].omega) for n, m in run.motion.links.items()},
-        points={
-            n: replace(m, velocity=there.points[n].velocity) for n, m in run.motion.points.items()
-        },
+        own,
+        links={n: replace(m, omega=there.links[n].omega) for n, m in own.links.items()},
+        points={n: replace(m, velocity=there.points[n].velocity) for n, m in own.points.items()},
     )
-    right = compared(fourbar, replace(run, motion=motion, velocity_time_s=early))
-    wrong = compared(fourbar, replace(run, motion=motion))
-    assert right is not None
-    assert wrong is not None
+    right = compared(fourbar, replace(healthy, motion=motion, velocity_time_s=early))
+    wrong = compared(fourbar, replace(healthy, motion=motion))
     alpha = 0.9  # about the largest pure acceleration of the four-bar's links
     assert pure(wrong, "velocity") == pytest.approx(wrong.step_rad / 2 * alpha, rel=0.15)
     assert pure(wrong, "velocity") > limits(fourbar, wrong, {})["velocity"].number
@@ -173,73 +174,50 @@ def test_a_position_that_trembles_shows_in_the_differenced_rates(
 @pytest.mark.parametrize("part", ["theta", "omega", "alpha"])
 @pytest.mark.parametrize("at", [SETTLING // 2, -1])
 def test_a_number_that_is_missing_is_a_failure_wherever_it_stands(
-    fourbar: Scene, disturbed: Callable[..., Run], part: str, at: int
+    fourbar: Scene, healthy: Run, part: str, at: int
 ) -> None:
-    run = disturbed(fourbar)
-    motion = run.motion
-    assert motion is not None
-    series = vars(motion.links["rocker"])[part].copy()
+    series = vars(link_of(healthy))[part].copy()
     series[at] = np.nan
-    link = replace(motion.links["rocker"], **{part: series})
-    wrong: Motion = replace(motion, links={**motion.links, "rocker": link})
-    errors = compared(fourbar, replace(run, motion=wrong))
-    assert errors is not None
+    errors = compared(fourbar, with_link(healthy, **{part: series}))
     assert any(row.body == "rocker" and not row.finite for row in errors.rows)
 
 
 def test_a_crank_angle_that_is_missing_leaves_a_note_and_a_broken_drive(
-    fourbar: Scene, disturbed: Callable[..., Run]
+    fourbar: Scene, healthy: Run
 ) -> None:
-    run = disturbed(fourbar)
-    assert run.motion is not None
-    crank = run.motion.links["crank"]
-    theta = crank.theta.copy()
+    theta = link_of(healthy, "crank").theta.copy()
     theta[5] = np.nan
-    links = {**run.motion.links, "crank": replace(crank, theta=theta)}
-    errors = compared(fourbar, replace(run, motion=replace(run.motion, links=links)))
-    assert errors is not None
+    errors = compared(fourbar, with_link(healthy, "crank", theta=theta))
     assert "logged crank angle is not finite" in errors.notes[0]
     assert not any(row.kind == "geometric" for row in errors.rows)
     assert math.isnan(pure(errors, "drive"))
 
 
 def test_accelerations_that_an_engine_does_not_report_are_named_and_no_failure(
-    fourbar: Scene, disturbed: Callable[..., Run]
+    fourbar: Scene, healthy: Run
 ) -> None:
-    run = disturbed(fourbar)
-    assert run.motion is not None
+    motion = healthy.motion
     links = {
-        name: replace(link, alpha=np.full_like(link.alpha, np.nan))
-        for name, link in run.motion.links.items()
+        n: replace(one, alpha=np.full_like(one.alpha, np.nan)) for n, one in motion.links.items()
     }
     points = {
         name: replace(point, acceleration=np.full_like(point.acceleration, np.nan))
-        for name, point in run.motion.points.items()
+        for name, point in motion.points.items()
     }
-    silent = replace(run, motion=replace(run.motion, links=links, points=points))
+    silent = replace(healthy, motion=replace(motion, links=links, points=points))
     errors = compared(fourbar, replace(silent, reports_accelerations=False))
-    assert errors is not None
     assert "acceleration of link rocker" in errors.not_reported
     assert all(row.finite for row in errors.rows)
     accused = compared(fourbar, silent)
-    assert accused is not None
     assert accused.not_reported == ()
     assert math.isnan(pure(accused, "acceleration"))
 
 
 def test_an_engine_without_accelerations_may_not_report_those_of_some_links_only(
-    fourbar: Scene, disturbed: Callable[..., Run]
+    fourbar: Scene, healthy: Run
 ) -> None:
-    run = disturbed(fourbar)
-    assert run.motion is not None
-    rocker = run.motion.links["rocker"]
-    links = {
-        **run.motion.links,
-        "rocker": replace(rocker, alpha=np.full_like(rocker.alpha, np.nan)),
-    }
-    some = replace(run, motion=replace(run.motion, links=links), reports_accelerations=False)
-    errors = compared(fourbar, some)
-    assert errors is not None
+    some = with_link(healthy, alpha=np.full_like(link_of(healthy).alpha, np.nan))
+    errors = compared(fourbar, replace(some, reports_accelerations=False))
     assert errors.not_reported == ()
     assert math.isnan(pure(errors, "acceleration"))
 
@@ -248,13 +226,11 @@ def test_an_engine_without_accelerations_may_not_report_those_of_some_links_only
     ("kind", "name"), [("links", "rocker"), ("links", "crank"), ("points", "C")]
 )
 def test_what_the_engine_leaves_out_is_missed(
-    fourbar: Scene, disturbed: Callable[..., Run], kind: str, name: str
+    fourbar: Scene, healthy: Run, kind: str, name: str
 ) -> None:
-    run = disturbed(fourbar)
-    kept = {n: part for n, part in vars(run.motion)[kind].items() if n != name}
-    motion = replace(run.motion, **{kind: kept})  # type: ignore[type-var]  # never None here
-    errors = compared(fourbar, replace(run, motion=motion))
-    assert errors is not None
+    motion = healthy.motion
+    kept = {n: part for n, part in vars(motion)[kind].items() if n != name}
+    errors = compared(fourbar, replace(healthy, motion=replace(motion, **{kind: kept})))
     assert errors.missing == (f"{kind[:-1]} {name}",)
     assert any(row.body == name and not row.finite for row in errors.rows)
 
@@ -264,31 +240,19 @@ def test_every_pin_and_slider_needs_its_gap(name: str, disturbed: Callable[..., 
     scene = load_scene(name)
     run = disturbed(scene)
     whole, silent = compared(scene, run), compared(scene, replace(run, gaps={}))
-    assert whole is not None
-    assert silent is not None
     assert whole.missing == ()
     assert set(silent.missing) == {f"gap of {joint}" for joint in run.gaps}
     assert math.isnan(pure(silent, "gap"))
 
 
-def test_a_series_of_another_length_counts_as_none(
-    fourbar: Scene, disturbed: Callable[..., Run]
-) -> None:
-    run = disturbed(fourbar)
-    assert run.motion is not None
-    rocker = run.motion.links["rocker"]
-    links = {**run.motion.links, "rocker": replace(rocker, theta=rocker.theta[:1])}
-    errors = compared(fourbar, replace(run, motion=replace(run.motion, links=links)))
-    assert errors is not None
+def test_a_series_of_another_length_counts_as_none(fourbar: Scene, healthy: Run) -> None:
+    errors = compared(fourbar, with_link(healthy, theta=link_of(healthy).theta[:1]))
     assert math.isnan(pure(errors, "angle"))
 
 
 def cut(run: Run, keep: slice) -> Run:
     """The run with a part of its samples."""
-    assert run.motion is not None
     motion = run.motion.each_series(lambda series: series[keep])
-    assert run.velocity_time_s is not None
-    assert run.acceleration_time_s is not None
     return replace(
         run,
         motion=replace(motion, time_s=motion.time_s[keep]),
@@ -302,25 +266,18 @@ def cut(run: Run, keep: slice) -> Run:
     "keep", [slice(50), slice(1), slice(720), slice(1, None), slice(0, None, 2)]
 )
 def test_a_log_that_lacks_commanded_samples_is_incomplete(
-    fourbar: Scene, disturbed: Callable[..., Run], keep: slice
+    fourbar: Scene, healthy: Run, keep: slice
 ) -> None:
-    run = disturbed(fourbar)
-    whole, short = compared(fourbar, run), compared(fourbar, cut(run, keep))
-    assert whole is not None
-    assert short is not None
+    whole, short = compared(fourbar, healthy), compared(fourbar, cut(healthy, keep))
     assert whole.incomplete == ""
     assert "not the 721 of 720 steps logged every 1" in short.incomplete
 
 
-def test_time_stamps_off_the_commanded_grid_are_found(
-    fourbar: Scene, disturbed: Callable[..., Run]
-) -> None:
-    run = disturbed(fourbar)
-    assert run.motion is not None
-    time_s = run.motion.time_s.copy()
-    time_s[7:] += 1e-9 * run.dt_s
-    errors = compared(fourbar, replace(run, motion=replace(run.motion, time_s=time_s)))
-    assert errors is not None
+def test_time_stamps_off_the_commanded_grid_are_found(fourbar: Scene, healthy: Run) -> None:
+    motion = healthy.motion
+    time_s = motion.time_s.copy()
+    time_s[7:] += 1e-9 * healthy.dt_s
+    errors = compared(fourbar, replace(healthy, motion=replace(motion, time_s=time_s)))
     assert "sample 7 is stamped" in errors.incomplete
     assert "714 of 721" in errors.incomplete
 
@@ -340,19 +297,13 @@ def test_a_crank_out_of_its_range_leaves_a_note_in_place_of_the_geometric_error(
 ) -> None:
     scene = load_scene("fourbar-double-rocker")
     run = disturbed(scene)
-    assert run.motion is not None
-    driver = run.motion.links["driver"]
-    links = {**run.motion.links, "driver": replace(driver, theta=driver.theta + 2.0)}
-    errors = compared(scene, replace(run, motion=replace(run.motion, links=links)))
-    assert errors is not None
+    errors = compared(scene, with_link(run, "driver", theta=link_of(run, "driver").theta + 2.0))
     assert "left its range" in errors.notes[0]
     assert pure(errors, "drive") == pytest.approx(2.0)
 
 
-def test_a_run_that_never_started_has_no_errors(
-    fourbar: Scene, disturbed: Callable[..., Run]
-) -> None:
-    assert compared(fourbar, replace(disturbed(fourbar), motion=None)) is None
+def test_a_run_that_never_started_has_no_errors(fourbar: Scene, healthy: Run) -> None:
+    assert compare(Beside.of(Truth(fourbar), replace(healthy, motion=None))) is None
 
 
 def test_the_pure_numbers_do_not_depend_on_the_size_of_the_scene(

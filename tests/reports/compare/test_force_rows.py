@@ -45,7 +45,6 @@ def _errors(scene: Scene, done: Run) -> Errors:
 
 
 def _with(done: Run, change: Callable[[Forces], Forces]) -> Run:
-    assert done.motion is not None
     assert done.motion.forces is not None
     return replace(done, motion=replace(done.motion, forces=change(done.motion.forces)))
 
@@ -62,8 +61,6 @@ def test_without_forces_the_errors_are_the_same_to_the_bit() -> None:
 def test_forces_of_steps_have_none_at_the_start_and_that_is_no_error() -> None:
     done = _run("pymunk")
     assert done.forces_of == "steps"
-    assert done.motion is not None
-    assert done.motion.forces is not None
     assert np.isnan(done.motion.forces.torque[0])
     rows = [row for row in force_rows(_beside(FOURBAR, done)).rows if row.quantity == "torque"]
     assert all(row.finite for row in rows)
@@ -84,7 +81,6 @@ def test_a_number_that_is_missing_later_is_an_error(engine: str) -> None:
         return replace(own, torque=torque)
 
     worst = _errors(FOURBAR, _with(_run(engine), broken)).worst("torque")
-    assert worst is not None
     assert not worst.finite
 
 
@@ -94,7 +90,6 @@ def test_a_stamp_half_a_step_off_is_an_error_of_first_order() -> None:
         done = _run("mujoco", steps=steps)
         late = _with(done, lambda own, by=done.dt_s: replace(own, time_s=own.time_s + 0.5 * by))
         worst = _errors(FOURBAR, late).worst("reaction")
-        assert worst is not None
         sizes.append(worst.pure)
     assert sizes[0] / sizes[1] == pytest.approx(2.0, rel=0.05)
 
@@ -129,7 +124,6 @@ def test_of_a_sum_that_is_not_zero_the_pin_is_told() -> None:
 
     assert _errors(FOURBAR, _run("mujoco")).unbalanced.share < 1e-12  # type: ignore[union-attr]
     found = _errors(FOURBAR, _with(_run("mujoco"), pushed)).unbalanced
-    assert found is not None
     assert (found.point, found.share) == ("C", pytest.approx(0.1 * 2**0.5 / 5.75, rel=0.01))
 
 
@@ -147,9 +141,7 @@ def test_samples_in_dead_points_are_left_out_and_counted() -> None:
     scene = case.trial(case.values[0]).scene
     done = _of(scene, "exudyn")
     truth = Truth(scene)
-    assert done.motion is not None
     motion = truth.with_forces_at(done.motion.time_s)
-    assert motion.forces is not None
 
     def dead(series: Array) -> Array:
         changed = series.copy()
@@ -172,7 +164,6 @@ def test_the_torque_of_a_parallelogram_at_constant_speed_is_held_to_an_arm() -> 
     case = CATALOGUE["parallelogram"]
     scene = case.trial(case.values[0]).scene
     worst = _errors(scene, _of(scene, "mujoco")).worst("torque")
-    assert worst is not None
     assert worst.scale > 1e-3  # N m, of a torque that is 0
     assert worst.pure < 1e-2
 
@@ -216,7 +207,6 @@ def test_what_the_engine_says_against_its_forces_fails_a_rule() -> None:
     errors = _errors(FOURBAR, done)
     assert errors.contradictions == said
     finding = RULES["CC126"].check(Evidence("ok", "", 1.0, errors, {}))
-    assert finding is not None
     assert finding.level == "fail"
     assert said[0] in finding.text
     assert (

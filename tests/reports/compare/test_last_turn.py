@@ -56,9 +56,7 @@ def test_its_largest_errors_are_no_larger_than_those_of_the_whole_run(
 ) -> None:
     run = disturbed(fourbar, off_by("rocker", 2e-3))
     errors = compare(Beside.of(Truth(fourbar), run))
-    assert errors is not None
     worst = errors.worst("gap")
-    assert worst is not None
     assert 0.0 < np.max(trace(Truth(fourbar, bound=False), run)["gap"]) <= worst.maximum
 
 

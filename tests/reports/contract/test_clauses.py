@@ -7,6 +7,7 @@ import pytest
 from reports.contract.clauses import CLAUSES
 from reports.contract.ruling import put_to
 from sim.registry import engine
+from tests.worlds.tiers import slow
 from tests.worlds.wrong_engines import FAULTS, late_accelerations
 
 FOURBAR = ("fourbar-lecture-1",)
@@ -21,7 +22,7 @@ def test_a_fault_breaks_its_clause(name: str) -> None:
     assert any(words in text for text in breaches), breaches
 
 
-@pytest.mark.slow
+@slow("each fault put to all clauses: whether they are independent")
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_fault_breaks_hardly_any_other_clause(name: str) -> None:
     clause, _, fault, besides = FAULTS[name]

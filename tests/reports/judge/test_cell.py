@@ -36,7 +36,6 @@ def cell(scene: Scene, engine: str = "mujoco", profile: str = "tuned") -> Cell:
 @pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
 def test_a_tuned_fourbar_shrinks_with_second_order(fourbar: Scene, engine: str) -> None:
     seen = check(cell(fourbar, engine)).convergence
-    assert seen is not None
     assert seen.trend == "shrinks"
     assert seen.order == pytest.approx(2.0, abs=0.3)
     assert seen.unit == "rad"
@@ -52,14 +51,12 @@ def test_a_crank_of_steady_acceleration_is_within_tolerance(
     law = Accelerating(math.pi / 2, speed, acceleration)
     found = check(cell(replace(fourbar, driver=replace(fourbar.driver, law=law)), engine))
     assert found.verdict == "within", found.failures
-    assert found.convergence is not None
     assert found.convergence.trend == "shrinks"
 
 
 @slow("only here is a crank off by the rounding of a real sum of 250,000 steps")
 def test_the_rounding_of_a_long_run_is_not_taken_for_a_floor(fourbar: Scene) -> None:
     seen = check(Cell(fourbar, "mujoco", "tuned", 1e-4, 62832)).convergence
-    assert seen is not None
     assert max(seen.error) < 1e-8
     assert seen.trend in ("shrinks", "at rounding")
 
@@ -82,7 +79,6 @@ def test_what_rounding_explains_of_the_crank_it_explains_of_all_links(
     monkeypatch.setattr(cells, "engine", lambda _: fake)
     monkeypatch.setattr(cells, "run", lambda one, state, _, *a, **b: run(one, state, fake, *a, **b))
     seen = check(cell(fourbar)).convergence
-    assert seen is not None
     assert min(seen.error) > 1e-11
     assert seen.trend == trend
 
@@ -92,11 +88,8 @@ def test_mujoco_as_shipped_has_a_floor_and_says_so(fourbar: Scene, dt_s: float) 
     one = Cell(fourbar, "mujoco", "as-shipped", dt_s, round(0.63 / dt_s))
     found = check(one)
     assert found.verdict == "out"
-    assert found.errors is not None
     rocker = found.errors.worst("angle")
-    assert rocker is not None
     assert rocker.maximum > 5e-4
-    assert found.convergence is not None
     assert found.convergence.trend == "does not shrink"
     assert 5e-4 < found.convergence.floor < 1e-3
 
@@ -107,16 +100,11 @@ def test_the_tuned_errors_promised_at_a_millisecond_over_ten_turns(fourbar: Scen
         check(Cell(fourbar, name, "tuned", 1e-3, steps, converge=False)).errors
         for name in ("mujoco", "pymunk")
     )
-    assert mujoco is not None
-    assert pymunk is not None
     for errors, angle in ((mujoco, 1e-6), (pymunk, 1e-4)):
         rocker, drive = errors.worst("angle"), errors.worst("drive")
-        assert rocker is not None
-        assert drive is not None
         assert rocker.maximum < angle
         assert drive.maximum < 1e-9
     gap = mujoco.worst("gap")
-    assert gap is not None
     assert gap.maximum < 1e-6
 
 
@@ -165,7 +153,6 @@ def opened(done: Run, gap_m: float) -> Run:
 
 
 def cut(done: Run) -> Run:
-    assert done.motion is not None
     return replace(done, motion=replace(done.motion, time_s=done.motion.time_s[:50]))
 
 
@@ -197,7 +184,6 @@ def test_a_finer_run_that_does_not_end_well_fails_the_cell(
 
 def test_errors_that_are_over_their_limit_at_once_are_not_told_again(fourbar: Scene) -> None:
     seen = check(cell(fourbar, "pymunk", "as-shipped")).convergence
-    assert seen is not None
     assert (seen.trend, seen.over, seen.faults) == ("shrinks", (), ())
 
 

@@ -44,18 +44,14 @@ def test_forces_of_tuned_engines_take_under_six_tenths_of_their_limits(
 @pytest.mark.parametrize(("engine", "most"), [("mujoco", 1e-4), ("exudyn", 2e-4), ("pymunk", 1e-3)])
 def test_what_is_reached_at_720_steps_a_turn(engine: str, most: float) -> None:
     checked = _checked("fourbar-lecture-1", engine, 720)
-    assert checked.errors is not None
     for quantity in ("reaction", "torque"):
         worst = checked.errors.worst(quantity)
-        assert worst is not None
         assert worst.pure < most
 
 
 def test_the_order_of_forces_and_their_floor_are_told_beside_those_of_places() -> None:
     soft = _checked("fourbar-lecture-1", "mujoco", 720, converge=True)
     hard = _checked("fourbar-lecture-1", "pymunk", 360, converge=True)
-    assert soft.force_convergence is not None
-    assert hard.force_convergence is not None
     assert 1e-6 < soft.force_convergence.floor < 1e-4
     assert hard.force_convergence.order == pytest.approx(2.0, abs=0.2)
     assert hard.convergence is not None
@@ -96,7 +92,6 @@ def test_near_a_change_point_forces_are_not_judged_and_a_limit_that_was_given_st
 @pytest.mark.parametrize("name", ["toggle-press", "shaper-cutting"])
 def test_loads_that_come_on_within_a_few_steps_are_in_the_budget(name: str) -> None:
     checked = _checked(name, "mujoco", 720)
-    assert checked.errors is not None
     assert checked.verdict == "within", checked.failures
     without = replace(checked.errors, loading=0.0, load_slopes={})
     over = [
@@ -109,7 +104,6 @@ def test_loads_that_come_on_within_a_few_steps_are_in_the_budget(name: str) -> N
 
 def test_of_where_a_slider_is_no_more_is_felt_than_its_limit() -> None:
     errors = _checked("toggle-press", "mujoco", 360).errors
-    assert errors is not None
     tolerance, most = DEFAULTS["torque"], default(WITHIN_A_STEP, errors)
     near = default(tolerance, errors)
     far = [
@@ -127,7 +121,6 @@ def test_of_where_a_slider_is_no_more_is_felt_than_its_limit() -> None:
 
 def test_without_loads_no_limit_is_other_than_before() -> None:
     errors = _checked("fourbar-lecture-1", "mujoco", 90).errors
-    assert errors is not None
     assert errors.loading == 0.0
     assert not any(errors.load_slopes.values())
 
@@ -140,5 +133,4 @@ def test_forces_beside_jumps_of_constant_friction_are_left_out_and_counted(engin
         options = {"with_forces": True, "converge": False}
         checked = check(Cell(scene, engine, "tuned", period / 360, 360, **options))  # type: ignore[arg-type]
         assert checked.verdict == "within", checked.failures
-        assert checked.errors is not None
         assert any("12 samples of 36" in note for note in checked.errors.notes)

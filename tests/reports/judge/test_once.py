@@ -43,7 +43,6 @@ def worked(monkeypatch: pytest.MonkeyPatch) -> Counter[object]:
 def run(scene: Scene, engines: Sequence[str]) -> None:
     for engine in engines:
         done = check(Cell(scene, engine, "tuned", scene.driver.law.period_s / STEPS, STEPS))
-        assert done.convergence is not None
         assert not done.convergence.faults
 
 

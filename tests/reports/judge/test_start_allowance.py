@@ -29,11 +29,8 @@ def started(name: str, steps: int) -> Checked:
 @pytest.mark.parametrize("name", ["fourbar-lecture-1", "shaper", "slotted-lever"])
 def test_the_first_velocities_jump_by_no_more_than_the_jolt(name: str, steps: int) -> None:
     errors = started(name, steps).errors
-    assert errors is not None
     velocity = errors.worst("velocity", "reported", "start")
     differenced = errors.worst("acceleration", "differenced", "start")
-    assert velocity is not None
-    assert differenced is not None
     assert 0.3 < velocity.pure / (errors.jolt * errors.step_rad) < 1.1
     assert 0.3 < differenced.pure / errors.jolt < 1.1
 
@@ -42,7 +39,6 @@ def test_the_jolt_of_a_crank_alone_is_half_of_what_keeps_its_end_on_its_circle()
     """With a long rod the slider's acceleration is the crank's, and nothing turns but the crank."""
     scene = load_scene("slider-crank-central")
     errors = started(scene.name, 360).errors
-    assert errors is not None
     crank = 0.5 * 0.1 / scene.longest_m  # half of omega^2 r of its end, over w^2 L
     assert crank < errors.jolt < 5.0 * crank
 
@@ -93,6 +89,5 @@ def test_forces_of_steps_start_for_a_dozen_steps_and_those_of_states_for_forty()
         cell = Cell(scene, name, "tuned", dt_s, 720, converge=False, with_forces=True)
         checked = check(cell)
         assert checked.verdict == "within", checked.failures
-        assert checked.errors is not None
         rows = [row for row in checked.errors.rows if row.quantity == "reaction"]
         assert {row.samples for row in rows if row.kind == "start"} == {samples}

@@ -71,7 +71,6 @@ def test_no_body_of_a_shipped_scene_comes_near_what_is_too_good(each: str) -> No
         dt_s = scene.driver.law.period_s / steps
         checked, _ = examined(Cell(scene, name, profile, dt_s, steps, converge=False))
         errors = checked.errors
-        assert errors is not None
         assert errors.uneven
         wide = {body: 10.0 * far for body, far in errors.uneven.items()}
         placing = adapter.placing(resolved(adapter.profiles[profile], None))
@@ -108,7 +107,6 @@ def test_rates_that_are_the_references_are_too_good_of_any_engine(
     def taken(*args: object, **options: object) -> Run:
         one, state, _, *rest = args
         done = run(one, state, fake_engine.FakeEngine(), *rest, **options)  # type: ignore[arg-type]  # passed on
-        assert done.motion is not None
         true = solve(scene, done.motion.time_s)
         own = {n: link for n, link in done.motion.links.items() if n == spared}
         return replace(done, motion=replace(done.motion, links={**true.links, **own}))
@@ -126,7 +124,6 @@ def test_an_angle_of_few_digits_is_no_error_of_an_engine(digits: int) -> None:
 
     def few(*args: object, **options: object) -> Run:
         done = run(*args, **options)  # type: ignore[arg-type]  # passed on
-        assert done.motion is not None
         true = solve(scene, done.motion.time_s).links["rocker"]
         off = replace(true, theta=np.round(true.theta, digits))
         links = {**done.motion.links, "rocker": off}
@@ -158,7 +155,6 @@ def test_forces_where_places_are_solved_are_too_good_for_accelerations_that_are_
     period = scene.driver.law.period_s
     cell = Cell(scene, "exudyn", "tuned", period / 360, 360, converge=False, with_forces=True)
     errors = examined(cell)[0].errors
-    assert errors is not None
 
     def sized(size: float, *quantities: str) -> list[Error]:
         rows = (row for row in errors.rows if row.quantity in quantities)

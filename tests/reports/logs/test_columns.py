@@ -204,16 +204,8 @@ def test_every_digit_is_kept(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "empty"),
-        ("# a remark\n", "empty but for remarks"),
-        ("t,a\n", "a header and no rows"),
         ("t,a\ns,deg\n", "a header and units, and no rows"),
-        ("0,1\n1,2\n", "line 1 holds numbers and no names"),
-        ("t,,a\n0,1,2\n", "column 2 has no name"),
-        ("t,a,a\n0,1,2\n", "two columns are called 'a'"),
         ("t,a\n0,1,2\n", "line 2 has 3 fields, the header 2"),
-        ("t,a\n0,1\n1\n", "row 3: 1 fields, the header 2"),
-        ("t,a\n0,1\n# b\n1\n", "row 4: 1 fields, the header 2"),
         ("t,a,\n0,1,\n# b\n1,2,3\n", "row 4: found '3' in column 3, which has no name"),
         ("t,a b\n0 1\n", "line 2 has 2 numbers between spaces, and line 1 not as many names"),
         ("t\t\ta\n0\t\t1\n", "column 2 has no name; .*separator = ' ' in .file. of the map"),
@@ -228,8 +220,6 @@ def test_every_digit_is_kept(tmp_path: Path) -> None:
         ('t,"a\n0,1\n', "a quote that is not closed"),
         ("# 0,1\n0,1\n", "line 2 holds numbers and no names"),
         (b"t,a\n0,1\x00\n", "null bytes"),
-        ("t,a\n0,1\n".encode("utf-16"), "UTF-16"),
-        ("t,ä\n0,1\n".encode("latin-1"), "not UTF-8"),
         ("t,a\r0,1\r", "lines end in"),
     ],
 )
@@ -241,12 +231,8 @@ def test_what_is_no_log_is_told(tmp_path: Path, text: str | bytes, words: str) -
 @pytest.mark.parametrize(
     ("cell", "words"),
     [
-        ("", "row 3, column 'a': the cell is empty"),
-        ("NaN", "row 3, column 'a': found nan"),
-        ("inf", "row 3, column 'a': found inf"),
         ("n/a", "row 3, column 'a': found 'n/a', no number"),
         ("1;5", "row 3, column 'a': found '1;5', no number"),
-        ("0x10", "row 3, column 'a': found '0x10', no number"),
         ('"1,000"', "row 3, column 'a': found '1,000', no number; write decimal points, or say"),
         ("1'000.5", "row 3, column 'a': found .*no number; write numbers without marks"),
         ("00:01", "row 3, column 'a': found '00:01', no number; write seconds"),

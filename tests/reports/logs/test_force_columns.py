@@ -215,7 +215,6 @@ def test_a_body_that_does_not_meet_there_is_told_of(scene: str, column: str, rea
 )
 def test_milli_and_mega_are_told_by_the_size_of_the_letter(column: str, one: float) -> None:
     found = force_meaning(column, force_places(SCENE))
-    assert found is not None
     assert found[1] == one
 
 

@@ -64,7 +64,6 @@ SLIDER_CRANK = SceneNames(load_scene("slider-crank-central"))
 def test_a_name_tells_body_kind_and_unit(column: str, body: str, kind: str, unit: str) -> None:
     found = meaning(column, FOURBAR)
     assert isinstance(found, Meaning)
-    assert found.kind is not None
     assert (found.of, found.kind.name, found.unit) == (body, kind, unit)
 
 
@@ -83,7 +82,6 @@ def test_a_name_tells_body_kind_and_unit(column: str, body: str, kind: str, unit
 def test_a_slider_and_its_point_of_the_same_name_are_told_apart(column: str, kind: str) -> None:
     found = meaning(column, SLIDER_CRANK)
     assert isinstance(found, Meaning)
-    assert found.kind is not None
     assert found.kind.name == kind
 
 

@@ -61,7 +61,7 @@ def rules(one: JudgedLog) -> list[str]:
 
 @pytest.mark.parametrize(
     ("name", "engine", "seconds"),
-    [(SWING, "mujoco", 0.3), ("fourbar-double-rocker-swing", "pymunk", 1.0)],
+    [(SWING, "mujoco", 0.3), ("fourbar-double-rocker-swing", "pymunk", 0.3)],
 )
 def test_a_run_that_was_logged_has_the_numbers_of_its_verification(
     name: str, engine: str, seconds: float
@@ -70,8 +70,6 @@ def test_a_run_that_was_logged_has_the_numbers_of_its_verification(
     cell = Cell(done.mechanism, engine, "tuned", done.dt_s, done.steps, drive="free")
     verified = check(replace(cell, converge=False))
     log = crankcheck.judge(name, done.frame(), step_s=done.dt_s)
-    assert verified.errors is not None
-    assert log.errors is not None
     found = {(e.quantity, e.body, e.source, e.kind): e.maximum for e in log.errors.rows}
     for row in verified.errors.rows:
         if row.quantity != "energy":  # which no column tells
@@ -128,7 +126,6 @@ def test_geometry_is_that_of_the_readings_where_the_phase_has_run_away() -> None
         },
         every=0.3,
     )
-    assert one.errors is not None
     rows = {row.body: row.maximum for row in one.errors.rows if row.quantity == "geometry"}
     assert set(rows) >= {"crank", "C"}
     assert max(rows.values()) < 1e-12
@@ -157,8 +154,6 @@ def test_rows_of_which_the_truth_is_not_known_are_left_out_and_counted() -> None
     motion = kept_motion(chain, 8.0).at(time_s)
     name = chain.driver.link
     one = judged({f"{name}_rad": motion.links[name].theta}, chain, 1e-12, time_s)
-    assert one.errors is not None
-    assert one.errors.free is not None
     assert one.errors.free.left_out == 81 - one.log.time_s.size > 0
     assert any("samples after it are not judged" in note for note in one.notes)
 

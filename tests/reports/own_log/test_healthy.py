@@ -75,7 +75,6 @@ def _as_parquet(log: Log, path: Path) -> None:
 def _as_workbook(log: Log, path: Path) -> None:
     book = openpyxl.Workbook()
     sheet = book.active
-    assert sheet is not None
     sheet.append(list(log))
     for row in np.stack(list(log.values()), axis=1).tolist():
         sheet.append(row)

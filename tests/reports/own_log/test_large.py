@@ -1,5 +1,5 @@
-"""A log of a million rows is judged in 1 GB, and in as many calls as a short one: what a user records
-in a quarter of an hour at 1 kHz."""
+"""A log of a million rows is judged in 1 GB, and in as many calls as a short one: a user records as
+much in a quarter of an hour at 1 kHz."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ import json
 import re
 from collections.abc import Callable
 from dataclasses import replace
-from itertools import product
+from itertools import cycle, product
 from pathlib import Path
 
 import pytest
@@ -21,6 +21,7 @@ from tests.worlds.stranger_faults import COLUMNS, CULPRITS, Planted, averaged, p
 from tests.worlds.stranger_guises import disguised
 from tests.worlds.stranger_log import Dress, Log, even, logged, uneven
 from tests.worlds.stranger_map import map_text
+from tests.worlds.tiers import few, slow
 
 PER_TURN = 60
 TURNS = 2.0
@@ -38,6 +39,8 @@ WORDS = {
 }
 """What the cause says of each fault."""
 EITHER = list(product(LINKAGES, WORDS))
+IN_TURN = list(zip(cycle(LINKAGES), WORDS, strict=False))
+"""Each fault in one linkage."""
 
 
 @pytest.fixture
@@ -68,30 +71,29 @@ def holds(case: Planted, words: str, text: str, columns: list[str]) -> None:
         assert all(column in text for column in case.columns), text
 
 
-@pytest.mark.parametrize(("scene", "fault"), EITHER)
+@pytest.mark.parametrize("at", few(EITHER, IN_TURN, "the same fault in another linkage"))
 def test_a_fault_is_named_with_its_channel(
-    scene: str, fault: str, blamed: Callable[..., tuple[str, list[str]]]
+    at: tuple[str, str], blamed: Callable[..., tuple[str, list[str]]]
 ) -> None:
+    scene, fault = at
     case = planted(scene, even(LINKAGES[scene], TURNS, PER_TURN))[fault]()
     holds(case, WORDS[fault], *blamed(scene, case.log))
 
 
-@pytest.mark.slow
+@slow("only here are times uneven and faults in: what looks for one may count on even steps")
 @pytest.mark.parametrize(("scene", "fault"), EITHER)
 def test_at_uneven_times_too(
     scene: str, fault: str, blamed: Callable[..., tuple[str, list[str]]]
 ) -> None:
-    """Only here are times uneven and faults in: what looks for one may count on even steps."""
     case = planted(scene, uneven(LINKAGES[scene], 2.0, 120))[fault]()
     holds(case, WORDS[fault], *blamed(scene, case.log))
 
 
-@pytest.mark.slow
+@slow("only here do faults meet angles of joints, wrapped ones, and rates said to be late")
 @pytest.mark.parametrize(("scene", "fault"), EITHER)
 def test_in_all_guises_at_once_too(
     scene: str, fault: str, blamed: Callable[..., tuple[str, list[str]]]
 ) -> None:
-    """Only here do faults meet angles of joints, wrapped ones, and rates said to be late."""
     linkage, culprits = LINKAGES[scene], CULPRITS[scene]
     plain = {culprits.turn, *culprits.swapped} if fault in ("lost turn", "swapped columns") else {}
     columns = [
@@ -103,7 +105,7 @@ def test_in_all_guises_at_once_too(
     holds(case, WORDS[fault], *blamed(scene, case.log, mapped=mapped))
 
 
-@pytest.mark.parametrize("scene", LINKAGES)
+@pytest.mark.parametrize("scene", few(LINKAGES, list(LINKAGES)[:1], "the same of each linkage"))
 def test_rates_half_a_sample_late_are_told_and_the_map_that_is_told_mends_it(
     scene: str, blamed: Callable[..., tuple[str, list[str]]], judge: Judge
 ) -> None:
@@ -125,12 +127,10 @@ def test_rates_half_a_sample_late_are_told_and_the_map_that_is_told_mends_it(
     assert judge(scene, Dress().text(log), mapped=told).exit_code == 0
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("scene", LINKAGES)
+@pytest.mark.parametrize("scene", few(LINKAGES, list(LINKAGES)[:1], "the same of each linkage"))
 def test_a_mean_that_is_not_late_is_a_filter_too(
     scene: str, blamed: Callable[..., tuple[str, list[str]]]
 ) -> None:
-    """Only here is a signal filtered without delay."""
     column = CULPRITS[scene].filtered
     log = logged(LINKAGES[scene], even(LINKAGES[scene], TURNS, PER_TURN), COLUMNS[scene])
     text, columns = blamed(scene, averaged(log, column, 21))
@@ -138,12 +138,10 @@ def test_a_mean_that_is_not_late_is_a_filter_too(
     assert "mean over 21 samples" in text
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("scene", LINKAGES)
+@pytest.mark.parametrize("scene", few(LINKAGES, list(LINKAGES)[:1], "the same of each linkage"))
 def test_several_samples_that_stick_are_told_as_one_stretch(
     scene: str, blamed: Callable[..., tuple[str, list[str]]]
 ) -> None:
-    """Only here does a sensor stick for longer than a sample."""
     column = CULPRITS[scene].stuck
     log = logged(LINKAGES[scene], even(LINKAGES[scene], TURNS, PER_TURN), COLUMNS[scene])
     text, columns = blamed(scene, stuck(log, column, 6))

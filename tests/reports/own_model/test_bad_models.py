@@ -15,12 +15,13 @@ from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.mjcf import build
+from reports.own_model import assembly
 from reports.own_model.account import Account, Line, checked_line, read, read_here
-from reports.own_model.assembly import MOST_CHOICES
 from reports.own_model.request import ModelRequest
 from reports.own_model.running import run_lines
 from reports.workers.isolated import Limits
 from tests.worlds.own_four_bar import CLOSED, HEALTHY, ROCKER_JOINT, planted
+from tests.worlds.tiers import few, slowly
 
 PLATES = """<mujoco>
   <option gravity="0 0 0"/>
@@ -165,7 +166,11 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", REFUSED)
+LATE = "a triad that does not turn"
+"""The reach of a joint is told of `test_public_models` too, and a triad takes its time."""
+
+
+@pytest.mark.parametrize("name", few(REFUSED, REFUSED.keys() - {LATE}, "a triad takes its time"))
 def test_it_is_refused_in_one_message(name: str, tmp_path: Path) -> None:
     text, words = REFUSED[name]
     with pytest.raises(CrankcheckError) as refused:
@@ -277,13 +282,19 @@ def driving(rockers: int) -> str:
 """
 
 
-def test_more_choices_than_are_tried_are_asked_for(tmp_path: Path) -> None:
-    many = driving(MOST_CHOICES + 1)
-    with pytest.raises(CrankcheckError, match=r"9 choices .* choose 1 or more .*, of C0, C1, "):
+@pytest.mark.parametrize("most", [3, slowly(8, reason="256 assemblies of a real model")])
+def test_more_choices_than_are_tried_are_asked_for(
+    most: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert assembly.MOST_CHOICES == 8
+    monkeypatch.setattr(assembly, "MOST_CHOICES", most)
+    many = driving(most + 1)
+    told = rf"{most + 1} choices .* choose 1 or more .*, of C0, C1, "
+    with pytest.raises(CrankcheckError, match=told):
         read_text(tmp_path, many)
-    found = read_text(tmp_path, many, branch={"C8": 1}).scene.branch
+    found = read_text(tmp_path, many, branch={f"C{most}": 1}).scene.branch
     assert set(found.values()) == {1}
-    assert len(found) == MOST_CHOICES + 1
+    assert len(found) == most + 1
 
 
 @pytest.mark.parametrize("start_deg", [36000.0, -36000.0])
@@ -310,7 +321,7 @@ def test_a_reading_that_takes_too_long_or_too_much_ends(tmp_path: Path) -> None:
     path = tmp_path / "model.xml"
     path.write_text(planted("</worldbody>", beside * 1000 + "</worldbody>"), encoding="utf-8")
     with pytest.raises(CrankcheckError, match=r"reading it crashed: .* and --memory-gb 1"):
-        read(ModelRequest(path, "A", 10.0), Limits(30.0, 1.0))
+        read(ModelRequest(path, "A", 10.0), Limits(600.0, 1.0))
     with pytest.raises(CrankcheckError, match=r"reading it came to no end: .* --limit-s 0\.01 s"):
         read(ModelRequest(path, "A", 10.0), Limits(0.01, 8.0))
 
@@ -333,9 +344,9 @@ def test_a_run_to_a_singular_position_is_refused_with_the_range_that_can_be_set(
     assert "--start and --turns set the range of joint lever.A" in str(refused.value)
 
 
+@pytest.mark.parametrize("start", [None, slowly(-20.0, reason="half a second, as its pose takes")])
 def test_a_model_with_a_triad_has_a_reference_from_its_pose_and_from_elsewhere(
-    tmp_path: Path,
+    tmp_path: Path, start: float | None
 ) -> None:
-    for start in (None, -20.0):
-        account = read_text(tmp_path, TRIAD, turns=0.05, dt_s=2e-4, start_deg=start)
-        assert [triad.central for triad in analyse(account.scene).triads] == ["plate"]
+    account = read_text(tmp_path, TRIAD, turns=0.05, dt_s=2e-4, start_deg=start)
+    assert [triad.central for triad in analyse(account.scene).triads] == ["plate"]

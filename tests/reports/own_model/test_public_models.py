@@ -28,7 +28,6 @@ def read(name: str, joint: str, **more: object) -> Account:
 def error_of(account: Account, profile: str) -> float:
     """The largest error of place of a line."""
     worst = worst_place(done(account, profile).errors)  # type: ignore[arg-type]
-    assert worst is not None
     return float(worst.pure)
 
 

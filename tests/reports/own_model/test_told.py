@@ -200,16 +200,12 @@ def test_a_long_course_keeps_its_largest_error(
     monkeypatch.setattr(checked_line, "MOST", 30)
     long = judged.__wrapped__(SLIDER_CRANK, "motor").own
     whole, course = rubbing.own.course, long.course
-    assert whole is not None
-    assert course is not None
     assert whole.time_s.size == long.cell.steps + 1
     assert course.time_s.size <= 30
     assert (course.time_s[0], course.time_s[-1]) == (0.0, whole.time_s[-1])
     assert course.error.max() == whole.error.max() == errors_of(long)[0]
     assert set(course.error) <= set(whole.error)
-    assert long.errors is not None
     gap = long.errors.worst("gap")
-    assert gap is not None
     assert whole.gap.max() == pytest.approx(gap.pure, rel=1e-12)
 
 

@@ -11,6 +11,7 @@ from models.hard import fourbar
 from reports.selftest import trial
 from reports.selftest.all_faults import FAULTS
 from reports.selftest.fault import INSIDE
+from tests.worlds.tiers import slowly
 
 PARALLELOGRAM = replace(
     fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source="Grashof's rule, equality"),
@@ -40,13 +41,15 @@ PLANTED = [n for n, each in FAULTS.items() if n not in NO_FAULT_THERE and each.k
 
 
 def places() -> Iterator[object]:
-    """Each fault in an engine, which are taken in turn; one inside an engine in each that can have
-    it. The others are slow."""
+    """Each third fault in an engine, which are taken in turn; one inside an engine in each that can
+    have it. The others are slow."""
     for number, name in enumerate(PLANTED):
         fault = FAULTS[name]
         for at, engine in enumerate(fault.engines):
-            first = fault.group in INSIDE or at == number % len(fault.engines)
-            yield pytest.param(name, engine, marks=[] if first else pytest.mark.slow)
+            turn, left_over = divmod(number, 3)
+            first = fault.group in INSIDE or (turn % len(fault.engines), 0) == (at, left_over)
+            reason = "the same rule in another engine, or of a fault like others"
+            yield (name, engine) if first else slowly(name, engine, reason=reason)
 
 
 @pytest.mark.parametrize(("name", "engine"), list(places()))
