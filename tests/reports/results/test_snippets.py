@@ -37,45 +37,22 @@ from tests.worlds.tiers import few
 from tests.worlds.workshop import DISTURBANCE
 
 STUDY = """
-scenes = ["fourbar-lecture-1"]
-steps_per_turn = [90, 360, 1440, 5760]
-
-[[variants]]
-engine = "mujoco"
-profile = "as-shipped"
-
-[[variants]]
-name = "stiff"
-engine = "mujoco"
-profile = "as-shipped"
-settings = { integrator = "implicitfast", solref_timeconst_steps = 2.0, solimp_dmin = 0.9999, solimp_dmax = 0.9999 }
-
-[[variants]]
-engine = "mujoco"
-profile = "tuned"
-
-[[variants]]
-engine = "pymunk"
-profile = "as-shipped"
-
-[[variants]]
-engine = "pymunk"
-profile = "tuned"
-
-[[variants]]
-engine = "exudyn"
-profile = "as-shipped"
-
-[[variants]]
-name = "trapezoidal"
-engine = "exudyn"
-profile = "tuned"
-settings = { integrator = "TrapezoidalIndex2" }
-
-[[variants]]
-engine = "exudyn"
-profile = "tuned"
-"""  # noqa: E501
+scenes: [fourbar-lecture-1]
+steps_per_turn: [90, 360, 1440, 5760]
+variants:
+  - {engine: mujoco, profile: as-shipped}
+  - name: stiff
+    engine: mujoco
+    profile: as-shipped
+    settings: {integrator: implicitfast, solref_timeconst_steps: 2.0,
+               solimp_dmin: 0.9999, solimp_dmax: 0.9999}
+  - {engine: mujoco, profile: tuned}
+  - {engine: pymunk, profile: as-shipped}
+  - {engine: pymunk, profile: tuned}
+  - {engine: exudyn, profile: as-shipped}
+  - {name: trapezoidal, engine: exudyn, profile: tuned, settings: {integrator: TrapezoidalIndex2}}
+  - {engine: exudyn, profile: tuned}
+"""
 PROFILES = {
     "mujoco": mujoco_settings.AS_SHIPPED,
     "pymunk": pymunk_settings.AS_SHIPPED,
@@ -95,7 +72,7 @@ def timed(_: object, cells: Sequence[tuple[Cell, float]], *__: object) -> list[o
 def store(tmp_path_factory: pytest.TempPathFactory) -> Stored:
     """A sweep of the lecture's four-bar."""
     folder = tmp_path_factory.mktemp("store")
-    study = folder.with_suffix(".toml")
+    study = folder.with_suffix(".yaml")
     study.write_text(STUDY, encoding="utf-8")
     quiet = Console(quiet=True)
     with in_this_process() as patch:
