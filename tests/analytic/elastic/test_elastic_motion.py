@@ -1,7 +1,9 @@
-"""Driven mechanisms with elastic links: the rigid limit, and how far the reference is trusted."""
+"""Driven mechanisms with elastic links: the rigid limit, how far the reference is trusted, instants
+and sizes of any kind, and the fastest of what they do."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -16,10 +18,12 @@ from analytic.elastic.discretisation import (
     Segments,
 )
 from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.sampled import bent, sampled
+from analytic.elastic.stiffness import fastest_rad_s
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.elastic import Shape
-from models.files import load_scene
+from models.files import load_scene, parse_scene
 from models.motion import Motion
 from models.scene import Scene
 from tests.analytic.elastic.driven import SHIPPED, fourbar, with_elastic
@@ -146,3 +150,79 @@ def test_chains_come_to_the_beam_with_order_2(counts: list[int]) -> None:
     order = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
     assert order == pytest.approx(2.0, abs=0.1)
     assert errors[-1] == pytest.approx(0.8 / counts[-1] ** 2, rel=0.05)
+
+
+SIMILAR = """
+name = "similar"
+source = "ours"
+[ground]
+points = {{ A = [0.0, 0.0], D = [{0}, 0.0] }}
+[links]
+crank = {{ bar = ["A", "B"], length_m = {1}, mass_kg = 0.4 }}
+coupler = {{ bar = ["B", "C"], length_m = {2}, mass_kg = 2.4 }}
+rocker = {{ bar = ["D", "C"], length_m = {3}, mass_kg = 0.5 }}
+[elastic.coupler]
+flexural_n_m2 = {4}
+[driver]
+link = "crank"
+speed_rad_s = 5.0
+start_deg = 200.0
+[start]
+shape = "periodic"
+[branch]
+C = 1
+"""
+
+
+def deflection(size: float, by: Discretisation) -> float:
+    """The largest over that size, of a four-bar of 0.84 of it whose frequency is the same."""
+    lengths = (0.84 * size, 0.28 * size, 0.56 * size, 0.62 * size)
+    scene = parse_scene(SIMILAR.format(*lengths, 8.0 * size**3), "similar")
+    motion = DrivenElasticMotion(scene, 1.0, by, "periodic", stiffened=True)
+    middle = motion.at(np.linspace(0.0, scene.driver.law.period_s, 20)).elastic["coupler"].middle
+    return float(np.abs(middle).max()) / size
+
+
+@pytest.mark.parametrize("by", [Elements(1), Segments(3)])
+def test_similar_mechanisms_of_any_size_bend_alike(by: Discretisation) -> None:
+    assert deflection(1e-4, by) == pytest.approx(deflection(1.0, by), rel=1e-6)
+
+
+@pytest.fixture(scope="module")
+def motion() -> DrivenElasticMotion:
+    return DrivenElasticMotion(load_scene("fourbar-elastic"), 1.0, Modes(1), "periodic", True)
+
+
+def test_some_at_a_time_and_in_any_order_it_is_the_same(
+    motion: DrivenElasticMotion, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("analytic.elastic.sampled.TOGETHER", 3)
+    time_s = np.array([0.7, 0.1, 0.3, 0.0, 0.9, 0.5, 0.2])
+    whole, each = motion.at(time_s), sampled(motion, time_s)
+    for found, wanted in (
+        (each.time_s, whole.time_s),
+        (each.forces.time_s, whole.forces.time_s),
+        (each.links["rocker"].alpha, whole.links["rocker"].alpha),
+        (each.points["C"].position, whole.points["C"].position),
+        (each.elastic["coupler"].middle, whole.elastic["coupler"].middle),
+        (each.forces.torque, whole.forces.torque),
+    ):
+        np.testing.assert_allclose(found, wanted, rtol=1e-12, atol=1e-13)
+
+
+def test_the_shape_goes_through_both_pins_and_the_middle(motion: DrivenElasticMotion) -> None:
+    time_s = np.array([0.1, 0.2])
+    shape = bent(motion, time_s, np.linspace(0.0, 1.0, 5))["coupler"]
+    assert np.max(np.abs(shape[:, [0, -1]])) < 1e-17
+    np.testing.assert_allclose(shape[:, 2], motion.at(time_s).elastic["coupler"].middle, rtol=1e-12)
+
+
+@pytest.mark.parametrize("damping_s", [1e-5, 1e-3])
+def test_damping_of_a_stiff_chain_is_faster_than_its_vibration(damping_s: float) -> None:
+    """Damping over stiffness leaves the modes what they are: each has its ratio of damping."""
+    scene, by = load_scene("fourbar-elastic"), Segments(8)
+    highest = fastest_rad_s(scene, by)
+    links = {n: replace(link, damping_s=damping_s) for n, link in scene.elastic.items()}
+    ratio = max(1.0, 0.5 * damping_s * highest)
+    fastest = highest * (ratio + math.sqrt(ratio**2 - 1.0))
+    assert fastest_rad_s(replace(scene, elastic=links), by) == pytest.approx(fastest, rel=1e-6)

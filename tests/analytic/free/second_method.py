@@ -63,6 +63,5 @@ def _stretch(free: MachineMotion, chart: Chart, now: float, end: float, state: A
 def _moved(old: Chart, new: Chart, state: Array) -> Array:
     """A coordinate and its rate in the chart of the other limit, by the driver's angle."""
     phi, slope, _ = (float(row[0]) for row in old.driver(state[:1]))
-    assert new.limit is not None
     u = math.sqrt(new.limit.side * (new.limit.driver_rad - phi))
     return np.array([u, slope * state[1] / (-2.0 * new.limit.side * u)])

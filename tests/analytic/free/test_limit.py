@@ -1,15 +1,17 @@
-"""A limit of the driver's angle, out to where it is no longer what is counted from."""
+"""A limit of the driver's angle: out to where it is no longer what is counted from, and beside the
+chart of another limit."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from analytic.free.doubt import _moved
 from analytic.free.limit_position import REACH
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
 from models.files import parse_scene
-from tests.analytic.free.mechanisms import fourbar
+from tests.analytic.free.mechanisms import fourbar, past_limits, released
 
 
 @pytest.mark.parametrize("k", [2, 10])
@@ -20,7 +22,6 @@ def test_a_limit_reaches_as_far_as_it_says_whatever_rounding_does(k: int) -> Non
     motion = release(scene, 0.02)
     assert isinstance(motion, MachineMotion)
     chart = motion.history.windows[0].chart
-    assert chart.limit is not None
     most = REACH * chart.limit.length_rad
     u = np.array([np.sqrt(most)])
     assert u[0] * u[0] > most
@@ -66,3 +67,19 @@ def test_a_link_whose_points_are_the_same_in_both_assemblies_tells_them_apart() 
     np.testing.assert_allclose(
         motion.beside(true).links["lever"].theta, true.links["lever"].theta, atol=1e-9
     )
+
+
+def test_a_state_is_the_same_in_the_chart_of_another_limit() -> None:
+    """Its acceleration too, so that no difference of that goes unseen where charts change."""
+    free = released(past_limits(), 0.9)
+    assert isinstance(free, MachineMotion)
+    history = free.history
+    changes = [first for _, first, _ in history.legs()][1:]
+    assert changes
+    for k in changes:
+        before, after = history.windows[k - 1], history.windows[k]
+        share = (before.end_s - before.start_s) / before.long_s
+        left = np.array(history.at(np.array([k - 1]), np.array([share])))
+        entered = np.array(history.at(np.array([k]), np.zeros(1)))
+        moved = _moved(before.chart, after.chart, left, entered[0])
+        assert moved[:, 0] == pytest.approx(entered[:, 0], rel=1e-9)

@@ -1,14 +1,19 @@
-"""The shipped scenes of free motion: a second method, the multibody form, energy and periods."""
+"""The shipped scenes of free motion: a second method, the multibody form, energy and periods, and
+what a kink costs."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from analytic.dyads.chunk import Chunk
+from analytic.free.integration import Integration
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.period import period
+from analytic.free.release import release
 from analytic.free.window_chain import ChainMotion
 from analytic.multibody.release_multibody import release_multibody
+from analytic.prepared import Prepared
 from models.array import Array
 from models.files import load_scene, shipped
 from models.window_chain import Chain
@@ -114,3 +119,29 @@ def test_the_swing_is_back_at_rest_after_its_periods(until_s: float) -> None:
     assert np.abs(theta - scene.driver.law.start_rad).max() < 1e-11
     late_s = omega / alpha
     assert np.abs(np.diff(late_s, prepend=0.0)).max() < 1e-12
+
+
+def test_a_kink_over_the_angle_asks_for_the_mechanism_about_twice(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two rounds of Newton's method; where the kinks are is asked of the driver alone."""
+    asked: list[int] = []
+    windows: list[int] = []
+    chunk, run = Prepared.chunk, Integration.run
+
+    def counted(self: Prepared, *given: object) -> Chunk:
+        asked.append(1)
+        return chunk(self, *given)  # type: ignore[arg-type]
+
+    def followed(self: Integration) -> object:
+        before = len(asked)
+        found = run(self)
+        windows.append(len(found.windows))
+        assert len(asked) - before < 3 * len(found.windows)
+        return found
+
+    monkeypatch.setattr(Prepared, "chunk", counted)
+    monkeypatch.setattr(Integration, "run", followed)
+    motion = release(load_scene("engine-flywheel"), 0.03001)
+    assert min(windows) > 35
+    assert np.isfinite(motion.at(np.array([0.03])).links["crank"].theta).all()
