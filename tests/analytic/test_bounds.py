@@ -20,10 +20,18 @@ from models.motion import Motion
 from models.scene import GROUND, Driver, Point, Scene
 from tests.analytic.chain import Chain, Solved, coordinates
 from tests.analytic.change_points.jets import Jet
-from tests.worlds.strategies import FORMS, Designed, mechanisms
+from tests.worlds.strategies import FORMS, OF_EACH_KIND, Designed, mechanisms
 from tests.worlds.tiers import few, slow, slowly
 
 TIMES = "an instant at which rounding adds up"
+SIX = [
+    "fourbar-lecture-1",
+    "slider-crank-offset",
+    "shaper",
+    "scotch-yoke",
+    "tangent",
+    "sixbar-watt",
+]
 EACH_KIND = "a form of each kind of dyad shows it"
 NOTHING = 1e-38
 """What is left of an error of the oracle itself."""
@@ -94,14 +102,14 @@ def test_error_stays_below_the_bound_in_every_scene(name: str, count: int) -> No
 
 
 @pytest.mark.parametrize("count", [4, slowly(100, reason=TIMES)])
-@pytest.mark.parametrize("name", shipped())
+@pytest.mark.parametrize("name", few(shipped(), SIX, "scenes of the same dyads"))
 def test_error_stays_below_the_bound_after_ten_thousand_turns(name: str, count: int) -> None:
     scene = load_scene(name)
     assert shares(scene, random_times(scene, count, 1e4)).max() <= 1.0
 
 
 @pytest.mark.parametrize("count", [4, slowly(100, reason=TIMES)])
-@pytest.mark.parametrize("name", shipped())
+@pytest.mark.parametrize("name", few(shipped(), SIX, "scenes of the same dyads"))
 def test_error_stays_below_the_bound_a_million_lengths_away(name: str, count: int) -> None:
     scene = load_scene(name)
     far = 1e6 * scene.longest_m
@@ -147,9 +155,6 @@ def test_error_stays_below_the_bound_in_every_form_of_dyad(form: str, data: st.D
 def _hold(designed: Designed) -> None:
     scene = designed.scene
     assert shares(scene, random_times(scene, 4, 1.0)).max() <= 1.0
-
-
-OF_EACH_KIND = list({form[:3]: form for form in FORMS}.values())
 
 
 @pytest.mark.parametrize("form", few(FORMS, OF_EACH_KIND, EACH_KIND))

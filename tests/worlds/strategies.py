@@ -34,6 +34,8 @@ SWINGS = [0.6 * 0.5**k for k in range(8)]
 FORMS = tuple(LAYOUTS)
 """Kind of the dyad and how it slides: a block; a link that slides; a link that is the guide of what
 slides (for PRP the two ends, for RPP the inner pair and the outer one)."""
+OF_EACH_KIND = list({form[:3]: form for form in FORMS}.values())
+"""The last form of each kind."""
 
 
 @dataclass(frozen=True)

@@ -66,9 +66,18 @@ def residual(row: LegRow, one: Assembly) -> float:
     return (off * complex(*row.normal).conjugate()).real
 
 
+SEEDS = {
+    ("RR", "RR", "RR"): (47,),
+    ("RR", "RR", "PR"): (31,),
+    ("RR", "RR", "RP"): (44,),
+    ("RR", "PR", "RP"): (70,),
+}
+"""Of drawn rows with as many assemblies as there can be, where these are rare."""
+
+
 @pytest.mark.parametrize("kinds", MOST, ids="-".join)
 def test_no_kind_has_more_and_each_can_have_as_many_as_said(kinds: Kinds) -> None:
-    numbers = {len(assemblies(drawn(kinds, seed))) for seed in range(150)}
+    numbers = {len(assemblies(drawn(kinds, seed))) for seed in (*range(16), *SEEDS.get(kinds, ()))}
     assert max(numbers) == MOST[kinds]
     assert all(number % 2 == MOST[kinds] % 2 for number in numbers)
 

@@ -25,10 +25,10 @@ from models.files import load_scene, shipped
 from models.motion import Motion
 from models.scene import Scene
 from tests.analytic.chain import coordinates
-from tests.worlds.strategies import FORMS, Designed, examples, mechanisms, swing_times
-from tests.worlds.tiers import slowly
+from tests.worlds.strategies import FORMS, OF_EACH_KIND, Designed, examples, mechanisms, swing_times
+from tests.worlds.tiers import few, slowly
 
-SAMPLES = 25
+SAMPLES = 11
 ROUNDINGS = 30.0
 
 
@@ -131,7 +131,9 @@ def _hold_to_newton(designed: Designed) -> None:
     assert disagreement(scene, closed, newton) <= 1.0
 
 
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize(
+    "form", few(FORMS, OF_EACH_KIND, "test_bounds.py has every form of the closed form")
+)
 @settings(max_examples=2, deadline=None, derandomize=True, database=None)
 @given(data=st.data())
 def test_every_form_of_dyad_agrees_with_newton(form: str, data: st.DataObject) -> None:

@@ -168,7 +168,7 @@ def test_a_fault_in_friction_makes_them_disagree() -> None:
 
 def test_without_a_coefficient_the_forces_are_those_without_friction() -> None:
     """And with a small one they are near it, by as much."""
-    for number in range(0, 40, 4):
+    for number in range(0, 40, 8):
         scene, _ = rubbed_mechanism(number)
         time_s = np.linspace(0.01, 1.0, 7) * scene.driver.law.period_s
         bare = kinetostatics.forces(replace(scene, friction={}), time_s)

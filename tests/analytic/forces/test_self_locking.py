@@ -19,6 +19,7 @@ from models.friction import ConstantFriction, CoulombFriction
 from models.laws import Accelerating, Oscillating
 from models.scene import Driver, Scene
 from tests.worlds.rubbing import rubbed_mechanism
+from tests.worlds.tiers import slowly
 
 STEEP = """
 name = "slider-crank-self-locking"
@@ -81,7 +82,13 @@ def test_a_slider_crank_locks_where_the_rod_leans_by_the_complement(mu: float) -
     assert found[0].words == f"locks itself from {ends[0]:.6g} to {ends[1]:.6g} deg"
 
 
-@pytest.mark.parametrize(("at_b", "at_c"), [(0.0, 0.01), (0.01, 0.0), (0.02, 0.01)])
+@pytest.mark.parametrize(
+    ("at_b", "at_c"),
+    [
+        (0.02, 0.01),
+        *(slowly(*each, reason="one of the two pins") for each in ((0.0, 0.01), (0.01, 0.0))),
+    ],
+)
 def test_pins_that_rub_move_the_limit_by_the_lean_of_the_tangent(at_b: float, at_c: float) -> None:
     """The rod's force runs along a tangent of both friction circles, which leans from the rod by
     asin((c_B +- c_C)/l), and that counts in place of the rod's angle. Beyond 90 deg the rod turns

@@ -13,6 +13,7 @@ from analytic.synthesis.guided_body import Dyad
 from analytic.synthesis.pose import Pose
 from models.errors import CrankcheckError
 from tests.analytic.assur.homotopy import Equation, finite_solutions
+from tests.worlds.tiers import few
 
 W, W_BAR, M, M_BAR = (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)
 ONE, W_M_BAR, W_BAR_M = (0, 0, 0, 0), (1, 0, 0, 1), (0, 1, 1, 0)
@@ -57,7 +58,7 @@ def spread(poses: list[Pose], dyad: Dyad) -> float:
     return (max(radii) - min(radii)) / (1.0 + max(radii))
 
 
-@pytest.mark.parametrize("part", range(4))
+@pytest.mark.parametrize("part", few(range(40), range(1), "random positions"))
 def test_five_positions_have_all_their_cranks_and_no_others(part: int) -> None:
     counts = set()
     for number in range(25 * part, 25 * part + 25):

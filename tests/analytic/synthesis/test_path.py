@@ -229,7 +229,7 @@ def test_what_is_no_path_is_refused(ask, told: str) -> None:  # type: ignore[no-
 @few_starts
 @pytest.mark.parametrize("timed", [True, False])
 def test_a_transmission_angle_is_kept_at_the_cost_of_the_distance(timed: bool, starts: int) -> None:
-    turn = math.tau * (np.arange(24) + 0.1) / 24
+    turn = math.tau * (np.arange(14) + 0.1) / 14
     heart = 16 * np.sin(turn) ** 3 + 1j * (13 * np.cos(turn) - 5 * np.cos(2 * turn))
     crank = tuple(turn.tolist()) if timed else None
     task = PathTask(tuple(heart.tolist()), crank, closed=True)

@@ -46,7 +46,7 @@ def test_a_turn_that_is_claimed_wrongly_is_a_fault() -> None:
 
 @pytest.mark.parametrize(
     "ratio",
-    few([1.000001, 2.9, 2.99, 2.995], [1.000001, 2.995], "there nothing is near"),
+    few([1.000001, 2.9, 2.99, 2.995], [2.995], "the other limit is no harder"),
 )
 def test_ratios_near_their_limits_keep_their_digits(ratio: float) -> None:
     task = StrokeTask(**HEAD, stroke_m=0.1, form="offset", time_ratio=ratio)

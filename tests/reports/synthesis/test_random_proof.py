@@ -24,7 +24,7 @@ LONGEST, OF_SIX_BARS = 4.0, 12.0
 """Of a link of what carries a body, over the least distance of two pins of one."""
 CARRIES = ("two_positions", "three_positions", "given_pivots", "four_positions", "five_positions",
            "driving_dyad")  # fmt: skip
-FIRST = {"given_pivots": 2002, "four_positions": 2004, "five_positions": 2001}
+FIRST = {"given_pivots": 2002, "four_positions": 2004, "five_positions": 2001, "driving_dyad": 2001}
 """After them a task that is easy comes at once."""
 ENGINES = ("mujoco", "pymunk", "exudyn")
 
