@@ -28,7 +28,7 @@ from tests.reports.store.damages import CASES, QUICK, cases, cut, first
 
 BY_CHANCE = ["wall_s", "logged_us_per_step", "run_on"]
 TIMES = ["us_per_step", "us_per_step_median", "us_per_step_a", "us_per_step_b", "s_per_turn"]
-MENDED = {"swapped", "twice", "cut timings", "no manifest", "pipe", "manifest folder"}
+MENDED = {"swapped", "twice", "cut timings", "no manifest", "pipe", "whole part", "timings file"}
 Sweep = Callable[..., int]
 
 

@@ -64,7 +64,10 @@ def test_a_coarser_step_misses_the_target(two: Bench) -> None:
     assert max(error(two, index, coarser) for index in (0, 1)) > 1e-4
 
 
-def test_settings_with_a_floor_reach_nothing_and_say_how_far_they_are(two: Bench) -> None:
+def test_settings_with_a_floor_reach_nothing_and_say_how_far_they_are(
+    two: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("reports.tune.attempt.MOST_SEARCHED", 8000)
     soft = {**SETTINGS, "solref_timeconst_steps": 0.0, "solimp_dmin": 0.9, "solimp_dmax": 0.9}
     found = two.attempt(soft, None)
     assert not found.reached
@@ -91,6 +94,8 @@ def test_a_run_that_takes_too_long_costs_one_attempt() -> None:
     assert found.timed_out
     with pytest.raises(LostError, match="timeout"):
         bench.row(bench.goal.scenes[0], SETTINGS, 90)
+    bench.close()
+    assert bench._isolated.closed
 
 
 def test_settings_that_the_engine_refuses_cost_one_attempt(two: Bench) -> None:
