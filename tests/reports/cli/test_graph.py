@@ -5,17 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner, Result
+from typer.testing import Result
 
-from reports.cli import app
-
-
-def crankcheck(*arguments: str) -> Result:
-    return CliRunner().invoke(app, [*arguments])
+from tests.worlds.command_line import crank, refused
 
 
-def graph(*arguments: str) -> Result:
-    return crankcheck("graph", "fourbar-lecture-1", "--of", "rocker", *arguments)
+def graph(*arguments: object) -> Result:
+    return crank("graph", "fourbar-lecture-1", "--of", "rocker", *arguments)
 
 
 def test_without_a_file_the_table_is_shown() -> None:
@@ -31,9 +27,9 @@ def test_without_a_file_the_table_is_shown() -> None:
 def test_orders_are_fitted_and_the_log_of_an_engine_ends_in_its_own_error(tmp_path: Path) -> None:
     # That an engine's log goes through: `run` writes it, and names and instants are its own.
     log, sheet = tmp_path / "run.csv", tmp_path / "orders.svg"
-    options = ("--engine", "pymunk", "--profile", "as-shipped", "--turns", "1", "-o", str(log))
-    assert crankcheck("run", "fourbar-lecture-1", *options).exit_code == 0
-    result = graph("--divisions", "24,48,96", "--log", str(log), "-o", str(sheet))
+    options = ("--engine", "pymunk", "--profile", "as-shipped", "--turns", "1", "-o", log)
+    assert crank("run", "fourbar-lecture-1", *options).exit_code == 0
+    result = graph("--divisions", "24,48,96", "--log", log, "-o", sheet)
     assert result.exit_code == 0
     first, *_, last, floor = (line.split() for line in result.output.splitlines())
     assert first[0] == f"{sheet}:"
@@ -45,11 +41,7 @@ def test_orders_are_fitted_and_the_log_of_an_engine_ends_in_its_own_error(tmp_pa
 
 def test_of_what_turns_evenly_there_are_no_errors_to_draw(tmp_path: Path) -> None:
     sheet = tmp_path / "orders.svg"
-    result = crankcheck(
-        "graph", "fourbar-lecture-1", "--of", "crank", "--divisions", "12,24", "-o", str(sheet)
-    )
-    assert result.exit_code == 2
-    assert "no errors to draw" in result.output
+    refused(graph("--of", "crank", "--divisions", "12,24", "-o", sheet), "no errors to draw")
     assert not sheet.exists()
 
 
@@ -70,6 +62,4 @@ def test_of_what_turns_evenly_there_are_no_errors_to_draw(tmp_path: Path) -> Non
     ],
 )
 def test_what_can_not_be_asked_is_refused(arguments: tuple[str, ...], told: str) -> None:
-    result = graph(*arguments)
-    assert result.exit_code == 2
-    assert told in result.output
+    refused(graph(*arguments), told)

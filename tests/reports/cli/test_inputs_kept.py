@@ -8,10 +8,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 from models.files import shipped
-from reports.cli import app
+from tests.worlds.command_line import crank, flat
 
 LOG = "time_s,rocker_deg\n0,110\n0.01,111\n0.02,112\n0.03,113\n"
 COARSE = ["--steps-per-turn", "90", "--turns", "1"]
@@ -104,9 +103,9 @@ CASES: dict[str, tuple[Sequence[str], str]] = {
 def test_a_file_that_is_read_or_written_twice_is_refused(name: str, place: Path) -> None:
     arguments, message = CASES[name]
     before = files(place)
-    result = CliRunner().invoke(app, list(arguments), catch_exceptions=False)
+    result = crank(*arguments)
     assert result.exit_code == 2, result.output
-    told = " ".join(result.stderr.split())
+    told = flat(result.stderr)
     assert re.search(message, told), told
     assert files(place) == before
 

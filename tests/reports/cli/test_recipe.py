@@ -6,17 +6,16 @@ import re
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from reports.cli import app
+from tests.worlds.command_line import crank
 
 
 def test_the_program_is_shown_or_written(tmp_path: Path) -> None:
-    shown = CliRunner().invoke(app, ["recipe", "forces", "--engine", "mujoco"])
+    shown = crank("recipe", "forces", "--engine", "mujoco")
     assert shown.exit_code == 0
     compile(shown.stdout, "shown", "exec")
     path = tmp_path / "forces.py"
-    told = CliRunner().invoke(app, ["recipe", "forces", "--engine", "mujoco", "-o", str(path)])
+    told = crank("recipe", "forces", "--engine", "mujoco", "-o", path)
     assert told.exit_code == 0
     assert path.read_text(encoding="utf-8") == shown.stdout
 
@@ -36,8 +35,11 @@ def test_the_program_is_shown_or_written(tmp_path: Path) -> None:
         ([], "Missing option '--engine'"),
     ],
 )
-def test_what_it_cannot_show_is_one_message_and_exit_2(options: list[str], message: str) -> None:
-    done = CliRunner().invoke(app, ["recipe", "forces", *options], env={"NO_COLOR": "1"})
+def test_what_it_cannot_show_is_one_message_and_exit_2(
+    options: list[str], message: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    done = crank("recipe", "forces", *options)
     assert done.exit_code == 2
     assert re.search(message, done.stderr + done.stdout), done.stderr
     assert "Traceback" not in done.stderr

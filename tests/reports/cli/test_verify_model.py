@@ -10,13 +10,10 @@ from xml.etree import ElementTree
 
 import pandas as pd
 import pytest
-from click.testing import Result
 from rich.console import Console
-from typer.testing import CliRunner
 
 from models.errors import CrankcheckError
 from models.files import load_scene
-from reports.cli import app
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands import verify_model
 from reports.cli.commands.verify_model import IN_FOLDER
@@ -24,6 +21,7 @@ from reports.own_model.account import Account, checked_line, read_here
 from reports.own_model.checked_line import CheckedLine
 from reports.own_model.judged import JudgedModel
 from reports.own_model.running import judged_lines
+from tests.worlds.command_line import crank, refused
 from tests.worlds.own_models import SLIDER_CRANK
 
 DRIVEN = ["verify", "--mjcf", "engine.xml", "--drive", "motor", "--speed", "10", "--turns", "1"]
@@ -47,10 +45,6 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     Path("parts/option.xml").write_text('<mujoco><option timestep="0.002"/></mujoco>')
     Path("whole.xml").write_text(INCLUDING)
     return tmp_path
-
-
-def ran(*arguments: str) -> Result:
-    return CliRunner().invoke(app, arguments, catch_exceptions=False)
 
 
 REFUSED: dict[str, tuple[Sequence[str], str]] = {
@@ -87,7 +81,7 @@ REFUSED: dict[str, tuple[Sequence[str], str]] = {
 def test_what_can_not_be_asked_is_refused_before_anything_is_written(name: str) -> None:
     arguments, message = REFUSED[name]
     before = sorted(Path().rglob("*"))
-    result = ran(*arguments)
+    result = crank(*arguments)
     assert result.exit_code == 2, result.output
     told = " ".join(result.stderr.split())
     assert told.count("crankcheck: ") == 1
@@ -102,22 +96,17 @@ def test_what_can_not_be_asked_is_refused_before_anything_is_written(name: str) 
      "--memory-gb 3"],
 )  # fmt: skip
 def test_what_is_asked_of_models_alone_is_refused_of_scenes(option: str) -> None:
-    result = ran("verify", "fourbar-lecture-1", *option.split())
-    assert result.exit_code == 2
-    assert f"{option.split()[0]}: it is of a model of your own; name that with --mjcf" in (
-        result.stderr
-    )
+    result = crank("verify", "fourbar-lecture-1", *option.split())
+    refused(result, f"{option.split()[0]}: it is of a model of your own; name that with --mjcf")
     assert not Path("a.toml").exists()
 
 
 def test_a_joint_without_a_model_is_refused_with_the_cure() -> None:
-    result = ran("verify", "fourbar-lecture-1", "--drive", "motor")
-    assert result.exit_code == 2
-    assert "with --mjcf FILE" in result.stderr
+    refused(crank("verify", "fourbar-lecture-1", "--drive", "motor"), "with --mjcf FILE")
 
 
 def test_every_output_is_written_and_holds_what_it_should() -> None:
-    result = ran(*DRIVEN, "-o", "out", "--write-scene", "mine.toml", "--json", "mine.json")
+    result = crank(*DRIVEN, "-o", "out", "--write-scene", "mine.toml", "--json", "mine.json")
     assert result.exit_code == 1, result.output
     out = Path("out")
     assert {path.name for path in out.iterdir()} == set(IN_FOLDER)
@@ -165,7 +154,7 @@ def test_what_can_not_be_a_diff_is_in_a_text_and_no_diff_is_left(text: str, why:
     Path("engine.xml").write_bytes(text.encode("latin-1"))
     Path("out").mkdir()
     Path("out/recommended.diff").write_text("--- of an earlier run\n")
-    assert ran(*DRIVEN, "--no-convergence", "-o", "out").exit_code == 1
+    assert crank(*DRIVEN, "--no-convergence", "-o", "out").exit_code == 1
     assert Path("out/recommended.diff").read_text() == ""
     assert Path("out/recommended.txt").read_text().startswith(f"Recommended:\n{why}")
 
@@ -176,16 +165,16 @@ def test_a_second_run_replaces_the_first_and_leaves_the_rest() -> None:
     (out / "mine.txt").write_text("kept")
     for name in IN_FOLDER:
         (out / name).write_text("of an earlier run")
-    assert ran(*DRIVEN, "--no-convergence", "-o", "out").exit_code == 1
+    assert crank(*DRIVEN, "--no-convergence", "-o", "out").exit_code == 1
     assert {path.name for path in out.iterdir()} == {*IN_FOLDER, "mine.txt"}
     assert not any((out / name).read_bytes() == b"of an earlier run" for name in IN_FOLDER)
 
 
 def test_two_such_folders_can_be_compared() -> None:
-    ran(*DRIVEN, "--no-convergence", "-o", "old")
+    crank(*DRIVEN, "--no-convergence", "-o", "old")
     Path("engine.xml").write_text(SLIDER_CRANK.replace("<option", '<option solver="PGS"'))
-    ran(*DRIVEN, "--no-convergence", "-o", "new")
-    result = ran("diff", "old", "new")
+    crank(*DRIVEN, "--no-convergence", "-o", "new")
+    result = crank("diff", "old", "new")
     assert result.exit_code in (0, 1), result.output
     assert "0 new, 0 missing" in result.stdout
 
@@ -193,7 +182,7 @@ def test_two_such_folders_can_be_compared() -> None:
 def test_steps_in_a_turn_and_a_step_of_its_own_are_taken() -> None:
     for option, dt_s in (("--steps-per-turn", 0.000872664625997), ("--dt", 0.001)):
         given = "720" if option == "--steps-per-turn" else "0.001"
-        result = ran(*DRIVEN, "--no-convergence", option, given, "--json", "a.json")
+        result = crank(*DRIVEN, "--no-convergence", option, given, "--json", "a.json")
         assert result.exit_code == 1, result.output
         cell = json.loads(Path("a.json").read_text())["cells"][0]
         assert cell["dt_s"] == pytest.approx(dt_s, rel=1e-12)
@@ -204,14 +193,14 @@ def test_a_full_disk_costs_the_file_and_not_the_verdict(monkeypatch: pytest.Monk
         raise CrankcheckError(f"{path}: can not be written: no space left")
 
     monkeypatch.setattr(verify_model, "write", full)
-    result = ran(*DRIVEN, "--no-convergence", "--json", "a.json")
+    result = crank(*DRIVEN, "--no-convergence", "--json", "a.json")
     assert result.exit_code == 2
     assert "OUT OF TOLERANCE as written" in result.stdout
     assert "a.json: can not be written" in result.stderr
 
 
 def test_the_help_has_a_part_for_models() -> None:
-    text = " ".join(ran("verify", "-h").stdout.split())
+    text = " ".join(crank("verify", "-h").stdout.split())
     own = text[text.index("A model of your own") :]
     assert text.index("--tol") < text.index("A model of your own")
     for option in ("--mjcf", "--speed", "--key", "--start", "--branch", "--write-scene"):
