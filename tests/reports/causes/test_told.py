@@ -52,23 +52,11 @@ def mended(case: Case, column: str, correction: Mapping[str, object]) -> float:
 
 
 MENDED = (
-    "two_swapped",
-    "three_swapped",
-    "rate_and_place_swapped",
-    "of_another_link",
-    "of_a_joint",
-    "another_kind",
-    "another_unit",
-    "another_sign",
-    "another_zero",
-    "another_sign_and_zero",
-    "one_late",
-    "one_very_late",
-    "rates_half_a_sample_late",
-    "all_late",
-    "from_behind",
+    "two_swapped", "three_swapped", "rate_and_place_swapped", "of_another_link", "of_a_joint",
+    "another_kind", "another_unit", "another_sign", "another_zero", "another_sign_and_zero",
+    "one_late", "one_very_late", "rates_half_a_sample_late", "all_late", "from_behind",
     "wrapped_angle",
-)
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("fault", MENDED)

@@ -1,13 +1,19 @@
-"""Error series: whole turns, size, differencing."""
+"""Error series: whole turns, size, differencing; and the tracks of what a run logged and lacks."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from models.scene import Scene
+from reports.compare.beside import Truth
 from reports.compare.series import angle_error, length, rate, second_rate, size
+from reports.compare.tracks import tracks
+from sim.engine import Run
 
 
 def test_whole_turns_at_the_start_are_no_error() -> None:
@@ -67,3 +73,26 @@ def test_differences_are_exact_for_a_parabola_and_drop_both_ends() -> None:
     series = 2.0 + 3.0 * time_s + 4.0 * time_s**2
     assert rate(series, 0.1) == pytest.approx(3.0 + 8.0 * time_s[1:-1])
     assert second_rate(series, 0.1) == pytest.approx(np.full(9, 8.0))
+
+
+def test_what_a_run_lacks_is_one_nan_for_all_its_samples(
+    fourbar: Scene, disturbed: Callable[..., Run]
+) -> None:
+    run = disturbed(fourbar)
+    rocker = run.motion.links["rocker"]
+    lacking = {
+        "coupler": rocker,
+        "rocker": replace(rocker, omega=np.full_like(rocker.omega, np.nan)),
+    }
+    part = replace(run, motion=replace(run.motion, links=lacking))
+    reference = Truth(fourbar).at(run.motion.time_s)
+    errors = {
+        track.body: track.error
+        for track in tracks(fourbar, part, reference, ("velocity",))
+        if track.body_kind == "link"
+    }
+    assert errors["coupler"].strides == (8,)
+    for body in ("crank", "rocker"):
+        assert errors[body].shape == run.motion.time_s.shape
+        assert errors[body].strides == (0,)
+        assert np.isnan(errors[body]).all()

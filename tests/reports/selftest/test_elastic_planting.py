@@ -1,4 +1,4 @@
-"""What is planted in elastic links is what is meant, and what need not be seen of it is not.
+"""What is planted in elastic links and beams is what is meant, and what need not be seen is not.
 
 That each fault is caught by its rule and its size of 0 is not, `test_faults.py` says of all kinds.
 """
@@ -13,11 +13,20 @@ import pytest
 from models.springs import PinSpring
 from reports.judge.cell import check, examined
 from reports.selftest.all_faults import FAULTS, chosen_faults
-from reports.selftest.elastic_runs import BENT, elastic_cell, truth_of_chain
+from reports.selftest.elastic_runs import (
+    BEAM_RUNS,
+    BENT,
+    elastic_cell,
+    truth_of_chain,
+    truth_of_given,
+)
 from reports.selftest.logs import moved
 from reports.selftest.segment_changes import (
     as_corrected,
     at_its_ends,
+    heavy_rocker,
+    longer,
+    modulus_and_mass,
     of_as_many_springs,
     segments,
     springs,
@@ -70,6 +79,26 @@ def test_a_rod_has_a_third_of_the_inertia_of_its_mass_in_two_ends() -> None:
     assert part.inertia_kg_m2 == pytest.approx(part.mass_kg * length**2 / 4.0)
 
 
+def test_another_machine_differs_in_what_its_fault_says_and_in_nothing_else() -> None:
+    """Of links that are let go, whose runs are slow, and of the elastic scene itself."""
+    last = list(GIVEN.links)[-1]
+    rod, heavy = GIVEN.links[last], heavy_rocker(GIVEN, 0.01).links[last]
+    assert (heavy.mass_kg, heavy.inertia_kg_m2) == pytest.approx(
+        (1.01 * rod.mass_kg, 1.01 * rod.inertia_kg_m2)
+    )
+    assert heavy_rocker(GIVEN, 0.0) == GIVEN
+    ((name, own),) = CELL.scene.elastic.items()
+    link, changed = CELL.scene.links[name], longer(CELL.scene, 0.5).links[name]
+    assert max(changed.points.values()) == pytest.approx((1.5 * 0.75, 0.0))
+    assert changed.centre_m == pytest.approx((1.5 * link.centre_m[0], 0.0))
+    assert changed.mass_kg == link.mass_kg
+    soft = modulus_and_mass(CELL.scene, 0.25)
+    assert soft.elastic[name].flexural_n_m2 == pytest.approx(own.flexural_n_m2 / 1.25)
+    assert soft.links[name].mass_kg == pytest.approx(1.25 * link.mass_kg)
+    for change in (longer, modulus_and_mass):
+        assert change(CELL.scene, 0.0) == CELL.scene
+
+
 def test_a_moved_node_starts_with_its_segments_together() -> None:
     options = {"dt_s": CELL.dt_s, "steps": 8, "every": 1}
     start = truth_of_chain(CELL.scene).start
@@ -79,3 +108,22 @@ def test_a_moved_node_starts_with_its_segments_together() -> None:
     none = moved(plant(0.0)(GIVEN, start, ENGINE, "tuned", **options))
     sound = moved(run(GIVEN, start, ENGINE, "tuned", **options))
     assert np.array_equal(none.links["coupler-1"].theta, sound.links["coupler-1"].theta)
+
+
+BEAM_ENGINE = "exudyn"
+BEAMS = [
+    fault.name for fault in chosen_faults((), (BEAM_ENGINE,), "elastic") if fault.kind == "beam"
+]
+
+
+def test_without_a_fault_every_rule_passes_of_beams() -> None:
+    cell = elastic_cell(BENT, BEAM_ENGINE, runs=BEAM_RUNS)
+    assert cell.springs == "beam"
+    assert truth_of_given(cell.given).given.beams
+    assert passes(check(cell))
+
+
+def test_an_engine_without_beams_has_none_of_their_faults() -> None:
+    assert len(BEAMS) >= 9
+    for engine in ("mujoco", "pymunk"):
+        assert not any(FAULTS[name].possible(engine) for name in BEAMS)
