@@ -6,11 +6,14 @@ import math
 import pickle
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 import crankcheck
 from reports.drawing.svg import svg
+from tests.worlds.in_process import Here
 from tests.worlds.own_models import CROWDED, FACTS, SLIDER_CRANK, judged
+from tests.worlds.tiers import slow
 
 
 @pytest.fixture(scope="module")
@@ -20,10 +23,24 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+def checked(model: Path) -> crankcheck.ModelVerdict:
+    return crankcheck.check_model(model, "motor", -10.0, turns=0.5, converge=False)
+
+
 @pytest.fixture(scope="module")
 def verdict(model: Path) -> crankcheck.ModelVerdict:
-    """Read and run in processes apart, whose start takes most of the time: as a user has it."""
-    return crankcheck.check_model(model, "motor", -10.0, turns=0.5, converge=False)
+    """Read and run in this process."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("reports.own_model.account.Isolated", Here)
+        patch.setattr("reports.own_model.running.Isolated", Here)
+        return checked(model)
+
+
+@slow("a second for the start of processes, as a user has it")
+def test_processes_apart_give_the_same(model: Path, verdict: crankcheck.ModelVerdict) -> None:
+    apart = checked(model)
+    pd.testing.assert_frame_equal(apart.frame(), verdict.frame())
+    assert apart.patch == verdict.patch
 
 
 def test_it_is_a_value_with_its_verdict_lines_scene_and_diff(
