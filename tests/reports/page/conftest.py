@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 
+import pandas as pd
 import pytest
 from playwright.sync_api import Browser, sync_playwright
 from rich.console import Console
@@ -72,6 +74,24 @@ def small(small_folder: Path) -> Stored:
     return read_store(small_folder)
 
 
+def part_of(stored: Stored, keep: pd.Series) -> Stored:
+    """The store with some of its cells."""
+    found = replace(stored, cells=stored.cells[keep].reset_index(drop=True))
+    vars(found)["_traces"] = stored._traces
+    return found
+
+
+@pytest.fixture(scope="session")
+def tiny(small: Stored) -> Stored:
+    """One line of it, untimed: three cells of one scene in one engine."""
+    cells = small.cells
+    line = (cells["scene"] == "fourbar-lecture-1") & (cells["engine"] == "pymunk")
+    found = part_of(small, line & (cells["variant"] == "tuned"))
+    times = [c for c in cells if c.startswith("us_per_step") or c == "s_per_turn"]
+    found.cells[times] = float("nan")
+    return found
+
+
 @pytest.fixture(scope="session")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     """Writes a page into a file of its own."""
@@ -109,9 +129,14 @@ def hard_page(hard_matrix: Matrix, written: Callable[[str], Path]) -> Path:
 
 
 @pytest.fixture(scope="session")
-def both_page(small: Stored, hard_matrix: Matrix, written: Callable[[str], Path]) -> Path:
-    """The page of the small store with the hard cases beside it, as a file."""
-    return written(page(small, hard_matrix))
+def tiny_page(tiny: Stored, written: Callable[[str], Path]) -> Path:
+    return written(page(tiny))
+
+
+@pytest.fixture(scope="session")
+def both_page(tiny: Stored, hard_matrix: Matrix, written: Callable[[str], Path]) -> Path:
+    """The page of the tiny store with the hard cases beside it, as a file."""
+    return written(page(tiny, hard_matrix))
 
 
 def chromium() -> str:

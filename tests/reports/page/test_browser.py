@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Locator, Page
 
-from reports.page.build import page
-from reports.store.reader import Stored
 from tests.reports.page.conftest import chromium
 from tests.reports.page.tab import Tab
 from tests.worlds.tiers import slow
@@ -322,14 +320,8 @@ def test_no_error_and_no_request_in_a_whole_visit_by_phone(phone: Tab, small_pag
 
 
 @slow("a section that has less to show is read as text by `test_page`")
-def test_a_page_without_times_and_with_one_scene_works(
-    wide: Tab, small: Stored, written: Callable[[str], Path]
-) -> None:
-    cells = small.cells[(small.cells["scene"] == "shaper") & (small.cells["engine"] == "pymunk")]
-    times = [c for c in cells if c.startswith("us_per_step") or c == "s_per_turn"]
-    untimed = cells.assign(**dict.fromkeys(times, float("nan"))).reset_index(drop=True)
-    found = Stored(small.folder, small.manifest, untimed, small.timings)
-    wide.open(written(page(found)), *SECTIONS)
+def test_a_page_without_times_and_with_one_scene_works(wide: Tab, tiny_page: Path) -> None:
+    wide.open(tiny_page, *SECTIONS)
     assert not wide.page.locator("#precision-cost").is_visible()
     assert traces(wide.page, "precision-chart") == {"pymunk tuned": True}
     assert wide.said == []

@@ -44,7 +44,7 @@ def bent(tmp_path_factory: pytest.TempPathFactory) -> Stored:
         engines=("mujoco",),
         profiles=("tuned",),
         segments="3,4",
-        steps_per_turn="720,1440",
+        steps_per_turn="360,720",
         turns=1.0,
         jobs=1,
     )
@@ -91,7 +91,7 @@ def test_what_is_rigid_keeps_its_sections_without_what_bends(small: Stored, bent
     section = SECTIONS["convergence"](report)
     assert section is not None
     assert "segments" not in json.dumps(section.embedded, default=list)
-    assert "elastic" in sections(page(report.stored))
+    assert SECTIONS["elastic"](report) is not None
 
 
 def test_the_course_of_the_beam_is_that_of_the_engine_less_its_error(bent: Stored) -> None:

@@ -13,6 +13,7 @@ from models.files import load_scene
 from reports.face.scene_report import elastic_page_of
 from reports.page.scene_sections.elastic import factors
 from tests.reports.page.tab import PHONE, WIDE, Tab
+from tests.worlds.tiers import slowly
 
 COUPLER = "#motion-picture .overlays .link:nth-child(2)"
 
@@ -26,7 +27,13 @@ def path(written: Callable[[str], Path]) -> Path:
     return written(elastic_page_of(motion))
 
 
-@pytest.mark.parametrize(("size", "width"), [("wide", WIDE["width"]), ("phone", PHONE["width"])])
+@pytest.mark.parametrize(
+    ("size", "width"),
+    [
+        ("phone", PHONE["width"]),
+        slowly("wide", WIDE["width"], reason="what fits a phone fits a computer"),
+    ],
+)
 def test_a_page_bends_its_links_by_the_factor_that_is_chosen(
     path: Path, size: str, width: int, request: pytest.FixtureRequest
 ) -> None:

@@ -26,6 +26,7 @@ from reports.store.reader import read_store
 from tests.reports.page.tab import Tab
 from tests.worlds.fuzzing import COMMANDS, attempt
 from tests.worlds.scene_files import toml
+from tests.worlds.tiers import few, slowly
 
 NASTY = (
     "=1+cmd|' /C calc'!A0 </script><script>window.hacked = 1</script><!-- --> -- ]]> <b>&amp; \" ' "
@@ -38,6 +39,11 @@ FILES = (
     "\u0645\u0631\u062d\u0628\u0627", "=1+1", "CON", "\\..\\x",
 )  # fmt: skip
 """Names of files, without the ending: what a file system takes, but for the slash."""
+WORST = {
+    "<script>alert(1)<!--", "[bold]", "-o", "\u202egnp", "a\nb", "a\x1b[2Jb",
+    os.fsdecode(b"\xff\xfe"), "x" * 240,
+}  # fmt: skip
+LIKE = "another sign of the same kind: of tags, styles, options, or one that a terminal obeys"
 
 
 def nasty_text(name: str = "fourbar-lecture-1") -> str:
@@ -187,14 +193,19 @@ def test_the_summary_in_markdown_starts_no_tag(store: Path) -> None:
     assert "hacked" not in text  # only names and reasons are told
 
 
-def test_figures_are_drawn_with_the_source_as_text(store: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("kinds", [("svg",), slowly(("svg", "pdf"), reason="fonts: 0.5 s")])
+def test_figures_are_drawn_with_the_source_as_text(
+    store: Path, tmp_path: Path, kinds: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
     folder = tmp_path / "figs"
+    monkeypatch.setattr("reports.cli.commands.figures.FORMATS", kinds)
     run_figures(store, folder, Console(file=io.StringIO()), only=["mechanism"])
     root = Xml.parse(folder / "mechanism-fourbar-lecture-1.svg").getroot()
     assert not [each for each in root.iter() if str(each.tag).endswith("script")]
     shown = " ".join("".join(text.itertext()) for text in root.iter() if text.text)
     assert "</script><script>window.hacked" in shown.replace("\n", "")
-    assert (folder / "mechanism-fourbar-lecture-1.pdf").read_bytes().startswith(b"%PDF-")
+    if "pdf" in kinds:
+        assert (folder / "mechanism-fourbar-lecture-1.pdf").read_bytes().startswith(b"%PDF-")
 
 
 def test_a_name_in_a_store_does_not_leave_the_folder_of_figures(
@@ -210,7 +221,7 @@ def test_a_name_in_a_store_does_not_leave_the_folder_of_figures(
     assert list(tmp_path.rglob("*escaped*")) == []
 
 
-@pytest.mark.parametrize("name", FILES, ids=ascii)
+@pytest.mark.parametrize("name", few(FILES, WORST, LIKE), ids=ascii)
 def test_the_name_of_a_file_is_text(name: str) -> None:
     good, bad = nasty_text().encode(), b"[links\n"
     for command in dict.fromkeys(COMMANDS):

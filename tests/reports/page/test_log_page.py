@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import os
 import re
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from analytic.kinematics import solve
 from models.files import load_scene
 from reports.causes.cause import Cause
 from reports.cli.commands.judge import run_judge
@@ -24,7 +26,7 @@ from reports.page.log_page import log_page
 from reports.page.log_sections.motion import stretches
 from reports.page.log_sections.verdict import map_lines
 from tests.reports.page.hostile import EVIL, Outline
-from tests.reports.page.judged_logs import FACTS, TURN_S, angles, judged, motion_of, points
+from tests.reports.page.judged_logs import FACTS, SCENE, TURN_S, angles, judged, motion_of, points
 
 MOTION = motion_of()
 TIME_S = MOTION.time_s
@@ -201,6 +203,18 @@ def test_a_long_log_of_many_channels_stays_small_with_its_spike() -> None:
 
 def test_channels_of_the_same_rows_share_their_instants(text: str) -> None:
     assert len(embedded(text, "channels")["axes"]) == 1
+
+
+def test_times_far_from_zero_keep_their_digits() -> None:
+    late = 12345.678 + TIME_S
+    found = page(judged(late, angles(solve(SCENE, late))))
+    (axis,) = embedded(found, "channels")["axes"]
+    after = np.frombuffer(base64.b64decode(axis["time"]["singles"]), "<f4").astype(float)
+    assert np.allclose(float(axis["start"]) + after, late, rtol=0, atol=1e-6)
+    (turn,) = embedded(found, "motion")["stretches"]
+    assert (float(turn["start"]), float(turn["end"])) == pytest.approx(
+        (late[0], late[-1]), rel=1e-12
+    )
 
 
 def test_of_many_turns_the_first_the_last_and_the_worst_are_drawn() -> None:

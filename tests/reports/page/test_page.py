@@ -21,21 +21,13 @@ from reports.page.build import HERE, page
 from reports.page.sections import SECTIONS
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
+from tests.reports.page.conftest import part_of
 from tests.reports.page.hostile import Outline
 from tests.worlds.tiers import slow
 
 MEGABYTES_8 = 8_000_000
 STORED = [name for name in SECTIONS if name not in ("hard", "reading_forces", "free", "elastic")]
 """The sections of a driven store without forces and without hard cases beside it."""
-
-
-def part_of(stored: Stored, keep: pd.Series) -> Stored:
-    """The store with some of its cells."""
-    found = Stored(
-        stored.folder, stored.manifest, stored.cells[keep].reset_index(drop=True), stored.timings
-    )
-    vars(found)["_traces"] = stored._traces
-    return found
 
 
 @pytest.fixture(scope="module")
@@ -84,14 +76,8 @@ def test_hostile_text_is_shown_and_not_read(evil_page: Path) -> None:
     assert not [each for _, each in outline.elements if "onerror" in each]
 
 
-def test_a_store_of_one_scene_one_engine_and_no_times_has_a_page(small: Stored) -> None:
-    cells = small.cells
-    keep = (cells["scene"] == "fourbar-lecture-1") & (cells["engine"] == "pymunk")
-    alone = part_of(small, keep & (cells["variant"] == "tuned"))
-    untimed = alone.cells.copy()
-    times = [c for c in untimed if c.startswith("us_per_step") or c == "s_per_turn"]
-    untimed[times] = float("nan")
-    outline = Outline(page(replace(alone, cells=untimed)))
+def test_a_store_of_one_scene_one_engine_and_no_times_has_a_page(tiny_page: Path) -> None:
+    outline = Outline(tiny_page.read_text(encoding="utf-8"))
     assert [each["id"] for each in outline.named("section")] == STORED
 
 
@@ -102,8 +88,8 @@ def test_a_store_in_which_everything_failed_has_a_page(small: Stored) -> None:
     assert "stability" in [each["id"] for each in outline.named("section")]
 
 
-def test_a_store_without_the_text_of_its_scenes_has_a_page_without_drawings(small: Stored) -> None:
-    outline = Outline(page(replace(small, manifest=Manifest({}, small.manifest.runs))))
+def test_a_store_without_the_text_of_its_scenes_has_a_page_without_drawings(tiny: Stored) -> None:
+    outline = Outline(page(replace(tiny, manifest=Manifest({}, tiny.manifest.runs))))
     sections = [each["id"] for each in outline.named("section")]
     assert sections == [name for name in STORED if name != "motion"]
 
@@ -142,11 +128,12 @@ def test_the_page_of_the_default_study_is_below_8_megabytes(small: Stored) -> No
 
 
 def test_drawings_give_way_where_the_page_gets_too_large(
-    small: Stored, text: str, monkeypatch: pytest.MonkeyPatch
+    tiny: Stored, tiny_page: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(build, "MOST_BYTES", len(text.encode()) - build.BUDGET + 1000)
-    thinned = page(small)
-    assert len(re.findall('"base64"', thinned)) < len(re.findall('"base64"', text))
+    whole = tiny_page.read_text(encoding="utf-8")
+    monkeypatch.setattr(build, "MOST_BYTES", len(whole.encode()) - build.BUDGET + 1000)
+    thinned = page(tiny)
+    assert len(re.findall('"base64"', thinned)) < len(re.findall('"base64"', whole))
 
 
 def test_the_command_writes_the_page_and_says_so(small_folder: Path, tmp_path: Path) -> None:
