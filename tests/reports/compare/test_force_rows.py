@@ -39,13 +39,10 @@ def _of(scene: Scene, engine: str, steps: int = 360, *, with_forces: bool = True
 
 
 def _errors(scene: Scene, done: Run) -> Errors:
-    errors = compare(Beside.of(Truth(scene), done))
-    assert errors is not None
-    return errors
+    return compare(Beside.of(Truth(scene), done))
 
 
 def _with(done: Run, change: Callable[[Forces], Forces]) -> Run:
-    assert done.motion.forces is not None
     return replace(done, motion=replace(done.motion, forces=change(done.motion.forces)))
 
 
@@ -68,9 +65,7 @@ def test_forces_of_steps_have_none_at_the_start_and_that_is_no_error() -> None:
 
 
 def _beside(scene: Scene, done: Run) -> Beside:
-    beside = Beside.of(Truth(scene), done)
-    assert beside is not None
-    return beside
+    return Beside.of(Truth(scene), done)
 
 
 @pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
@@ -103,7 +98,6 @@ def test_stamps_that_are_over_a_step_away_are_told() -> None:
 
 def test_forces_that_are_not_there_are_errors_of_every_pin() -> None:
     done = _run("mujoco")
-    assert done.motion is not None
     rows = _errors(FOURBAR, replace(done, motion=replace(done.motion, forces=None))).rows
     broken = {row.body for row in rows if row.quantity == "reaction" and not row.finite}
     assert broken == {"A", "B", "C", "D"}
@@ -152,7 +146,6 @@ def test_samples_in_dead_points_are_left_out_and_counted() -> None:
         motion, forces=motion.forces.each_series(dead)
     )
     beside = Beside.of(truth, done)
-    assert beside is not None
     found = force_rows(beside)
     assert all(row.finite for row in found.rows)
     samples = sum(row.samples for row in found.rows if row.quantity == "torque")

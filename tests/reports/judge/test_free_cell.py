@@ -197,7 +197,6 @@ def test_limits_that_the_truth_passes_are_no_departure() -> None:
 def test_what_is_let_go_may_be_as_near_as_the_fourth_order_of_the_step() -> None:
     """MuJoCo's loops, as tuned for that, do not give way; driven ones always do."""
     errors = check(cell("mujoco")).errors
-    assert errors is not None
     assert too_good(errors, "integrated", 2) == []
     assert too_good(replace(errors, free=None), "integrated", 2) != []
 

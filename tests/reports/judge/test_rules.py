@@ -11,7 +11,7 @@ import pytest
 from models.scene import Scene
 from reports.compare.errors import Error, Errors, largest
 from reports.judge.rules import RULES, judge
-from reports.judge.rules.rule import Evidence
+from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.three_steps import Convergence, convergence
 from reports.judge.tolerance import DEFAULTS, Limit
 
@@ -71,13 +71,21 @@ HEALTHY = Evidence(
 )
 
 
+def with_errors(**changed: object) -> Evidence:
+    """The healthy evidence with something else in its errors."""
+    return replace(HEALTHY, errors=replace(HEALTHY.errors, **changed))
+
+
 def with_row(new: Error) -> Evidence:
     """The healthy evidence with one row in place of the one of its kind."""
-    assert HEALTHY.errors is not None
     rows = tuple(
         new if (old.quantity, old.source) == (new.quantity, new.source) else old for old in ROWS
     )
-    return replace(HEALTHY, errors=replace(HEALTHY.errors, rows=(*rows, *START)))
+    return with_errors(rows=(*rows, *START))
+
+
+def by_rule(evidence: Evidence) -> dict[str, Finding]:
+    return {finding.rule: finding for finding in judge(evidence)}
 
 
 def test_a_healthy_run_passes_every_rule() -> None:
@@ -112,7 +120,7 @@ def test_every_rule_says_what_why_and_what_to_do() -> None:
 def test_an_error_over_its_limit_fails_its_own_rule(
     id_: str, quantity: str, source: str, size: float
 ) -> None:
-    found = {f.rule: f for f in judge(with_row(row(quantity, source, size)))}
+    found = by_rule(with_row(row(quantity, source, size)))
     failed = {id_} if math.isfinite(size) else {id_, "CC109"}
     if math.isnan(size) or math.isinf(size):
         failed |= {rule for rule in found if found[rule].level == "fail"} & {"CC111"}
@@ -147,17 +155,15 @@ def test_a_run_without_a_log_is_judged_by_its_status_alone() -> None:
 
 
 def test_a_number_that_is_missing_outside_the_limits_still_fails() -> None:
-    assert HEALTHY.errors is not None
     start = replace(row("velocity", maximum=math.nan), kind="start")
-    errors = replace(HEALTHY.errors, rows=(*ROWS, start))
-    found = {f.rule: f for f in judge(replace(HEALTHY, errors=errors))}
+    found = by_rule(with_errors(rows=(*ROWS, start)))
     assert found["CC109"].level == "fail"
     assert "velocity of rocker" in found["CC109"].text
 
 
 def test_an_error_that_does_not_shrink_is_advice_that_names_the_floor() -> None:
     flat = convergence((4e-3, 2e-3, 1e-3), (8e-4, 7.6e-4, 7.5e-4), "rad")
-    found = {f.rule: f for f in judge(replace(HEALTHY, convergence=flat))}
+    found = by_rule(replace(HEALTHY, convergence=flat))
     assert found["CC110"].level == "advice"
     assert "does not shrink: floor 7.5e-04 rad" in found["CC110"].text
 
@@ -176,19 +182,16 @@ def test_an_error_that_does_not_shrink_is_advice_that_names_the_floor() -> None:
 def test_finer_steps_that_do_worse_fail_where_the_cell_is_gated(
     seen: Convergence, gated: bool
 ) -> None:
-    found = {f.rule: f for f in judge(replace(HEALTHY, convergence=seen, gated=gated))}
+    found = by_rule(replace(HEALTHY, convergence=seen, gated=gated))
     assert found["CC110"].level == ("fail" if gated else "advice")
     assert all(fault in found["CC110"].text for fault in (*seen.faults, *seen.over))
 
 
 def test_a_log_that_is_not_whole_fails_a_run_that_claims_to_be_well() -> None:
-    assert HEALTHY.errors is not None
-    errors = replace(HEALTHY.errors, incomplete="50 samples, not the 721")
-    found = {f.rule: f for f in judge(replace(HEALTHY, errors=errors))}
+    found = by_rule(with_errors(incomplete="50 samples, not the 721"))
     assert (found["CC115"].level, found["CC115"].text) == ("fail", "50 samples, not the 721")
-    assert "CC115" not in {
-        f.rule for f in judge(replace(HEALTHY, errors=errors, status="diverged"))
-    }
+    diverged = replace(with_errors(incomplete="50 samples, not the 721"), status="diverged")
+    assert "CC115" not in by_rule(diverged)
 
 
 def test_a_run_that_is_well_and_logged_nothing_fails() -> None:
@@ -197,9 +200,7 @@ def test_a_run_that_is_well_and_logged_nothing_fails() -> None:
 
 
 def test_what_is_missing_from_the_log_is_named() -> None:
-    assert HEALTHY.errors is not None
-    errors = replace(HEALTHY.errors, missing=("link rocker", "gap of C"))
-    found = {f.rule: f for f in judge(replace(HEALTHY, errors=errors))}
+    found = by_rule(with_errors(missing=("link rocker", "gap of C")))
     assert found["CC109"].level == "fail"
     assert "link rocker, gap of C" in found["CC109"].text
 
@@ -207,11 +208,9 @@ def test_what_is_missing_from_the_log_is_named() -> None:
 @pytest.mark.parametrize("index", range(len(START)))
 @pytest.mark.parametrize("size", [0.1, math.nan])
 def test_rates_of_the_first_samples_have_a_limit_of_their_own(index: int, size: float) -> None:
-    assert HEALTHY.errors is not None
     size *= 20.0 if START[index].tolerance == "acceleration-differenced" else 1.0
     wild = [replace(row, maximum=size) if row is START[index] else row for row in START]
-    errors = replace(HEALTHY.errors, rows=(*ROWS, *wild))
-    found = {f.rule: f for f in judge(replace(HEALTHY, errors=errors))}
+    found = by_rule(with_errors(rows=(*ROWS, *wild)))
     assert found["CC116"].level == "fail"
     assert START[index].tolerance in found["CC116"].text
     assert {f.rule for f in found.values() if f.level == "fail"} <= {"CC116", "CC109"}
@@ -220,15 +219,13 @@ def test_rates_of_the_first_samples_have_a_limit_of_their_own(index: int, size: 
 def test_the_start_may_be_off_by_half_a_steps_acceleration() -> None:
     half_a_step = HEALTHY.errors.step_rad / 2
     late = [replace(START[0], maximum=half_a_step), replace(START[3], maximum=0.5)]
-    errors = replace(HEALTHY.errors, rows=(*ROWS, *late))
-    assert {f.level for f in judge(replace(HEALTHY, errors=errors))} == {"pass"}
+    assert {f.level for f in judge(with_errors(rows=(*ROWS, *late)))} == {"pass"}
 
 
 def test_no_singular_position_excuses_a_start_without_end() -> None:
-    assert HEALTHY.errors is not None
     late = [replace(START[0], maximum=0.2)]
-    errors = replace(HEALTHY.errors, rows=(*ROWS, *late), conditioning=1e-9, jolt=1e9)
-    found = {f.rule: f.level for f in judge(replace(HEALTHY, errors=errors))}
+    singular = with_errors(rows=(*ROWS, *late), conditioning=1e-9, jolt=1e9)
+    found = {rule: finding.level for rule, finding in by_rule(singular).items()}
     assert found["CC116"] == "fail"
 
 
@@ -279,15 +276,14 @@ def test_the_reference_handed_back_is_too_good() -> None:
         replace(r, maximum=0.0) if r.quantity in ("angle", "displacement", "position") else r
         for r in ROWS
     )
-    assert HEALTHY.errors is not None
-    found = {f.rule: f for f in judge(replace(HEALTHY, errors=replace(HEALTHY.errors, rows=same)))}
+    found = by_rule(with_errors(rows=same))
     assert found["CC111"].level == "fail"
 
 
 @pytest.mark.parametrize("bound", [2e-4, math.inf, math.nan])
 def test_a_reference_that_does_not_know_better_than_the_limit_can_not_judge(bound: float) -> None:
     unsure = replace(row("angle"), bound=bound)
-    found = {f.rule: f for f in judge(with_row(unsure))}
+    found = by_rule(with_row(unsure))
     assert found["CC112"].level == "fail"
     assert "reference not certain: angle of rocker" in found["CC112"].text
 
