@@ -13,7 +13,6 @@ import pytest
 
 from models.errors import CrankcheckError, SceneError
 from models.files import (
-    every_shipped,
     find_scenes,
     kinds,
     load_scene,
@@ -42,13 +41,6 @@ link = "crank"
 speed_rad_s = 10.0
 start_deg = 90.0
 """
-
-
-@pytest.mark.parametrize("name", every_shipped())
-def test_shipped_scene_loads_under_its_file_name_and_says_its_source(name: str) -> None:
-    scene = load_scene(name)
-    assert scene.name == name
-    assert len(scene.source) > 20
 
 
 def test_enough_scenes_ship() -> None:
@@ -236,7 +228,7 @@ def test_more_points_than_can_be_compared_are_a_fault(head: str, most: int) -> N
     def called(*_: object) -> None:
         calls[-1] += 1
 
-    for count in (1500, 3000):
+    for count in (1100, 2200):
         points = "".join(f"P{i} = [{i}.0, 0.0]\n" for i in range(count))
         calls.append(0)
         sys.setprofile(called)

@@ -21,8 +21,10 @@ LAWS = [
 
 
 @pytest.mark.parametrize("name", every_shipped())
-def test_every_shipped_scene_reads_back_as_itself(name: str) -> None:
+def test_every_shipped_scene_has_a_name_and_a_source_and_reads_back_as_itself(name: str) -> None:
     scene = load_scene(name)
+    assert scene.name == name
+    assert len(scene.source) > 20
     text = scene_text(scene)
     again = parse_scene(text, name)
     assert again == scene

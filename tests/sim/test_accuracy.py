@@ -187,7 +187,9 @@ def test_tuned_errors_and_gaps_fall_at_least_with_the_square_of_the_step(
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("guide", GUIDES)
+@pytest.mark.parametrize(
+    "guide", few(GUIDES, {"offset lever", "telescope"}, "a block with mass is easier to hold")
+)
 def test_guides_that_move_and_lie_off_their_centres_are_held_as_well(
     guide: str, engine: str
 ) -> None:

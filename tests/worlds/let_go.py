@@ -1,4 +1,13 @@
-"""A scene that is let go with everything that may act on one."""
+"""A scene that is let go with everything that may act on one, and how what is let go starts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from analytic.free.machine import Machine
+from analytic.kinematics import solve_driven
+from models.motion import State
+from models.scene import Scene
 
 EVERYTHING = """
 name = "everything"
@@ -70,3 +79,12 @@ sines = [0.2, 0.03]
 [friction.A]
 torque_n_m = 0.004
 """
+
+
+def released(scene: Scene) -> tuple[State, float]:
+    """The state of the start, and the acceleration of the driver by the equation of the machine."""
+    law = scene.driver.law
+    theta, omega = np.array([law.start_rad]), np.array([law.speed_rad_s])  # type: ignore[attr-defined]  # Released
+    alpha = Machine(scene).acceleration(np.zeros(1), theta, omega)
+    motion = solve_driven(scene, theta, omega, alpha, np.zeros(1), bound=False)
+    return motion.state(), float(alpha[0])

@@ -13,12 +13,11 @@ import pytest
 from scipy.integrate import solve_ivp  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.free.machine import Machine
-from analytic.kinematics import solve, solve_driven
+from analytic.kinematics import solve
 from models.array import Array
 from models.characteristics import Polynomial
 from models.files import load_scene
 from models.loads import Load
-from models.motion import State
 from models.released import Released
 from models.scene import GROUND, Driver, Scene
 from models.springs import LineSpring, PinSpring, SlideSpring, Spring
@@ -30,6 +29,7 @@ from sim.exudyn.jumps import StepMeans
 from sim.run import run
 from sim.settings import resolved
 from sim.spring_lengths import spring_lengths
+from tests.worlds.let_go import released
 from tests.worlds.tiers import few
 
 UNTIL_S = 0.4
@@ -96,13 +96,6 @@ SCENES = {
 }
 
 
-def start(scene: Scene) -> State:
-    law = scene.driver.law
-    theta, omega = np.array([law.start_rad]), np.array([law.speed_rad_s])
-    alpha = Machine(scene).acceleration(np.zeros(1), theta, omega)
-    return solve_driven(scene, theta, omega, alpha, np.zeros(1), bound=False).state()
-
-
 @cache
 def exact(name: str) -> tuple[Array, Array]:
     """Instants, and the driver's angle at them, integrated from jump to jump."""
@@ -130,7 +123,7 @@ def ran(scene: Scene, dt_s: float, settings: Settings | None = None) -> Run:
     steps = round(UNTIL_S / dt_s)
     done = run(
         scene,
-        start(scene),
+        released(scene)[0],
         ENGINE,
         dt_s=dt_s,
         steps=steps,
@@ -165,8 +158,8 @@ def test_the_start_has_the_accelerations_of_what_acts() -> None:
     for name in ("springs", "steep motor", "spring of a block without mass"):
         scene = SCENES[name]
         done = ran(scene, 2e-3)
-        for link, alpha in start(scene).alpha.items():
-            scale = max(abs(each) for each in start(scene).alpha.values())
+        for link, alpha in released(scene)[0].alpha.items():
+            scale = max(abs(each) for each in released(scene)[0].alpha.values())
             assert done.motion.links[link].alpha[0] == pytest.approx(alpha, abs=1e-6 * scale)
 
 
@@ -184,7 +177,7 @@ def test_what_damps_is_less_where_nothing_drives_and_loses_less_energy() -> None
 def test_springs_are_held_as_the_scene_has_them_and_a_steep_motor_shows() -> None:
     scene = SCENES["springs"]
     settings = resolved(ENGINE.profiles["tuned"], None)
-    facts = ENGINE.open(scene, start(scene), settings, 1e-3, "free").facts()
+    facts = ENGINE.open(scene, released(scene)[0], settings, 1e-3, "free").facts()
     for name, spring in scene.springs.items():
         wanted = (spring.rate, spring.damping, spring.free)
         assert facts.springs[name] == pytest.approx(wanted, abs=1e-14)
@@ -194,7 +187,9 @@ def test_springs_are_held_as_the_scene_has_them_and_a_steep_motor_shows() -> Non
 
 def test_the_spring_of_a_block_without_mass_goes_to_its_pin() -> None:
     scene = SCENES["spring of a block without mass"]
-    done = run(scene, start(scene), ENGINE, dt_s=1e-3, steps=60, drive="free", with_forces=True)
+    done = run(
+        scene, released(scene)[0], ENGINE, dt_s=1e-3, steps=60, drive="free", with_forces=True
+    )
     forces, slid = done.motion.forces, done.motion.sliders["C"]
     (line,) = (one for one in scene.springs.values() if isinstance(one, SlideSpring))
     pull = line.rate * (slid.displacement - line.free) + line.damping * slid.speed

@@ -10,14 +10,13 @@ import pytest
 
 from analytic.free.machine import Machine
 from analytic.free.release import release
-from analytic.kinematics import solve, solve_driven
+from analytic.kinematics import solve
 from analytic.multibody.release_multibody import start_state
 from models.characteristics import Polynomial
 from models.errors import EngineError
 from models.files import load_scene, parse_scene
 from models.loads import Load
 from models.mjcf import build
-from models.motion import State
 from models.released import Released
 from models.scene import GROUND, Driver, Scene
 from models.springs import LineSpring, PinSpring, SlideSpring, Spring
@@ -28,6 +27,7 @@ from sim.run import run
 from sim.settings import resolved
 from tests.sim.mujoco.test_reactions import acting
 from tests.worlds.equilibrium import left_over
+from tests.worlds.let_go import released
 
 TUNED = resolved(engine("mujoco").profiles["tuned"], None)
 DT_S = 1e-4
@@ -80,35 +80,21 @@ SCENES = {
 }
 
 
-def start_of(scene: Scene) -> tuple[State, float]:
-    """The state of the start, and the acceleration of the driver by the equation of the machine."""
-    law = scene.driver.law
-    theta, omega = np.array([law.start_rad]), np.array([law.speed_rad_s])
-    alpha = Machine(scene).acceleration(np.zeros(1), theta, omega)
-    motion = solve_driven(scene, theta, omega, alpha, np.zeros(1), bound=False)
-    return motion.state(), float(alpha[0])
-
-
 def opened(scene: Scene) -> MujocoSession:
-    return MujocoSession(scene, start_of(scene)[0], TUNED, DT_S, "free")
+    return MujocoSession(scene, released(scene)[0], TUNED, DT_S, "free")
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_springs_and_dampers_accelerate_as_in_the_equation_of_the_machine(name: str) -> None:
+def test_springs_are_held_and_accelerate_as_in_the_equation_of_the_machine(name: str) -> None:
     scene = SCENES[name]
-    _, alpha = start_of(scene)
-    _, without = start_of(replace(scene, springs={}))
+    _, alpha = released(scene)
+    _, without = released(replace(scene, springs={}))
     driver = opened(scene).read().bodies[scene.driver.link]
     assert driver.alpha[0] == pytest.approx(alpha, abs=2e-3 * abs(alpha - without))
     undamped = {n: replace(one, damping=0.0) for n, one in scene.springs.items()}
-    _, loose = start_of(replace(scene, springs=undamped))
+    _, loose = released(replace(scene, springs=undamped))
     assert abs(loose - alpha) > 5e-3 * abs(alpha - without)  # dampers count
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_the_engine_holds_the_springs_of_the_scene(name: str) -> None:
-    scene = SCENES[name]
-    state, _ = start_of(scene)
+    state, _ = released(scene)
     session = opened(scene)
     refuse_other_model(scene, state, session.facts(), DT_S, "free")
     session._model.tendon_stiffness[0] *= 1.001
@@ -155,7 +141,7 @@ def test_springs_under_the_servo_s_integrator_have_the_iterations_that_they_need
 
 def test_springs_add_lines_to_the_text_and_change_none() -> None:
     scene = SCENES["between points"]
-    state, _ = start_of(scene)
+    state, _ = released(scene)
     bare, text = build(replace(scene, springs={}), state), build(scene, state)
     rest = iter(text.splitlines())
     assert all(line in rest for line in bare.splitlines())
@@ -163,14 +149,14 @@ def test_springs_add_lines_to_the_text_and_change_none() -> None:
     tendon = '<spatial name="spring l" stiffness="300.0" damping="4.0" springlength="0.1">'
     assert tendon in text
     assert "armature" not in text
-    behind = build(SCENES["from behind"], start_of(SCENES["from behind"])[0])
+    behind = build(SCENES["from behind"], released(SCENES["from behind"])[0])
     assert 'springlength="1.0"' in behind  # -1 says something else to MuJoCo
     assert 'coef="-1"' in behind
 
 
 def test_the_text_runs_by_itself() -> None:
     scene = SCENES["at a pin"]
-    state, _ = start_of(scene)
+    state, _ = released(scene)
     model = mujoco.MjModel.from_xml_string(build(scene, state))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
@@ -185,7 +171,7 @@ def test_springs_dampers_and_motors_are_followed_to_fourth_order() -> None:
     scene = let_go(FOURBAR, LineSpring("l", 30.0, 0.4, 0.1, ("B", "D")))
     motor = Load("motor", "crank", None, Polynomial((0.3, -0.05)), "omega")
     scene = replace(scene, loads={"motor": motor})
-    true, state = release(scene, 0.3), start_of(scene)[0]
+    true, state = release(scene, 0.3), released(scene)[0]
     errors = []
     for steps in (300, 600):
         done = run(scene, state, "mujoco", dt_s=0.3 / steps, steps=steps, drive="free")

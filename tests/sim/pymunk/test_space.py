@@ -26,20 +26,14 @@ def kinds(space: pymunk.Space) -> list[str]:
 
 
 @pytest.mark.parametrize("name", sorted(shipped()))
-def test_a_space_holds_no_shapes_and_no_body_beyond_links_and_blocks_with_mass(name: str) -> None:
+def test_a_space_holds_the_bodies_alone_which_stand_and_move_as_in_the_state(name: str) -> None:
     scene = load_scene(name)
-    model = build(scene, start_of(scene))
+    state = start_of(scene, 0.1)
+    model = build(scene, state)
     assert not model.space.shapes
     blocks = [s for s in scene.sliders.values() if s.mass_kg > 0.0]
     assert len(model.bodies) == len(scene.links) + len(blocks)
     assert not any(constraint.collide_bodies for constraint in model.space.constraints)
-
-
-@pytest.mark.parametrize("name", sorted(shipped()))
-def test_points_stand_and_move_as_in_the_state(name: str) -> None:
-    scene = load_scene(name)
-    state = start_of(scene, 0.1)
-    model = build(scene, state)
     for link in scene.links.values():
         body, centre = model.bodies[link.name], model.centre[link.name]
         for point, (x, y) in link.points.items():
