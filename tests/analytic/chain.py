@@ -13,6 +13,7 @@ import numpy as np
 from mpmath import mp, mpf
 
 from analytic.check.constraints import Constraints
+from models.joints import local_point, sliding_body
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene, Slider
@@ -56,6 +57,18 @@ class Solved:
     sliders: Mapping[str, Jet]
 
 
+def held_points(scene: Scene) -> dict[str, list[tuple[str, Point]]]:
+    """The bodies that hold each point, blocks among them, and where."""
+    held = {
+        point: [(body, local_point(scene, body, point)) for body in bodies]
+        for point, bodies in scene.pins.items()
+    }
+    for slider in scene.sliders.values():
+        if slider.link is None:
+            held.setdefault(slider.point, []).append((sliding_body(slider), (0.0, 0.0)))
+    return held
+
+
 class Chain:
     """The constraints of a scene over jets."""
 
@@ -63,16 +76,7 @@ class Chain:
         self.scene = scene
         self.floats = Constraints(scene)
         self.bodies = self.floats.bodies
-        self.held: dict[str, list[tuple[str, Point]]] = {
-            point: [(body, self._local(body, point)) for body in bodies]
-            for point, bodies in scene.pins.items()
-        }
-        for slider in scene.sliders.values():
-            if slider.link is None:
-                self.held.setdefault(slider.point, []).append((_body(slider), (0.0, 0.0)))
-
-    def _local(self, body: str, point: str) -> Point:
-        return (self.scene.ground if body == GROUND else self.scene.links[body].points)[point]
+        self.held = held_points(scene)
 
     def solve(self, time_s: float, start: list[float]) -> Solved:
         """The motion at a time, by iteration from coordinates near it."""
@@ -109,7 +113,7 @@ class Chain:
                 rows += [gap.x, gap.y]
         for slider in self.scene.sliders.values():
             away, along = self._ride(frames, slider)
-            turn = frames[_body(slider)][1] - frames[slider.on][1]
+            turn = frames[sliding_body(slider)][1] - frames[slider.on][1]
             turn -= mpf(slider.direction_rad) + mpf(slider.angle_rad)
             whole = mp.nint(turn.value / (2 * mp.pi))  # angles of links are known but for turns
             rows += [along.cross(away), turn - 2 * mp.pi * whole]
@@ -130,8 +134,8 @@ class Chain:
         self, frames: Mapping[str, tuple[Place, Jet, Place]], slider: Slider
     ) -> tuple[Place, Place]:
         """From the line's point to the slider's, and the direction of the line."""
-        body = _body(slider)
-        tip = (0.0, 0.0) if slider.link is None else self._local(body, slider.point)
+        body = sliding_body(slider)
+        tip = (0.0, 0.0) if slider.link is None else local_point(self.scene, body, slider.point)
         away = _point(frames[body], tip) - _point(frames[slider.on], slider.through_m)
         return away, oracle.toward(frames[slider.on][1] + mpf(slider.direction_rad))
 
@@ -140,7 +144,7 @@ class Chain:
         rides = {name: self._ride(frames, s) for name, s in self.scene.sliders.items()}
         held = {name: bodies[0] for name, bodies in self.held.items()}
         for slider in self.scene.sliders.values():
-            held.setdefault(slider.point, (_body(slider), (0.0, 0.0)))
+            held.setdefault(slider.point, (sliding_body(slider), (0.0, 0.0)))
         return Solved(
             {name: frames[name][1] for name in self.scene.links},
             {name: _point(frames[body], local) for name, (body, local) in held.items()},
@@ -162,10 +166,6 @@ def coordinates(scene: Scene, motion: Motion, index: int) -> list[float]:
             place = motion.points[slider.point].position[index]
             found += [*place, angles[slider.on] + slider.direction_rad]
     return [float(c) for c in found]
-
-
-def _body(slider: Slider) -> str:
-    return slider.link or f"block {slider.name}"
 
 
 def _point(frame: tuple[Place, Jet, Place], local: Point) -> Place:

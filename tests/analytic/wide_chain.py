@@ -14,9 +14,11 @@ from typing import Any
 import numpy as np
 
 from models.array import Array
+from models.joints import local_point, sliding_body
 from models.laws import ConstantSpeed, Law, Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene, Slider
+from tests.analytic.chain import Solved, held_points
 from tests.analytic.change_points.jets import Jet, _made
 from tests.analytic.oracle import Place
 
@@ -91,15 +93,6 @@ def toward(angle: Jet) -> Place:
 
 
 @dataclass(frozen=True)
-class Solved:
-    """The motion of a mechanism; the angles of links but for whole turns."""
-
-    links: Mapping[str, Jet]
-    points: Mapping[str, Place]
-    sliders: Mapping[str, Jet]
-
-
-@dataclass(frozen=True)
 class Frame:
     """The frame of a body: origin, angle, and direction."""
 
@@ -126,18 +119,9 @@ class WideChain:
 
     def __init__(self, scene: Scene, given: Given) -> None:
         self.scene, self.given = scene, given
-        blocks = [_body(s) for s in scene.sliders.values() if s.link is None]
+        blocks = [sliding_body(s) for s in scene.sliders.values() if s.link is None]
         self.bodies = (*scene.links, *blocks)
-        self.held: dict[str, list[tuple[str, Point]]] = {
-            point: [(body, self._local(body, point)) for body in bodies]
-            for point, bodies in scene.pins.items()
-        }
-        for slider in scene.sliders.values():
-            if slider.link is None:
-                self.held.setdefault(slider.point, []).append((_body(slider), (0.0, 0.0)))
-
-    def _local(self, body: str, point: str) -> Point:
-        return (self.scene.ground if body == GROUND else self.scene.links[body].points)[point]
+        self.held = held_points(scene)
 
     def solve(self, motion: Motion) -> Solved:
         """The motion at the times of another one, which is near it."""
@@ -198,13 +182,17 @@ class WideChain:
         for slider in self.scene.sliders.values():
             away, along = self._ride(frames, slider)
             kept = turned(along, self.given.leans[slider.name].direction)
-            rows += [along.cross(away), kept.cross(frames[_body(slider)].along)]
+            rows += [along.cross(away), kept.cross(frames[sliding_body(slider)].along)]
         return [*rows, frames[self.scene.driver.link].angle - drive]
 
     def _ride(self, frames: Mapping[str, Frame], slider: Slider) -> tuple[Place, Place]:
         """From the line's point to the slider's, and the direction of the line."""
-        body, guide = frames[_body(slider)], frames[slider.on]
-        tip = (0.0, 0.0) if slider.link is None else self._local(slider.link, slider.point)
+        body, guide = frames[sliding_body(slider)], frames[slider.on]
+        tip = (
+            (0.0, 0.0)
+            if slider.link is None
+            else local_point(self.scene, slider.link, slider.point)
+        )
         along = turned(guide.along, self.given.lines[slider.name].direction)
         return body.at(tip) - guide.at(slider.through_m), along
 
@@ -212,16 +200,12 @@ class WideChain:
         rides = {name: self._ride(frames, s) for name, s in self.scene.sliders.items()}
         held = {name: bodies[0] for name, bodies in self.held.items()}
         for slider in self.scene.sliders.values():
-            held.setdefault(slider.point, (_body(slider), (0.0, 0.0)))
+            held.setdefault(slider.point, (sliding_body(slider), (0.0, 0.0)))
         return Solved(
             {name: frames[name].angle for name in self.scene.links},
             {name: frames[body].at(local) for name, (body, local) in held.items()},
             {name: along.dot(away) for name, (away, along) in rides.items()},
         )
-
-
-def _body(slider: Slider) -> str:
-    return slider.link or f"block {slider.name}"
 
 
 def _rows(columns: list[Rows], samples: int) -> Rows:

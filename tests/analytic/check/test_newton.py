@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import ast
 import math
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,6 +23,7 @@ from models.files import load_scene, shipped
 from models.motion import Motion
 from models.scene import Scene
 from tests.analytic.chain import coordinates
+from tests.analytic.imported import reached
 from tests.worlds.strategies import FORMS, OF_EACH_KIND, Designed, examples, mechanisms, swing_times
 from tests.worlds.tiers import few, slowly
 
@@ -155,24 +154,8 @@ def test_forms_cover_every_kind_and_role() -> None:
         assert all(role in said for role in ("block", "link", "guide"))
 
 
-def _reached(module: str, found: set[str]) -> set[str]:
-    """The modules of `analytic` that a module imports, directly or through others."""
-    root = Path(str(analytic.__file__)).parents[1]
-    path = root.joinpath(*module.split(".")).with_suffix(".py")
-    for node in ast.walk(ast.parse(path.read_text())):
-        names = [str(node.module)] if isinstance(node, ast.ImportFrom) else []
-        names += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-        if isinstance(node, ast.ImportFrom) and node.module == "analytic.dyads":
-            names = [f"analytic.dyads.{alias.name}" for alias in node.names]
-        for name in names:
-            if name.startswith("analytic.") and name not in found:
-                found.add(name)
-                _reached(name, found)
-    return found
-
-
 def test_neither_computation_imports_the_other() -> None:
-    closed, newton = (_reached(f"analytic.{m}", set()) for m in ("kinematics", "check.newton"))
+    closed, newton = (reached(f"analytic.{m}") for m in ("kinematics", "check.newton"))
     assert {f"analytic.dyads.{kind}" for kind in ("rrr", "rrp", "rpr", "prp", "rpp")} <= closed
     assert "analytic.check.newton" not in closed
     assert {"analytic.check.constraints", "analytic.multibody.assembly"} <= newton

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import ast
 import random
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-import analytic
 from analytic.check import multipliers
 from analytic.check.constraints import Constraints
 from analytic.forces import kinetostatics
@@ -18,6 +15,7 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.files import load_scene, shipped
 from tests.analytic.forces.beside import AGREED, apart, out_of_balance, turn, unlocked
+from tests.analytic.imported import reached
 from tests.worlds.loading import loaded, loaded_mechanism
 from tests.worlds.tiers import slowly
 
@@ -45,21 +43,6 @@ def test_random_mechanisms_agree_with_the_multipliers(count: int) -> None:
         found = kinetostatics.forces(scene, time_s)
         assert apart(found, multipliers.forces(scene, solve(scene, time_s))) <= AGREED, number
         assert out_of_balance(scene, time_s, found) <= AGREED, number
-
-
-def reached(module: str) -> set[str]:
-    """The modules of `analytic` that a module imports, directly or through others."""
-    root, found, todo = Path(str(analytic.__file__)).parents[1], set(), [module]
-    while todo:
-        name = todo.pop()
-        path = root.joinpath(*name.split(".")).with_suffix(".py")
-        if name in found or not path.is_file():
-            continue
-        found.add(name)
-        for node in ast.walk(ast.parse(path.read_text())):
-            if isinstance(node, ast.ImportFrom) and str(node.module).startswith("analytic"):
-                todo += [str(node.module), *(f"{node.module}.{a.name}" for a in node.names)]
-    return found
 
 
 def test_no_computation_imports_another() -> None:
