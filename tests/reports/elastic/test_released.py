@@ -174,7 +174,7 @@ def test_a_run_is_compared_with_the_beam_that_it_was_let_go_from() -> None:
 
 
 def test_under_a_controller_a_run_of_segments_is_let_go_and_judged_as_such() -> None:
-    done = simulated(CONTROLLED, duration_s=0.02, segments=4)
+    done = simulated(CONTROLLED, duration_s=0.01, segments=4)
     assert done.drive == "free"
     assert judge(CONTROLLED, done).verdict == "within"
 

@@ -22,7 +22,7 @@ from models.files import load_scene
 from models.scene import Scene
 from models.scene_text import scene_text
 from reports.cli import app
-from tests.analytic.regulation.worked import shaft
+from tests.analytic.regulation.worked import shaft, yoke
 from tests.worlds.tiers import few, slowly
 
 Crank = Callable[..., Result]
@@ -116,8 +116,9 @@ def test_the_written_scene_has_the_flywheel(crank: Crank, free: bool) -> None:
     "figures", [(), slowly(("--figures", "figs"), reason="a second for three figures of two kinds")]
 )
 def test_pages_and_figures_are_written(crank: Crank, figures: tuple[str, ...]) -> None:
+    Path("yoke.toml").write_text(scene_text(yoke(40.0)), encoding="utf-8")
     options = ["-o", "p.html", *figures]
-    assert crank("flywheel", "compressor", "--delta", "0.02", *options).exit_code == 0
+    assert crank("flywheel", "yoke.toml", "--delta", "0.02", *options).exit_code == 0
     text = Path("p.html").read_text(encoding="utf-8")
     assert text.count("data:image/svg+xml;base64,") == 3
     body = text.partition("<main")[2].partition("<script")[0]
