@@ -31,7 +31,7 @@ def limit_of(name: str) -> float:
 
 
 @pytest.mark.parametrize(
-    "name", few(NEAR, {"piston-near-limit", "coupler-near-limit"}, "a triad's range takes longer")
+    "name", few(NEAR, {"piston-near-limit"}, "ranges of a coupler and a triad take longer")
 )
 def test_the_driver_comes_as_near_to_the_end_of_its_range_as_the_case_says(name: str) -> None:
     ends = [end for span in reach(CATALOGUE[name].trial(1.0).scene) for end in span]

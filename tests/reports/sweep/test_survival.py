@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
@@ -16,12 +17,14 @@ from typer.testing import CliRunner
 
 from reports.cli import app
 from reports.store.reader import Stored, read_store, stored_keys
+from reports.sweep import running
+from reports.sweep.measured import MeasuredCell
 from reports.workers.signals import Stopped
 from tests.reports.store.test_damage import same
 from tests.worlds.command import COMMAND, PYTHON, script
 from tests.worlds.in_process import in_this_process
 from tests.worlds.programs import Start, until
-from tests.worlds.tiers import few, slow, slowly
+from tests.worlds.tiers import few, slow
 
 GRID = ("slider-crank-offset", "--profile", "tuned", "--turns", "2", "--jobs", "1")
 STEPS = ("--steps-per-turn", "90,100,108,120")
@@ -55,6 +58,7 @@ Python tells of, part of its arguments, and the how manieth it is."""
 CELLS = ("os.rename", "/cells/cells-")
 """A part with one cell is about to be there."""
 STARTS = ("subprocess.Popen", "python")
+KEPT = ["what is done is kept; the same command goes on from there", "crankcheck: interrupted"]
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL is POSIX")
 
 
@@ -124,12 +128,9 @@ def test_a_third_run_finds_everything_there(whole: Stored) -> None:
     assert sorted(path.stat().st_mtime_ns for path in whole.folder.glob("*/*.parquet")) == before
 
 
+@slow("a signal to a process with children: `make test` stops a sweep in its own")
 @pytest.mark.parametrize(
-    ("moment", "kept"),
-    [
-        pytest.param((*CELLS, 3), 3, id="finding errors"),
-        slowly((*STARTS, 2), NUMBER, reason="the same way out of timing", id="timing"),
-    ],
+    ("moment", "kept"), [((*CELLS, 3), 3), ((*STARTS, 2), NUMBER)], ids=["finding errors", "timing"]
 )
 def test_ctrl_c_keeps_what_is_done(
     programs: Start, tmp_path: Path, moment: tuple[str, str, int], kept: int
@@ -138,10 +139,7 @@ def test_ctrl_c_keeps_what_is_done(
     stopped = begun(programs, tmp_path, moment, signal.SIGINT)
     _, err = stopped.communicate()
     assert stopped.returncode == 130
-    assert err.splitlines()[-2:] == [
-        "what is done is kept; the same command goes on from there",
-        "crankcheck: interrupted",
-    ]
+    assert err.splitlines()[-2:] == KEPT
     assert "Traceback" not in err
     if kept < NUMBER:
         children_end(tmp_path)
@@ -169,6 +167,7 @@ def test_ctrl_c_keeps_the_timings_of_the_blocks_before(
         patch.setattr("reports.sweep.running.timed_in_turns", second_stops)
         done = CliRunner().invoke(app, args, catch_exceptions=False)
     assert done.exit_code == 130
+    assert done.stderr.splitlines()[-2:] == KEPT
     assert blocks == [3, 3]
     timed = read_store(tmp_path / "store").cells.dropna(subset="us_per_step")
     assert list(timed.us_per_step) == [2.0] * 3
@@ -177,6 +176,27 @@ def test_ctrl_c_keeps_the_timings_of_the_blocks_before(
     assert list(timed.us_per_step_median) == [2.375] * 3
     assert list(timed.s_per_turn) == pytest.approx(list(2e-6 * timed.steps_per_turn))
     assert counted(tmp_path / "store") == (NUMBER, 0, NUMBER, NUMBER - 3)
+
+
+def test_ctrl_c_keeps_the_cells_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    real, calls = running.measured, []
+
+    def third_stops(*arguments: Any) -> MeasuredCell:
+        calls.append(arguments)
+        if len(calls) == 3:
+            raise Stopped(signal.SIGINT)
+        return real(*arguments)
+
+    monkeypatch.setattr(running, "measured", third_stops)
+    args = ["sweep", *GRID, *STEPS, "-o", str(tmp_path / "store")]
+    with in_this_process():
+        done = CliRunner().invoke(app, args, catch_exceptions=False)
+    assert done.exit_code == 130
+    assert done.stderr.splitlines()[-2:] == KEPT
+    assert len(read_store(tmp_path / "store").cells) == 2
+    monkeypatch.setattr(running, "measured", real)
+    assert counted(tmp_path / "store") == (NUMBER, NUMBER - 2, 2, NUMBER)
+    assert not read_store(tmp_path / "store").cells.key.duplicated().any()
 
 
 def test_a_folder_that_another_sweep_writes_to_is_refused(tmp_path: Path) -> None:
