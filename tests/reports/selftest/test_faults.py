@@ -85,14 +85,16 @@ def places_of(name: str) -> list[tuple[str, str]]:
 
 
 def in_turn() -> Iterator[tuple[str, str, str, int]]:
-    """Each fault in one of its places, which are taken in turn, and at steps that show it; one
-    inside an engine in each that can have it."""
+    """Each fault in one of its places, which are taken in turn where runs are short, and at steps
+    that show it; one inside an engine in each that can have it."""
     turn = 0
     for name, fault in FAULTS.items():
-        fine = fault.kind in ("motion", "forces") or name in UNSEEN_AT_90
+        short = fault.kind in ("motion", "forces")
+        fine = short or name in UNSEEN_AT_90
         for engine in engines_of(name) if fault.group in INSIDE else [None]:
             if there := [at for at in places_of(name) if engine in (None, at[1])]:
-                yield (name, *there[turn % len(there)], trial.STEPS if fine else COARSE)
+                at = there[turn % len(there)] if short else there[0]
+                yield (name, *at, trial.STEPS if fine else COARSE)
                 turn += 1
 
 
