@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from html.parser import HTMLParser
 
 from reports.store.manifest import Manifest
@@ -35,6 +36,31 @@ class Outline(HTMLParser):
 
     def named(self, tag: str) -> list[dict[str, str | None]]:
         return [attributes for name, attributes in self.elements if name == tag]
+
+    def sections(self) -> list[str | None]:
+        return [each["id"] for each in self.named("section")]
+
+
+def stands_alone(text: str, sections: list[str]) -> None:
+    """The sections are there in their order, all that leads somewhere does, and nothing is loaded
+    from outside."""
+    outline = Outline(text)
+    assert outline.open == []
+    assert outline.sections() == sections
+    ids = [attributes["id"] for _, attributes in outline.elements if "id" in attributes]
+    assert len(ids) == len(set(ids))
+    assert set(re.findall(r'aria-labelledby="([^"]+)"', text)) <= set(ids)
+    links = {(each["href"] or "")[1:] for each in outline.named("a")}
+    assert links - {""} <= set(ids)
+    assert {each["for"] for each in outline.named("label") if "for" in each} <= set(ids)
+    for tag, attributes in outline.elements:
+        for name in ("src", "href", "action", "data", "poster", "srcset"):
+            value = attributes.get(name) or "#"
+            assert value.startswith(("#", "data:")), f"{tag} {name}={value}"
+        assert not [name for name in attributes if name.startswith("on")]
+    style = text[text.index("<style>") : text.index("</style>")]
+    assert "url(" not in style
+    assert "@import" not in style
 
 
 def evil(stored: Stored) -> Stored:

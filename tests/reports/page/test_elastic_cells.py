@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable
 from dataclasses import replace
 from io import StringIO
@@ -27,6 +26,7 @@ from reports.results.recommend import ELASTIC_TARGETS, Recommendation, recommend
 from reports.results.table import recommendation_table
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store
+from tests.reports.page.hostile import Outline
 from tests.reports.page.tab import OUT, Tab
 from tests.worlds.in_process import in_this_process
 from tests.worlds.tiers import few
@@ -59,10 +59,6 @@ def bent_path(bent: Stored, written: Callable[[str], Path]) -> Path:
     return written(page(bent))
 
 
-def sections(text: str) -> list[str]:
-    return re.findall(r'<section[^>]* id="([^"]+)"', text)
-
-
 def beside(small: Stored, bent: Stored) -> Stored:
     """Both in one store."""
     return replace(
@@ -77,7 +73,7 @@ def beside(small: Stored, bent: Stored) -> Stored:
 
 def test_elastic_cells_have_a_section_with_their_own_heads(bent_path: Path) -> None:
     text = bent_path.read_text(encoding="utf-8")
-    assert sections(text) == ["verdict", "elastic", "stability", "fairness", "provenance"]
+    assert Outline(text).sections() == ["verdict", "elastic", "stability", "fairness", "provenance"]
     told = text[: text.index('id="provenance"')]
     assert "closed form" not in told
     assert "beam / D" in told

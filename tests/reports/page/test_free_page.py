@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +16,7 @@ from reports.page.sections.section import PageReport
 from reports.results.recommend import recommendations
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store
+from tests.reports.page.hostile import Outline
 from tests.reports.page.tab import Tab
 from tests.worlds.free_store import SCENE
 
@@ -33,10 +33,6 @@ def path(free: Stored, written: Callable[[str], Path]) -> Path:
     return written(page(free))
 
 
-def sections(text: str) -> list[str]:
-    return re.findall(r'<section[^>]* id="([^"]+)"', text)
-
-
 def embedded(report: PageReport, name: str) -> dict[str, object]:
     section = SECTIONS[name](report)
     assert section is not None
@@ -45,7 +41,7 @@ def embedded(report: PageReport, name: str) -> dict[str, object]:
 
 def test_a_page_of_free_runs_has_no_section_that_speaks_of_turns(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
-    assert sections(text) == FREE
+    assert Outline(text).sections() == FREE
     told = text[: text.index('id="provenance"')]
     assert "free drive" not in told  # where all were let go it needs no word
     assert "steps a turn" not in told

@@ -7,6 +7,7 @@ import math
 import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -22,7 +23,7 @@ from reports.stability.critical import command
 from reports.stability.grades import MEANINGS
 from reports.stability.matrix import FILE, OUTCOMES, Matrix, Picture, read_matrix, to_json
 from reports.store.reader import Stored
-from tests.reports.page.hostile import EVIL, Outline
+from tests.reports.page.hostile import EVIL, Outline, stands_alone
 from tests.reports.page.test_page import MEGABYTES_8
 
 
@@ -60,12 +61,7 @@ def test_every_outcome_has_a_sign_of_its_own_and_a_meaning() -> None:
 
 
 def test_the_page_stands_alone(text: str, hard_matrix: Matrix) -> None:
-    outline = Outline(text)
-    assert outline.open == []
-    assert [each["id"] for each in outline.named("section")] == ["hard"]
-    ids = [attributes["id"] for _, attributes in outline.elements if "id" in attributes]
-    assert len(ids) == len(set(ids))
-    assert set(re.findall(r'aria-labelledby="([^"]+)"', text)) <= set(ids)
+    stands_alone(text, ["hard"])
     assert "3 cases, 60 runs" in text
     assert all(value in text for value in hard_matrix.facts.values())
     assert len(text) < 500_000  # without Plotly
@@ -219,49 +215,23 @@ def test_long_reasons_are_cut_in_the_map_and_whole_where_the_run_is_told(
 
 def evil(matrix: Matrix) -> Matrix:
     """The matrix with hostile text wherever a file may have it."""
-    names = {case.name: f"{EVIL}{case.name}" for case in matrix.cases}
-    bad = ("group", "title", "source", "truth", "expected", "parameter", "unit")
+
+    def marked(one: Any, *fields: str, **other: object) -> Any:
+        names = {name: f"{EVIL}{getattr(one, name)}" for name in (*fields, "engine", "profile")
+                 if hasattr(one, name)}  # fmt: skip
+        return replace(one, **names, **other)
+
+    told = ("name", "group", "title", "source", "truth", "expected", "parameter", "unit")
+    labels = [tuple(f"{EVIL}{label}" for label in case.labels) for case in matrix.cases]
     return Matrix(
         facts={EVIL: EVIL, "made": EVIL},
         cases=tuple(
-            replace(
-                case,
-                name=names[case.name],
-                labels=tuple(f"{EVIL}{label}" for label in case.labels),
-                **{name: f"{EVIL}{getattr(case, name)}" for name in bad},
-            )
-            for case in matrix.cases
+            marked(one, *told, labels=own) for one, own in zip(matrix.cases, labels, strict=True)
         ),
-        runs=tuple(
-            replace(
-                run,
-                case=names[run.case],
-                engine=f"{EVIL}{run.engine}",
-                profile=f"{EVIL}{run.profile}",
-                label=EVIL,
-                reason=EVIL,
-            )
-            for run in matrix.runs
-        ),
-        critical=tuple(
-            replace(
-                one,
-                case=names[one.case],
-                engine=f"{EVIL}{one.engine}",
-                profile=f"{EVIL}{one.profile}",
-                words=EVIL,
-            )
-            for one in matrix.critical
-        ),
+        runs=tuple(marked(one, "case", label=EVIL, reason=EVIL) for one in matrix.runs),
+        critical=tuple(marked(one, "case", words=EVIL) for one in matrix.critical),
         pictures=tuple(
-            replace(
-                one,
-                case=names[one.case],
-                engine=f"{EVIL}{one.engine}",
-                profile=f"{EVIL}{one.profile}",
-                title=EVIL,
-                drawing={**one.drawing, "name": EVIL},
-            )
+            marked(one, "case", title=EVIL, drawing={**one.drawing, "name": EVIL})
             for one in matrix.pictures
         ),
     )
@@ -284,7 +254,7 @@ def test_the_hard_cases_stand_in_the_report_and_change_no_other_section(
     without, found = (path.read_text(encoding="utf-8") for path in (tiny_page, both_page))
     # Neither were forces asked for, nor was one let go, nor has one elastic links.
     there = [name for name in SECTIONS if name not in ("reading_forces", "free", "elastic")]
-    assert [each["id"] for each in Outline(found).named("section")] == there
+    assert Outline(found).sections() == there
     parts = [re.findall(r"<section.*?</section>", text, re.DOTALL) for text in (without, found)]
     assert parts[0] == [part for part in parts[1] if not part.startswith('<section id="hard"')]
 
