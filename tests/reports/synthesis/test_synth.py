@@ -21,9 +21,15 @@ def synth(*arguments: str) -> Result:
     return CliRunner(env={"COLUMNS": "160"}).invoke(app, ["synth", *arguments])
 
 
-def frame_of(kind: str, task: Path) -> pd.DataFrame:
-    """What is written of the solutions of a task, as a table."""
-    return solution_frame(solutions_of(load_task(kind, str(task))).examined)
+def written(folder: Path, text: str, head: str = 'name = "x"\nsource = "a test"\n') -> str:
+    """The path of a task's file with such a text."""
+    (folder / "task.toml").write_text(f"{head}{text}\n", encoding="utf-8")
+    return str(folder / "task.toml")
+
+
+def frame_of(kind: str, task: str) -> pd.DataFrame:
+    """The table of the solutions of a task, as it is written."""
+    return solution_frame(solutions_of(load_task(kind, task)).examined)
 
 
 def test_kinds_and_shipped_tasks_are_listed() -> None:
@@ -61,13 +67,8 @@ def test_a_proof_names_every_engine(tmp_path: Path) -> None:
 
 
 def test_a_position_that_an_engine_misses_is_an_exit_code(tmp_path: Path) -> None:
-    task = tmp_path / "tight.toml"
-    task.write_text(
-        'name = "tight"\nsource = "a test"\nswing_deg = 60.0\nrocker_m = 0.2\n'
-        "tolerance_deg = 1e-12\n",
-        encoding="utf-8",
-    )
-    result = synth("rocker", str(task), "--prove", "--best", "1", "--engine", "mujoco")
+    task = written(tmp_path, "swing_deg = 60.0\nrocker_m = 0.2\ntolerance_deg = 1e-12")
+    result = synth("rocker", task, "--prove", "--best", "1", "--engine", "mujoco")
     assert result.exit_code == 1
     assert "NOT PROVEN" in result.output
     assert "OUT" in result.output
@@ -173,9 +174,7 @@ IMPOSSIBLE = [
 
 @pytest.mark.parametrize(("kind", "text", "says"), IMPOSSIBLE)
 def test_what_no_mechanism_does_is_said(tmp_path: Path, kind: str, text: str, says: str) -> None:
-    task = tmp_path / "task.toml"
-    task.write_text(f'name = "x"\nsource = "a test"\n{text}\n', encoding="utf-8")
-    result = synth(kind, str(task))
+    result = synth(kind, written(tmp_path, text))
     assert result.exit_code == 2
     assert says in " ".join((result.output + result.stderr).split())
 
@@ -190,25 +189,20 @@ def test_fixed_pivots_stand_where_they_are_wished(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(coupler, "CHOSEN", 4)
-    task = tmp_path / "task.toml"
     region = "pivots_in = { from_m = [-0.3, -0.3], to_m = [0.8, 0.8] }\n"
-    task.write_text(f'name = "x"\nsource = "a test"\n{FOUR}{region}', encoding="utf-8")
-    frame = frame_of("coupler", task)
+    frame = frame_of("coupler", written(tmp_path, FOUR + region))
     assert len(frame) == 4
     for column in ("O2_x_m", "O2_y_m", "O4_x_m", "O4_y_m"):
         assert frame[column].between(-0.3, 0.8).all()
 
 
+THREE = find_task("coupler", "three-positions").read_text(encoding="utf-8")
+
+
 def test_wishes_that_are_not_fulfilled_are_told_and_ranked_behind(tmp_path: Path) -> None:
-    task = tmp_path / "task.toml"
-    text = load_text("coupler", "three-positions") + "least_transmission_deg = 50.0\n"
-    task.write_text(text, encoding="utf-8")
+    task = written(tmp_path, "least_transmission_deg = 50.0", THREE)
     remarks = frame_of("coupler", task)["remarks"].tolist()
     assert remarks == ["", "transmission below 50 deg"]
-
-
-def load_text(kind: str, name: str) -> str:
-    return find_task(kind, name).read_text(encoding="utf-8")
 
 
 def test_what_an_earlier_run_left_is_told(tmp_path: Path) -> None:
@@ -232,30 +226,24 @@ def test_the_page_leads_to_every_file_that_is_written(
 
 
 def test_loads_are_weighed(tmp_path: Path) -> None:
-    task = tmp_path / "task.toml"
     load = '[loads.weight]\nlink = "coupler"\npoint = "C"\nforce_n = {}\ndirection_deg = -90.0\n'
     torques = []
     for force in (100.0, 200.0):
-        text = load_text("coupler", "three-positions") + "speed_rad_s = 0.01\n" + load.format(force)
-        task.write_text(text, encoding="utf-8")
+        task = written(tmp_path, "speed_rad_s = 0.01\n" + load.format(force), THREE)
         torques.append(frame_of("coupler", task)["largest_torque_n_m"][0])
     assert torques[1] == pytest.approx(2.0 * torques[0], rel=1e-3)
 
 
 def test_a_rocker_about_a_point_of_the_body_does_its_task(tmp_path: Path) -> None:
-    task = tmp_path / "task.toml"
     poses = f"[{POSE.format(0.1, 0.0, 0.0)}, {POSE.format(0.1, 0.0, 90.0)}]"
-    head = 'name = "x"\nsource = "a test"\nrocker_m = 0.2\n'
-    task.write_text(f"{head}positions = {poses}\n", encoding="utf-8")
-    result = synth("rocker", str(task), "--best", "1", "--prove", "--engine", "mujoco")
+    task = written(tmp_path, f"rocker_m = 0.2\npositions = {poses}")
+    result = synth("rocker", task, "--best", "1", "--prove", "--engine", "mujoco")
     assert result.exit_code == 0, result.output + result.stderr
 
 
 def test_a_ram_that_turns_back_before_its_lever_has_a_fault(tmp_path: Path) -> None:
-    task = tmp_path / "task.toml"
-    head = 'name = "x"\nsource = "a test"\nmechanism = "slotted-lever"\n'
-    task.write_text(f"{head}time_ratio = 8.0\nstroke_m = 0.3\nrod_m = 0.1\n", encoding="utf-8")
-    result = synth("quick-return", str(task))
+    text = 'mechanism = "slotted-lever"\ntime_ratio = 8.0\nstroke_m = 0.3\nrod_m = 0.1'
+    result = synth("quick-return", written(tmp_path, text))
     assert result.exit_code == 1
     told = " ".join(result.output.split())
     assert "goes 0.301" in told
