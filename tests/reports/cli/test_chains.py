@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from typer.testing import Result
 
-from tests.worlds.command_line import crank, refused
+from tests.worlds.command_line import crank
 from tests.worlds.without_pdf import without_pdf
 
 
@@ -42,18 +42,3 @@ def test_a_sheet_is_written(tmp_path: Path, ending: str) -> None:
     assert "7 mechanisms" in result.output
     raw = file.read_bytes()
     assert b"layer-chains" in raw if ending == "svg" else raw.startswith(b"%PDF")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("--links", "7"), "4, 6, 8, 10 links"),
-        (("--links", "99"), "3 to 10 links"),
-        (("--links", "10", "--sliders", "1"), "up to 8 links"),
-        (("--sliders", "-1"), "take 0 or more"),
-        (("--links", "8", "--inversions", "-o", "x.svg"), "--paper A3 would do"),
-        (("-o", "x.txt"), "x.txt"),
-    ],
-)
-def test_what_can_not_be_asked_is_one_message(arguments: tuple[str, ...], message: str) -> None:
-    refused(chains(*arguments), message)

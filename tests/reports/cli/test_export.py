@@ -10,7 +10,7 @@ from analytic.elastic.discretisation import Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.free.release import release
 from models.files import load_scene
-from tests.worlds.command_line import crank, refused
+from tests.worlds.command_line import crank
 
 
 @pytest.mark.parametrize("name", ["fourbar-swing", "double-pendulum"])
@@ -56,7 +56,3 @@ def test_elastic_links_that_are_let_go_are_exported_as_segments_at_rest() -> Non
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_step(model, data, 20)
     assert np.abs(data.qvel).max() < 1e-9
-
-
-def test_no_link_that_bends_is_taken_as_rigid() -> None:
-    refused(crank("view", "fourbar-elastic-pulse", "-o", "a.gif"), "elastic")

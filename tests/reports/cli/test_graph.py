@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
 from typer.testing import Result
 
-from tests.worlds.command_line import crank, refused
+from tests.worlds.command_line import crank
 
 
 def graph(*arguments: object) -> Result:
@@ -37,29 +36,3 @@ def test_orders_are_fitted_and_the_log_of_an_engine_ends_in_its_own_error(tmp_pa
     assert last[3:] == ["-"] * 4  # of the log, in 96 parts: its own error is most of it
     assert "down to its own" in " ".join(floor)
     assert "reference, omega: order 1.99" in sheet.read_text(encoding="utf-8")
-
-
-def test_of_what_turns_evenly_there_are_no_errors_to_draw(tmp_path: Path) -> None:
-    sheet = tmp_path / "orders.svg"
-    refused(graph("--of", "crank", "--divisions", "12,24", "-o", sheet), "no errors to draw")
-    assert not sheet.exists()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [
-        (("--divisions", "3"), "a period has 4 to 1440 parts"),
-        (("--divisions", "9" * 5000), "a period has 4 to 1440 parts"),
-        (("--divisions", "12,"), "give whole numbers"),
-        (("--divisions", "-12"), "give whole numbers"),
-        (("--divisions", "24,12"), "each above the one before"),
-        (("--by", "ruler"), "use chords, tangents, integration"),
-        (("--over", "crank"), "use time or angle"),
-        (("--map", "map.toml"), "give --log as well"),
-        (("--log", "nowhere.csv"), "nowhere.csv"),
-        (("-o", "graph.png"), "use .svg, .pdf"),
-        (("--paper", "B9"), "no size; use A5"),
-    ],
-)
-def test_what_can_not_be_asked_is_refused(arguments: tuple[str, ...], told: str) -> None:
-    refused(graph(*arguments), told)

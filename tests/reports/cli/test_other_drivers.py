@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.worlds.command_line import crank, flat, refused
+from tests.worlds.command_line import crank, flat
 from tests.worlds.tiers import few
 
 PISTON, COUPLER = "slider-crank-by-piston", "fourbar-by-coupler"
@@ -19,20 +19,6 @@ SHOWN: dict[str, Sequence[str]] = {
     f"graph {PISTON} --of rod": ["no. C m phi rad", "12 0.30000"],
     f"graph {COUPLER} --of rocker": ["no. coupler deg"],
 }  # fmt: skip
-REFUSED = {
-    f"solve {PISTON} --at-deg 30": "give its displacement by --at-m",
-    "solve tangent --at-m 1": "give its angle by --at-deg",
-    f"solve {PISTON} --at-m 0.3 --at-deg 1": "one place; give one",
-    f"solve {PISTON} --at-m 0.45": "goes from 0.21 to 0.39 m",
-    f"solve {PISTON} --at-m 0.3 --clockwise": "slider C does not turn",
-    f"polygon {PISTON}": "a vector polygon takes a driver that is a link",
-    f"centres {COUPLER}": "this scene's is pin B of crank and coupler",
-    "centres triad-platform": "a group of class III about plate",
-    f"cycle {COUPLER}": "a cycle of speed takes a driver that is a link",
-    f"flywheel {COUPLER} --delta 0.1": "takes a driver that is a link",
-    f"solve {PISTON} --family crank=0.1,0.11 -o a.html": "--family takes",
-    f"graph {PISTON} --of rod --over angle": "slider C, which has no angle; use --over time",
-}
 
 
 @pytest.mark.parametrize("line", SHOWN)
@@ -40,11 +26,6 @@ def test_the_driver_is_told_in_its_own_words_and_units(line: str) -> None:
     told = crank(*line.split())
     assert told.exit_code == 0, told.output
     assert [text for text in SHOWN[line] if text not in flat(told.output)] == []
-
-
-@pytest.mark.parametrize("line", REFUSED)
-def test_what_only_a_crank_has_is_refused_with_what_drives(line: str) -> None:
-    refused(crank(*line.split()), REFUSED[line])
 
 
 @pytest.mark.parametrize("scene", few([PISTON, COUPLER], [PISTON], "the same sheet"))

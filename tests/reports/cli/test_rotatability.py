@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from tests.worlds.command_line import crank, refused
+from tests.worlds.command_line import crank
 
 
 def test_json_holds_what_the_tables_say() -> None:
@@ -35,11 +35,3 @@ def test_the_branch_of_what_has_no_circuits_is_told_with_its_ends() -> None:
     assert "slider C ends at 0.2 m: crank and rod in line" in told.output
     told = crank("rotatability", "triad-platform", "--json")
     assert json.loads(told.output)["ends"] == []
-    result = crank("rotatability", "triad-platform", "--position", "30")
-    refused(result, "they are found of class II mechanisms")
-
-
-@pytest.mark.parametrize("position", ["x", "30:", "30:+-", "nan", "30:1"])
-def test_a_position_that_is_none_is_refused(position: str) -> None:
-    result = crank("rotatability", "fourbar-lecture-1", "--position", position)
-    refused(result, "wants degrees")

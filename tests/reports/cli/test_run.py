@@ -107,30 +107,6 @@ def test_what_an_engine_can_not_hold_is_told_and_nothing_written(tmp_path: Path)
     assert not log.exists()
 
 
-@pytest.mark.parametrize(
-    ("args", "told"),
-    [
-        ("fourbar", "scene 'fourbar': neither a shipped scene nor a file"),
-        ("shaper --engine mujocco", "did you mean mujoco?"),
-        ("shaper --profile tund", "profile 'tund': mujoco has none of that name"),
-        ("shaper --dt 1e-3 --steps-per-turn 90", "--dt and --steps-per-turn: both set the step"),
-        ("shaper --turns nan", "--turns nan: give a number above 0"),
-        ("fourbar-swing --turns 1", "--turns: fourbar-swing is let go, and has no turns"),
-        ("fourbar-swing --duration -1", "--duration -1: give a number above 0"),
-        ("fourbar-swing --duration 1e9", "1e+12 steps of fourbar-swing"),
-        ("shaper --duration 1", "--duration: it is of runs that are let go, and shaper is driven"),
-        ("shaper --every 0", "--every: found 0; give a whole number, at least 1"),
-        ("shaper --drive x", "--drive 'x': unknown; use prescribed, servo or free"),
-        ("shaper --turns 1e9", "steps of shaper; at most 300000 are logged"),
-        ("shaper --turns 1e9 --every 100", "steps of shaper; at most 30000000; take"),
-        ("shaper -o log.txt", "-o log.txt: found '.txt'; use .csv, .parquet, .xlsx"),
-        ("shaper -o nowhere/log.csv", "there is no folder nowhere; create it first"),
-    ],
-)
-def test_bad_input_is_one_message_and_exit_code_2(args: str, told: str) -> None:
-    refused(crank("run", *args.split()), told)
-
-
 def test_a_log_of_the_start_alone_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     result = crank("run", "fourbar-lecture-1", *COARSE, "--every", "91", "-o", str(path))

@@ -116,20 +116,3 @@ def test_a_faulty_joint_is_refused_with_one_message(tmp_path: Path, text: str, s
     path = tmp_path / "faulty.toml"
     path.write_text(text, encoding="utf-8")
     refused(crank("joint", path), says)
-
-
-@pytest.mark.parametrize(
-    ("asked", "says"),
-    [
-        (("joint", "revolut"), "joint 'revolut': neither a shipped name nor a file. Did you mean"),
-        (("mobility", "zzz"), "`crankcheck mobility` lists the names"),
-        (("mobility", "four-bar", "-o", "x.toml"), "add --replace"),
-        (("mobility", "--replace"), "name a scheme"),
-        (("mobility", "four-bar", "--replace"), "four-bar: no higher pair"),
-        (("mobility", "sarrus", "--replace"), "sarrus: a spatial scheme"),
-        (("mobility", "gear-pair", "--replace", "-o", "x.svg"), ".toml"),
-        (("joint", "."), "a folder"),
-    ],
-)
-def test_what_can_not_be_asked_is_refused(asked: tuple[str, ...], says: str) -> None:
-    refused(crank(*asked), says)

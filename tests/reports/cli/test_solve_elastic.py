@@ -13,8 +13,7 @@ from analytic.elastic.discretisation import REFERENCE
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.kinematics import solve
 from models.files import load_scene
-from models.scene_text import scene_text
-from tests.worlds.command_line import crank, flat, refused
+from tests.worlds.command_line import crank, flat
 from tests.worlds.tiers import slow
 from tests.worlds.without_pdf import without_pdf
 
@@ -138,39 +137,3 @@ def test_a_driver_that_is_controlled_gives_way() -> None:
     )  # fmt: skip
     assert "crank, elastic less rigid" in told
     assert "driving torque, elastic" in told
-
-
-REFUSED = {
-    f"solve {NAME} --at-deg 90": "--at-deg: fourbar-elastic has elastic links (coupler)",
-    f"solve {NAME} --along C:30": "--along: fourbar-elastic has elastic links",
-    f"solve {NAME} --duration 2": "--duration 2: fourbar-elastic is driven",
-    f"solve {NAME} --modes 0": "--modes: found 0; give a whole number, at least 1",
-    f"solve {NAME} --modes 99": "--modes 99: at most 20",
-    f"solve {NAME} --elements 99": "--elements 99: at most 12",
-    f"solve {NAME} --elements 2 --modes 3": "--elements with --modes",
-    f"solve {NAME} --axial-modes 2": "--axial-modes 2: no elastic link of",
-    f"solve {NAME} --shape bent": "--shape 'bent': unknown; use quasi-static, straight or periodic",
-    f"solve {NAME} --steps-per-turn 9 -o OUT.html": "a page has its own samples",
-    f"solve {NAME} --turns 0": "--turns 0: give a number above 0",
-    "solve fourbar-elastic-pulse --turns 2": "--turns: fourbar-elastic-pulse is let go",
-    "solve fourbar-elastic-pulse --forces": "--forces: fourbar-elastic-pulse is let go",
-    "solve fourbar-elastic-pulse --shape periodic": "driver of fourbar-elastic-pulse is let go",
-    "solve fourbar-elastic-pulse --steps 9 -o OUT.html": "leave out --steps",
-    "solve fourbar-lecture-1 --modes 3": "--modes: fourbar-lecture-1 has no elastic links",
-    "solve fourbar-lecture-1 --linear": "--linear: fourbar-lecture-1 has no elastic links",
-    "solve fourbar-swing --shape straight": "--shape: fourbar-swing has no elastic links",
-    "solve law.toml --shape periodic": "does not come back after a period",
-}
-
-
-@pytest.mark.parametrize("line", REFUSED)
-def test_what_makes_no_sense_of_elastic_links_is_refused(
-    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    law = 'law = "from-rest"\nspeed_rad_s = 7.3686\nrise_s = 0.5'
-    text = scene_text(load_scene(NAME))
-    text = re.sub(r"speed_rad_s = 7.3686", law, text).replace('shape = "periodic"', "")
-    Path("law.toml").write_text(text, encoding="utf-8")
-    refused(crank(*line.split()), REFUSED[line])
-    assert [each.name for each in tmp_path.iterdir()] == ["law.toml"]

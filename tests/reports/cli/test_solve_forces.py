@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,11 +12,11 @@ import pytest
 
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve_driven
-from models.files import load_scene, shipped
+from models.files import load_scene
 from models.scene import Scene
 from models.scene_text import scene_text
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
-from tests.worlds.command_line import crank, flat, refused
+from tests.worlds.command_line import crank, flat
 from tests.worlds.without_pdf import without_pdf
 
 
@@ -104,43 +103,3 @@ def test_redundant_links_leave_the_torque_and_say_why(tmp_path: Path) -> None:
     assert "Reactions: none, as how redundant links (strut) share the load" in output
     drawn = {path.name for path in tmp_path.iterdir() if path.suffix != ".toml"}
     assert drawn == {"torque.svg", "torque.pdf", "reduced.svg", "reduced.pdf"}
-
-
-def massless(scene: Scene) -> Scene:
-    links = {
-        name: replace(link, mass_kg=0.0, inertia_kg_m2=0.0) for name, link in scene.links.items()
-    }
-    return replace(scene, name="massless", links=links)
-
-
-MISTAKES: dict[str, Sequence[str]] = {
-    "flat.toml --forces --at-deg 180": ["crank at 180 deg", "dead point"],
-    "massless.toml --forces": ["no link or slider has a mass", "mass_kg"],
-    "pulsed.toml --forces --at-deg 90": ["loads.pulse follows time", "ask for a motion over time"],
-    "shaper --figures figs": ["--figures", "give --forces"],
-    "shaper --forces --figures figs --at-deg 90": ["--at-deg 90", "they are of a turn"],
-    "shaper -o out.html --at-deg 90": ["-o out.html", "leave out --at-deg"],
-    "shaper --forces --figures flat.toml": ["--figures"],
-}
-PULSE = """
-[loads.pulse]
-link = "crank"
-law = "sine"
-over = "time"
-period_s = 0.1
-torque_n_m = 2.0
-"""
-
-
-@pytest.mark.parametrize("line", MISTAKES)
-def test_a_mistake_ends_with_2_one_message_and_nothing_written(
-    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    pulsed = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8") + PULSE
-    Path("pulsed.toml").write_text(pulsed, encoding="utf-8")
-    written(replace(parallelogram(1), name="flat"), tmp_path)
-    written(massless(load_scene("fourbar-lecture-1")), tmp_path)
-    before = set(tmp_path.iterdir())
-    refused(crank("solve", *line.split()), *MISTAKES[line])
-    assert set(tmp_path.iterdir()) == before

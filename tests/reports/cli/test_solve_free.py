@@ -83,36 +83,6 @@ def test_a_picture_shows_it_moving(tmp_path: Path) -> None:
         assert picture.size[0] > 1000
 
 
-REFUSED = {
-    "solve fourbar-swing --at-deg 90": "--at-deg: fourbar-swing is let go, and moves over time",
-    "solve fourbar-swing --turns 2": "leave --turns out, and give --duration and --steps",
-    "solve fourbar-swing --steps-per-turn 9": "--steps-per-turn: fourbar-swing is let go",
-    "solve fourbar-swing --clockwise": "--clockwise: fourbar-swing is let go",
-    "solve fourbar-swing --along C:30": "--along: fourbar-swing is let go",
-    "solve fourbar-swing --forces": "--forces: fourbar-swing is let go",
-    "solve fourbar-swing --duration 0": "--duration 0: give seconds above 0",
-    "solve fourbar-swing --duration -1": "--duration -1: give seconds above 0",
-    "solve fourbar-swing --duration nan": "--duration nan: give seconds above 0",
-    "solve fourbar-swing --duration inf": "--duration inf: give seconds above 0",
-    "solve fourbar-swing --steps 0": "--steps 0: give at least 1",
-    "solve fourbar-swing --steps 1000000": "--steps 1000000: 1000001 samples; at most 1000000",
-    "solve fourbar-swing --steps 9 -o OUT.html": "a page has its own samples; leave out --steps",
-    "solve fourbar-swing -o OUT.json": "-o OUT.json",
-    "solve fourbar-lecture-1 --duration 2": '--duration 2: fourbar-lecture-1 is driven, and not let go (law = "free")',
-    "solve fourbar-lecture-1 --steps 2": "--steps 2: fourbar-lecture-1 is driven",
-    "view fourbar-swing --forces -o OUT.png": "it is drawn without its forces",
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("line", REFUSED)
-def test_what_makes_no_sense_of_a_free_motion_is_refused(
-    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    refused(crank(*line.split()), REFUSED[line])
-    assert not list(tmp_path.iterdir())
-
-
 SHORT_OF = {
     "motor": ("at_rad_s = [-40.0, 60.0]", "at_rad_s = [-1.0, 2.5]", "loads.motor: over the omega"),
     "start": ("rates_rad_s = { crank = 2.0 }", "rates_rad_s = { rod = 2.0 }", "rod"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import json
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree as Xml
 
@@ -142,53 +142,6 @@ def test_a_disk_that_fills_up_costs_the_file_and_not_the_table(
     result = crank(*ONE, "--engine", "mujoco", "--csv", str(tmp_path / "cells.csv"))
     assert "WITHIN TOLERANCE" in result.output
     refused(result, "cells.csv: can not be written: No space left on device; free some space")
-
-
-V = "verify fourbar-lecture-1"
-ONCE = " ".join(ONE)
-HERE = Path(__file__)
-MISTAKES: dict[str, Sequence[str]] = {
-    "verify fourbar-lectur-1": ["'fourbar-lectur-1'", "fourbar-lecture-1"],
-    f"{ONCE} --engine mujco": ["'mujco'", "did you mean mujoco"],
-    f"{ONCE} --profile tund": ["'tund'", "did you mean tuned"],
-    f"{ONCE} --drive belt": ["'belt'", "prescribed or servo"],
-    f"{ONCE} --tol angle:1e-4": ["--tol 'angle:1e-4'", "angle=1e-4"],
-    f"{ONCE} --tol angel=1": ["'angel' is no quantity", "mean angle"],
-    f"{V} --dt 0": ["--dt 0", "above 0"],
-    f"{V} --dt -1e-3": ["--dt -0.001", "above 0"],
-    f"{V} --dt nan": ["--dt nan", "above 0"],
-    f"{V} --dt small": ["--dt", "no number"],
-    f"{V} --dt 0.1": ["--dt 0.1", "6.28 steps in a turn", "at least 8", "at most 0.07854 s"],
-    "verify --steps-per-turn 7.9": ["--steps-per-turn 7.9", "at least 8"],
-    f"{V} --dt 1e-9": ["--dt 1e-09", "at most 300000"],
-    f"{V} --dt 1e-320": ["steps of fourbar-lecture-1", "at most 300000"],
-    "verify --steps-per-turn 1e308": ["at most 300000 are logged"],
-    f"{V} --turns 1e300": ["--turns 1e+300: 7.2e+302 steps", "fewer turns"],
-    f"{V} --turns 0.1": [
-        "--turns 0.1: 72 steps of fourbar-lecture-1", "at least 80", "take 0.111 turns or more",
-    ],
-    f"{ONCE} --csv x --json ./x": ["--csv and --json: both name x", "a file of its own"],
-    f"{ONCE} -o . --csv verify.json": ["--csv and -o: both name verify.json"],
-    f"{ONCE} --dt 1e-3": ["--dt and --steps-per-turn", "one of them"],
-    f"{V} --turns 0": ["--turns 0", "above 0"],
-    f"{V} --turns inf": ["--turns inf"],
-    f"{ONCE} --junit {HERE}/j.xml": ["--junit", "no folder"],
-    f"{ONCE} --csv {HERE.parent}": ["--csv", "a folder"],
-    f"{ONCE} -o {HERE}": ["-o", "is a file; name a folder"],
-    f"verify {HERE.parent}": ["a folder"],
-    f"{ONCE} --jobs -1": ["--jobs", "greater than or equal to 0"],
-    f"{ONCE} --toll angle=1": ["--toll"],
-    "verfy": ["verfy"],
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("line", MISTAKES)
-def test_a_mistake_ends_with_2_and_a_message_that_names_place_fault_and_cure(
-    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    refused(crank(*line.split()), *MISTAKES[line])
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_an_engine_that_is_not_installed_names_the_command_that_installs_it(

@@ -1,0 +1,327 @@
+"""What no command can be asked: each line is refused with exit code 2 and a message that names
+place, fault and cure, before anything is written."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from models.files import load_scene, shipped
+from models.scene import Scene
+from models.scene_text import scene_text
+from tests.analytic.dyads.test_redundant import parallelogram
+from tests.worlds.command_line import crank, refused
+
+Mistakes = dict[str, str | Sequence[str]]
+HERE = Path(__file__)
+V, ONCE = "verify fourbar-lecture-1", "verify fourbar-lecture-1 --steps-per-turn 360 --turns 1"
+VERIFY: Mistakes = {
+    "verify fourbar-lectur-1": ["'fourbar-lectur-1'", "fourbar-lecture-1"],
+    f"{V} --engine mujco": ["'mujco'", "did you mean mujoco"],
+    f"{V} --profile tund": ["'tund'", "did you mean tuned"],
+    f"{V} --drive belt": ["'belt'", "prescribed or servo"],
+    f"{V} --tol angle:1e-4": ["--tol 'angle:1e-4'", "angle=1e-4"],
+    f"{V} --tol angel=1": ["'angel' is no quantity", "mean angle"],
+    f"{V} --dt 0": ["--dt 0", "above 0"],
+    f"{V} --dt -1e-3": ["--dt -0.001", "above 0"],
+    f"{V} --dt nan": ["--dt nan", "above 0"],
+    f"{V} --dt small": ["--dt", "no number"],
+    f"{V} --dt 0.1": ["--dt 0.1", "6.28 steps in a turn", "at least 8", "at most 0.07854 s"],
+    "verify --steps-per-turn 7.9": ["--steps-per-turn 7.9", "at least 8"],
+    f"{V} --dt 1e-9": ["--dt 1e-09", "at most 300000"],
+    f"{V} --dt 1e-320": ["steps of fourbar-lecture-1", "at most 300000"],
+    "verify --steps-per-turn 1e308": "at most 300000 are logged",
+    f"{V} --turns 1e300": ["--turns 1e+300: 7.2e+302 steps", "fewer turns"],
+    f"{V} --turns 0.1": [
+        "--turns 0.1: 72 steps of fourbar-lecture-1",
+        "at least 80",
+        "take 0.111 turns or more",
+    ],
+    f"{ONCE} --csv x --json ./x": ["--csv and --json: both name x", "a file of its own"],
+    f"{ONCE} -o . --csv verify.json": "--csv and -o: both name verify.json",
+    f"{ONCE} --dt 1e-3": ["--dt and --steps-per-turn", "one of them"],
+    f"{V} --turns 0": ["--turns 0", "above 0"],
+    f"{V} --turns inf": "--turns inf",
+    f"{ONCE} --junit {HERE}/j.xml": ["--junit", "no folder"],
+    f"{ONCE} --csv {HERE.parent}": ["--csv", "a folder"],
+    f"{ONCE} -o {HERE}": ["-o", "is a file; name a folder"],
+    f"verify {HERE.parent}": "a folder",
+    f"{ONCE} --jobs -1": ["--jobs", "greater than or equal to 0"],
+    f"{ONCE} --toll angle=1": "--toll",
+    "verfy": "verfy",
+    "verify fourbar-swing --turns 2": "--turns: what is let go has no turns; give --dt",
+    "verify fourbar-swing --steps-per-turn 90": "--steps-per-turn: what is let go has no turns",
+    "verify fourbar-swing --drive servo": "--drive servo: fourbar-swing is let go",
+    f"{V} --duration 2": ["--duration: it is of scenes", "--free"],
+    f"{V} --tol phase=1": "--tol phase: it is of free motion",
+    "verify fourbar-swing --tol drive=1": "--tol drive: it is of a drive",
+    "verify fourbar-swing --tol reaction=1": "--tol reaction: forces are not judged",
+    "verify fourbar-swing --dt 1": ["10 steps of fourbar-swing", "80 at least"],
+    "verify fourbar-swing --dt 1e-9": ["1e+10 steps of fourbar-swing", "300000 at most"],
+    "verify fourbar-swing --duration -1": "--duration -1: give a number above 0",
+    "verify fourbar-swing --dt 0": "--dt 0: give a number above 0",
+    "verify --free slider-crank-self-locking": ["friction that grows", "take it out"],
+    "verify --mjcf x.xml --free": "--mjcf and --free",
+    "sweep --free --turns 2 -o out": "--turns: what is let go has no turns",
+    "sweep --free --steps-per-turn 90 -o out": "--steps-per-turn: what is let go has no turns",
+    "sweep fourbar-lecture-1 --dt 1e-3 -o out": "--dt: it is of scenes that are let go",
+    "sweep fourbar-swing -o out": "its driver is let go, and follows no law",
+    "sweep --free --dt 1;2 -o out": "--dt '1;2': write numbers with commas",
+}
+SOLVE: Mistakes = {
+    "solve scotch-yok": ["'scotch-yok'", "scotch-yoke"],
+    "solve locks.toml --at-deg 180": ["180", "can stand at"],
+    "solve tangent --at-deg 41": ["--at-deg 41", "swings from -40 to 40 deg"],
+    "solve tangent --along P": ["--along P", "such as C:30"],
+    "solve tangent --along P:x": ["--along P:x", "in degrees"],
+    "solve shaper --along Q:0": ["--along Q:0", "A, C, B, E, F"],
+    "solve tangent --clockwise": ["--clockwise", "give --at-deg"],
+    "solve tangent --at-deg nan": "--at-deg nan",
+    "solve tangent --at-deg 1e300": ["1e+300", "up to 1e+06"],
+    "solve tangent --at-deg 0 --turns 1": ["--at-deg 0 with --turns", "one of them"],
+    "solve tangent --turns 0": ["--turns 0", "above 0"],
+    "solve tangent --steps-per-turn 0": "--steps-per-turn 0",
+    "solve tangent --steps-per-turn 2000000": ["2000001 samples", "at most 1000000"],
+    "solve tangent --turns 1e300": ["1.2e+301 samples", "fewer"],
+    f"solve tangent --turns 1e300 --steps-per-turn 1{310 * '0'}": "samples; at most 1000000",
+    "solve tangent -o out.txt": ["-o out.txt", "'.txt'", ".csv, .parquet, .xlsx"],
+    "solve tangent -o no/out.csv": "there is no folder no",
+    "export tangent -o out.mjcf": ["'.mjcf'", "use .xml"],
+    "export fourbar-lecture-1 --close Q": ["close = Q", "not a pin that can close a loop"],
+    "export tangen -o out.xml": "mean tangent",
+    "view tangent -o t.mp4": ["'.mp4'", ".gif, .png"],
+    "view fourbar-elastic-pulse -o a.gif": "elastic",
+    "solve flat.toml --forces --at-deg 180": ["crank at 180 deg", "dead point"],
+    "solve massless.toml --forces": ["no link or slider has a mass", "mass_kg"],
+    "solve pulsed.toml --forces --at-deg 90": [
+        "loads.pulse follows time",
+        "ask for a motion over time",
+    ],
+    "solve shaper --figures figs": ["--figures", "give --forces"],
+    "solve shaper --forces --figures figs --at-deg 90": ["--at-deg 90", "they are of a turn"],
+    "solve shaper -o out.html --at-deg 90": ["-o out.html", "leave out --at-deg"],
+    "solve shaper --forces --figures flat.toml": "--figures",
+}
+FREE: Mistakes = {
+    "solve fourbar-swing --at-deg 90": "--at-deg: fourbar-swing is let go, and moves over time",
+    "solve fourbar-swing --turns 2": "leave --turns out, and give --duration and --steps",
+    "solve fourbar-swing --steps-per-turn 9": "--steps-per-turn: fourbar-swing is let go",
+    "solve fourbar-swing --clockwise": "--clockwise: fourbar-swing is let go",
+    "solve fourbar-swing --along C:30": "--along: fourbar-swing is let go",
+    "solve fourbar-swing --forces": "--forces: fourbar-swing is let go",
+    "solve fourbar-swing --duration 0": "--duration 0: give seconds above 0",
+    "solve fourbar-swing --duration -1": "--duration -1: give seconds above 0",
+    "solve fourbar-swing --duration nan": "--duration nan: give seconds above 0",
+    "solve fourbar-swing --duration inf": "--duration inf: give seconds above 0",
+    "solve fourbar-swing --steps 0": "--steps 0: give at least 1",
+    "solve fourbar-swing --steps 1000000": "--steps 1000000: 1000001 samples; at most 1000000",
+    "solve fourbar-swing --steps 9 -o OUT.html": "a page has its own samples; leave out --steps",
+    "solve fourbar-swing -o OUT.json": "-o OUT.json",
+    "solve fourbar-lecture-1 --duration 2": [
+        "--duration 2: fourbar-lecture-1 is driven, and not let go",
+        'go (law = "free")',
+    ],
+    "solve fourbar-lecture-1 --steps 2": "--steps 2: fourbar-lecture-1 is driven",
+    "view fourbar-swing --forces -o OUT.png": "it is drawn without its forces",
+}
+ELASTIC: Mistakes = {
+    "solve fourbar-elastic --at-deg 90": "--at-deg: fourbar-elastic has elastic links (coupler)",
+    "solve fourbar-elastic --along C:30": "--along: fourbar-elastic has elastic links",
+    "solve fourbar-elastic --duration 2": "--duration 2: fourbar-elastic is driven",
+    "solve fourbar-elastic --modes 0": "--modes: found 0; give a whole number, at least 1",
+    "solve fourbar-elastic --modes 99": "--modes 99: at most 20",
+    "solve fourbar-elastic --elements 99": "--elements 99: at most 12",
+    "solve fourbar-elastic --elements 2 --modes 3": "--elements with --modes",
+    "solve fourbar-elastic --axial-modes 2": "--axial-modes 2: no elastic link of",
+    "solve fourbar-elastic --shape bent": [
+        "--shape 'bent': unknown; use quasi-static, straight or periodic"
+    ],
+    "solve fourbar-elastic --steps-per-turn 9 -o OUT.html": "a page has its own samples",
+    "solve fourbar-elastic --turns 0": "--turns 0: give a number above 0",
+    "solve fourbar-elastic-pulse --turns 2": "--turns: fourbar-elastic-pulse is let go",
+    "solve fourbar-elastic-pulse --forces": "--forces: fourbar-elastic-pulse is let go",
+    "solve fourbar-elastic-pulse --shape periodic": "driver of fourbar-elastic-pulse is let go",
+    "solve fourbar-elastic-pulse --steps 9 -o OUT.html": "leave out --steps",
+    "solve fourbar-lecture-1 --modes 3": "--modes: fourbar-lecture-1 has no elastic links",
+    "solve fourbar-lecture-1 --linear": "--linear: fourbar-lecture-1 has no elastic links",
+    "solve fourbar-swing --shape straight": "--shape: fourbar-swing has no elastic links",
+    "solve law.toml --shape periodic": "does not come back after a period",
+}
+PISTON, COUPLER = "slider-crank-by-piston", "fourbar-by-coupler"
+DRIVERS: Mistakes = {
+    f"solve {PISTON} --at-deg 30": "give its displacement by --at-m",
+    "solve tangent --at-m 1": "give its angle by --at-deg",
+    f"solve {PISTON} --at-m 0.3 --at-deg 1": "one place; give one",
+    f"solve {PISTON} --at-m 0.45": "goes from 0.21 to 0.39 m",
+    f"solve {PISTON} --at-m 0.3 --clockwise": "slider C does not turn",
+    f"polygon {PISTON}": "a vector polygon takes a driver that is a link",
+    f"centres {COUPLER}": "this scene's is pin B of crank and coupler",
+    "centres triad-platform": "a group of class III about plate",
+    f"cycle {COUPLER}": "a cycle of speed takes a driver that is a link",
+    f"flywheel {COUPLER} --delta 0.1": "takes a driver that is a link",
+    f"solve {PISTON} --family crank=0.1,0.11 -o a.html": "--family takes",
+    f"graph {PISTON} --of rod --over angle": "slider C, which has no angle; use --over time",
+}
+FAMILY = "solve fourbar-lecture-1 --family BC=0.25,0.3 -o f.xlsx"
+FAMILIES: Mistakes = {
+    FAMILY.replace("lecture-1", "elastic"): "has elastic links",
+    FAMILY.replace("lecture-1", "swing"): "is let go",
+    f"{FAMILY} --at-deg 3": "--family with --at-deg",
+    f"{FAMILY} --forces": "--family with --forces",
+    f"{FAMILY} --clockwise": "--family with --clockwise",
+    f"{FAMILY} --along C:0": "--family with --along",
+    f"{FAMILY} --steps 9": "--steps 9: fourbar-lecture-1 is driven",
+    f"{FAMILY} --modes 2": "--modes: fourbar-lecture-1 has no elastic links",
+    f"{FAMILY} --turns 100": "36001 rows of 2 members; at most 20000",
+    f"{FAMILY} --family BC=0.25,nan": "write a name and numbers",
+    f"{FAMILY} --family BC": "write a name and numbers",
+    f"{FAMILY} --family BC=0.25,0.01": "BC=0.01: this member cannot be",
+    f"{FAMILY} -o f.csv": "found '.csv'; use .xlsx, .html, .svg, .pdf",
+    "solve slotted-lever --family R=0.1,0.12": "-o FILE.xlsx, FILE.html, FILE.svg, FILE.pdf",
+}
+RUN: Mistakes = {
+    "run fourbar": "scene 'fourbar': neither a shipped scene nor a file",
+    "run shaper --engine mujocco": "did you mean mujoco?",
+    "run shaper --profile tund": "profile 'tund': mujoco has none of that name",
+    "run shaper --dt 1e-3 --steps-per-turn 90": "--dt and --steps-per-turn: both set the step",
+    "run shaper --turns nan": "--turns nan: give a number above 0",
+    "run fourbar-swing --turns 1": "--turns: fourbar-swing is let go, and has no turns",
+    "run fourbar-swing --duration -1": "--duration -1: give a number above 0",
+    "run fourbar-swing --duration 1e9": "1e+12 steps of fourbar-swing",
+    "run shaper --duration 1": "--duration: it is of runs that are let go, and shaper is driven",
+    "run shaper --every 0": "--every: found 0; give a whole number, at least 1",
+    "run shaper --drive x": "--drive 'x': unknown; use prescribed, servo or free",
+    "run shaper --turns 1e9": "steps of shaper; at most 300000 are logged",
+    "run shaper --turns 1e9 --every 100": "steps of shaper; at most 30000000; take",
+    "run shaper -o log.txt": "-o log.txt: found '.txt'; use .csv, .parquet, .xlsx",
+    "run shaper -o nowhere/log.csv": "there is no folder nowhere; create it first",
+}
+RECIPE = "recipe forces --engine mujoco"
+RECIPES: Mistakes = {
+    "recipe forces --engine mujoca": "mujoca",
+    f"{RECIPE} --scene nowhere": "nowhere",
+    f"{RECIPE} --scene tangent": "driver",
+    f"{RECIPE} --profile best": "best",
+    f"{RECIPE} --steps-per-turn 0": "found 0; give a number above 0",
+    f"{RECIPE} --steps-per-turn 4": "at least 8 are needed",
+    f"{RECIPE} --steps-per-turn 1e300": ["1e+300", "300000 at most"],
+    f"{RECIPE} --steps-per-turn inf": "found inf",
+    f"{RECIPE} -o forces.txt": "use .py",
+    "recipe forces": "Missing option '--engine'",
+}
+GRAPH = "graph fourbar-lecture-1 --of rocker"
+GRAPHS: Mistakes = {
+    f"{GRAPH} --divisions 3": "a period has 4 to 1440 parts",
+    f"{GRAPH} --divisions {'9' * 5000}": "a period has 4 to 1440 parts",
+    f"{GRAPH} --divisions 12,": "give whole numbers",
+    f"{GRAPH} --divisions -12": "give whole numbers",
+    f"{GRAPH} --divisions 24,12": "each above the one before",
+    f"{GRAPH} --by ruler": "use chords, tangents, integration",
+    f"{GRAPH} --over crank": "use time or angle",
+    f"{GRAPH} --map map.toml": "give --log as well",
+    f"{GRAPH} --log nowhere.csv": "nowhere.csv",
+    f"{GRAPH} -o graph.png": "use .svg, .pdf",
+    f"{GRAPH} --paper B9": "no size; use A5",
+    f"{GRAPH} --of crank --divisions 12,24 -o orders.svg": "no errors to draw",
+}
+POLYGON = "polygon fourbar-lecture-1"
+POLYGONS: Mistakes = {
+    f"{POLYGON} --k 0": "--k 0: give a number from 0.001 to 1000",
+    f"{POLYGON} --k nan": "--k nan: give a number",
+    f"{POLYGON} --k 50": "larger paper, or a smaller --k",
+    f"{POLYGON} --omega 0": "other than 0",
+    f"{POLYGON} --omega inf": "other than 0",
+    f"{POLYGON} --turn": "give -o FILE.gif",
+    f"{POLYGON} --paper B9": "no size; use A5",
+    f"{POLYGON} --at-deg nan": "give an angle in degrees",
+    f"{POLYGON} -o sheet.png": "use .svg, .pdf, .gif, .html",
+    "polygon fourbar-swing": "its driver is let go",
+    "polygon fourbar-swing --at-deg nan --omega 1": "give an angle in degrees",
+    "polygon double-pendulum --omega 1": "mobility",
+    "polygon double-pendulum --at-s 1": "mobility",
+    "polygon fourbar-swing --at-s nan": "moves from t = 0 on",
+    "polygon fourbar-swing --at-s -1": "moves from t = 0 on",
+    f"{POLYGON} --at-s 1 --at-deg 3": "each says the instant",
+    f"{POLYGON} --at-s 1 --omega 3": "--at-s with --omega",
+    f"{POLYGON} --map x.toml": "--map without --log",
+    f"{POLYGON} --log x.csv --omega 3": "--log with --omega",
+    f"{POLYGON} --log x.csv -o x.html": "a log is drawn at one instant",
+    "polygon fourbar-elastic-pulse --at-s 1": "bends or stretches",
+    "polygon fourbar-double-rocker --at-deg 180": "deg",
+}
+STRUCTURE: Mistakes = {
+    "structure fourbar-lecture-1 --at-m 1": "which turns",
+    "structure fourbar-lecture-1 --at-m 1 --at-deg 3": "give one",
+    "structure fourbar-lecture-1 --at-deg nan": "--at-deg",
+    "structure nothing-like-it": "nothing-like-it",
+    "structure fourbar-double-rocker --at-deg 170 -o x.svg": "",
+    "chains --links 7": "4, 6, 8, 10 links",
+    "chains --links 99": "3 to 10 links",
+    "chains --links 10 --sliders 1": "up to 8 links",
+    "chains --sliders -1": "take 0 or more",
+    "chains --links 8 --inversions -o x.svg": "--paper A3 would do",
+    "chains -o x.txt": "x.txt",
+    **{
+        f"rotatability fourbar-lecture-1 --position {each}": "wants degrees"
+        for each in ("x", "30:", "30:+-", "nan", "30:1")
+    },
+    "rotatability triad-platform --position 30": "they are found of class II mechanisms",
+    "joint revolut": "joint 'revolut': neither a shipped name nor a file. Did you mean",
+    "joint .": "a folder",
+    "mobility zzz": "`crankcheck mobility` lists the names",
+    "mobility four-bar -o x.toml": "add --replace",
+    "mobility --replace": "name a scheme",
+    "mobility four-bar --replace": "four-bar: no higher pair",
+    "mobility sarrus --replace": "sarrus: a spatial scheme",
+    "mobility gear-pair --replace -o x.svg": ".toml",
+}
+MISTAKES = {
+    **VERIFY, **SOLVE, **FREE, **ELASTIC, **DRIVERS, **FAMILIES, **RUN, **RECIPES, **GRAPHS,
+    **POLYGONS, **STRUCTURE,
+}  # fmt: skip
+PULSE = """
+[loads.pulse]
+link = "crank"
+law = "sine"
+over = "time"
+period_s = 0.1
+torque_n_m = 2.0
+"""
+
+
+def massless(scene: Scene) -> Scene:
+    none = {"mass_kg": 0.0, "inertia_kg_m2": 0.0}
+    links = {name: replace(link, **none) for name, link in scene.links.items()}
+    return replace(scene, links=links)
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of scenes that can not be asked everything."""
+    fourbar = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    law = 'law = "from-rest"\nspeed_rad_s = 7.3686\nrise_s = 0.5'
+    elastic = re.sub(r"speed_rad_s = 7.3686", law, scene_text(load_scene("fourbar-elastic")))
+    folder = tmp_path_factory.mktemp("scenes")
+    for name, text in {
+        "locks": fourbar.replace("0.25", "0.17"),
+        "pulsed": fourbar + PULSE,
+        "flat": scene_text(parallelogram(1)),
+        "massless": scene_text(massless(load_scene("fourbar-lecture-1"))),
+        "law": elastic.replace('shape = "periodic"', ""),
+    }.items():
+        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize("line", MISTAKES, ids=lambda line: line[:80])
+def test_a_mistake_ends_with_2_and_a_message_that_names_place_fault_and_cure(
+    line: str, place: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(place)
+    before, words = sorted(place.rglob("*")), MISTAKES[line]
+    refused(crank(*line.split()), *([words] if isinstance(words, str) else words))
+    assert sorted(place.rglob("*")) == before
