@@ -1,4 +1,4 @@
-"""Run a command on a scene file and see all that it did: how it ended, said, wrote and took."""
+"""Run a command on a scene file and see all that it did: how it ended, said, wrote and called for."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import os
 import re
 import sys
 import tempfile
-import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -105,8 +104,8 @@ def fitting(raw: bytes, command: str) -> str:
 class Ended:
     """How a command ended: exit code, an exception that it let out, output, messages, warnings of
     Python and numpy, files that it left and those that it wrote elsewhere, the outcomes of its
-    cells, calls of functions (those of C too; 0 where nobody counted), processor time [s], and the
-    memory [byte] before and at its peak."""
+    cells, calls of functions (those of C too; 0 where nobody counted), and the memory [byte] before
+    and at its peak."""
 
     code: int
     escaped: str
@@ -117,7 +116,6 @@ class Ended:
     elsewhere: tuple[str, ...]
     outcomes: tuple[str, ...]
     calls: int
-    took_s: float
     before: int
     peak: int
 
@@ -169,7 +167,6 @@ def attempt(
         given = [f"../{name}" if each == "FILE" else each for each in arguments]
         given = [re.sub("^OUT", "../out", each) for each in given]
         counter = cProfile.Profile()
-        began = time.process_time()
         with (
             contextlib.chdir(home / "work"),
             _native_errors(home / "native") as native,
@@ -180,7 +177,6 @@ def attempt(
         ):
             warnings.simplefilter("always")
             code, escaped, output, errors = _run(given)
-        took = time.process_time() - began
         files = [str(path.relative_to(home)) for path in home.rglob("*") if path.is_file()]
         left = sorted(set(files) - {name, "native"})
         return Ended(
@@ -193,7 +189,6 @@ def attempt(
             elsewhere=(*elsewhere, *(file for file in left if not file.startswith("out"))),
             outcomes=_outcomes(home / "out" / "verify.csv"),
             calls=sum(entry.callcount for entry in counter.getstats()),
-            took_s=took,
             before=before,
             peak=_peak(),
         )
