@@ -9,13 +9,12 @@ import pytest
 from analytic.elastic.any_speed import at_speed
 from analytic.elastic.discretisation import Modes
 from analytic.elastic.natural import lowest_rad_s
-from analytic.elastic.over_inertia import over_inertia, with_inertia
+from analytic.elastic.over_inertia import over_inertia
 from analytic.elastic.over_speeds import OverSpeeds, over_speeds, spectra
 from analytic.elastic.periodic import periodic_motion
 from analytic.elastic.steady_vibration import steady_vibration
 from analytic.elastic.swing import spectrum
 from models.errors import CrankcheckError
-from models.files import load_scene
 from tests.analytic.elastic.turning import FEW, form_of, fourbar
 
 
@@ -68,21 +67,3 @@ def test_a_heavy_rocker_makes_it_unstable() -> None:
     assert found.multipliers[1, 0] == pytest.approx(1.0, abs=1e-9)
     assert found.multipliers[1, 1] > 1.5
     assert np.all(found.shares[1] > 0.0)
-
-
-@pytest.mark.parametrize(
-    ("link", "why"),
-    [
-        ("coupler", "it is elastic, and its own mass is that of the beam; use rocker"),
-        ("crank", "its speed is told, whatever its inertia; use rocker"),
-        ("lever", "no link or slider of that name; use rocker"),
-    ],
-)
-def test_inertia_that_is_not_to_be_changed_is_refused(link: str, why: str) -> None:
-    with pytest.raises(CrankcheckError, match=f"inertia of {link}: {why}"):
-        with_inertia(fourbar(), link, 2.0)
-
-
-def test_a_rigid_scene_is_refused() -> None:
-    with pytest.raises(CrankcheckError, match="no link of it is elastic"):
-        steady_vibration(load_scene("fourbar-lecture-1"), FEW)

@@ -142,7 +142,10 @@ MISTAKES = {
     "no flywheel of 0": ("flywheel shaft.toml --delta 0", "--delta 0: "),
     "below 0": ("flywheel shaft.toml --delta -1", "--delta -1: "),
     "2": ("flywheel shaft.toml --delta 2 -o f.csv", "--delta 2: "),
-    "met": ("flywheel shaft.toml --delta 0.3 --write f.toml", "it is 0.2 already"),
+    "met": (
+        "flywheel shaft.toml --delta 0.3 --write f.toml",
+        "no flywheel is needed for a coefficient of 0.3: without one more it is 0.2 already",
+    ),
     "ending": ("cycle shaft.toml -o out.txt", "found '.txt'"),
     "scene ending": ("flywheel shaft.toml --delta 0.1 --write f.csv", "found .csv; use .toml"),
     "over itself": ("flywheel shaft.toml --delta 0.1 --write shaft.toml", "which is read"),

@@ -129,9 +129,18 @@ def test_a_resonance_ends_with_2(crank: Crank) -> None:
         (("fourbar-elastic", "--speeds", "1:5:1"), "give 2 or more"),
         (("fourbar-elastic", "--speeds", "1e-9:5:9"), "do not vibrate there; start at 0.0077"),
         (("fourbar-elastic", "--speeds", "1:5:999999"), "give 5000 or fewer"),
-        (("fourbar-elastic", "--map", "coupler"), "its own mass is that of the beam; use rocker"),
-        (("fourbar-elastic", "--map", "crank"), "its speed is told"),
-        (("fourbar-elastic", "--map", "lever"), "no link or slider of that name; use rocker"),
+        (
+            ("fourbar-elastic", "--map", "coupler"),
+            "inertia of coupler: it is elastic, and its own mass is that of the beam; use rocker",
+        ),
+        (
+            ("fourbar-elastic", "--map", "crank"),
+            "inertia of crank: its speed is told, whatever its inertia; use rocker",
+        ),
+        (
+            ("fourbar-elastic", "--map", "lever"),
+            "inertia of lever: no link or slider of that name; use rocker",
+        ),
         (("fourbar-elastic", "--factors", "1:2:3"), "give --map LINK"),
     ],
 )
