@@ -1,4 +1,4 @@
-"""Run a command on a scene file and see all that it did: how it ended, said, wrote and called for."""
+"""Run a command on a scene file and see all that it did: how it ended, said, wrote and called."""
 
 from __future__ import annotations
 
