@@ -24,6 +24,7 @@ from models.motion import Motion
 from models.scene import Scene
 from tests.analytic.chain import coordinates
 from tests.analytic.imported import reached
+from tests.analytic.test_bounds import SIX
 from tests.worlds.strategies import FORMS, OF_EACH_KIND, Designed, examples, mechanisms, swing_times
 from tests.worlds.tiers import few, slowly
 
@@ -102,7 +103,9 @@ def disagreement(scene: Scene, closed: Motion, newton: Motion) -> float:
     return worst
 
 
-@pytest.mark.parametrize("name", shipped())
+@pytest.mark.parametrize(
+    "name", few(shipped(), SIX, "test_bounds.py has every scene of the closed form")
+)
 def test_closed_form_and_newton_agree_over_a_period(name: str) -> None:
     scene = load_scene(name)
     closed, newton = both(scene, swing_times(scene, SAMPLES))
