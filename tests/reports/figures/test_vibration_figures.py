@@ -1,23 +1,30 @@
-"""The figures of vibration: nothing over something else, and the right curves."""
+"""The figures of vibration and of its control: nothing over something else, the right curves."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from analytic.elastic.control import control_elastic
 from analytic.elastic.discretisation import Modes
 from analytic.elastic.over_inertia import over_inertia as inertia_map
 from analytic.elastic.over_speeds import OverSpeeds, over_speeds
 from analytic.elastic.steady_vibration import SteadyVibration, steady_vibration
+from models.controlled import Controlled
 from models.files import load_scene
+from reports.describe.elastic_course import drawn_course
+from reports.figures.elastic.control import draw
 from reports.figures.style import styled
 from reports.figures.vibration import over_inertia, over_speed, over_turn
 from tests.reports.figures.room import has_room
 
 ONE = Modes(1, 0)
+UNTIL_S = 0.4
+"""By then the vibration is out, or is not."""
 
 
 @pytest.fixture(scope="module")
@@ -62,3 +69,25 @@ def test_the_curve_is_the_deflection(vibration: SteadyVibration) -> None:
     assert np.abs(curve).max() == pytest.approx(1e3 * swing.largest_m, rel=2e-3)
     assert curve[0] == pytest.approx(curve[-1], abs=1e-9)
     assert curve[0] == pytest.approx(1e3 * swing.middle[0], abs=1e-9)
+
+
+def test_control_takes_out_what_rings_without_it() -> None:
+    scene = load_scene("fourbar-elastic-controlled")
+    motion = control_elastic(scene, UNTIL_S, Modes(1))
+    course = drawn_course(motion, np.linspace(0.0, UNTIL_S, 201))
+    assert course.uncontrolled is not None
+    law = scene.driver.law
+    assert isinstance(law, Controlled)
+    late = course.time_s > 0.9 * UNTIL_S
+    with_it, without = (
+        np.ptp(each.links[scene.driver.link].omega[late])
+        for each in (course.motion, course.uncontrolled)
+    )
+    assert with_it < 0.2 * without
+    with styled():
+        figure = draw(course)
+    assert figure is not None
+    _, speeds, ahead = figure.axes
+    assert [len(line.get_ydata()) for line in speeds.lines[:2]] == [201, 201]  # type: ignore[arg-type]
+    assert ahead.get_ylabel() == "crank ahead by [deg]"
+    assert draw(replace(course, uncontrolled=None)) is None

@@ -20,6 +20,17 @@ from tests.worlds.tiers import slow
 
 TRUTH, RUN = "#hard-picture .reference .link", "#hard-picture .overlays .link"
 Write = Callable[[str], Path]
+STEPPED = """() => {
+  const ids = ['hard-failures', 'hard-row', 'hard-after'];
+  const [choice, row, after] = ids.map((id) => document.getElementById(id));
+  const now = () => [choice.value, row.getBoundingClientRect().top];
+  const seen = [now()];
+  while (!after.disabled) {
+    after.click();
+    seen.push(now());
+  }
+  return [seen.map((each) => each[0]), seen.map((each) => each[1])];
+}"""
 CONTRASTS = """() => {
   const parts = (text) => {
     const numbers = text.match(/[\\d.]+/g).map(Number);
@@ -156,21 +167,15 @@ def test_what_was_opened_is_brought_into_the_window(opened: Tab, hard_matrix: Ma
 
 def test_the_failures_are_gone_through_one_by_one(opened: Tab, hard_matrix: Matrix) -> None:
     failed = [str(n) for n, run in enumerate(hard_matrix.runs) if run.outcome != "ok"]
-    value = "() => document.getElementById('hard-failures').value"
     before, after = opened.page.locator("#hard-before"), opened.page.locator("#hard-after")
-    seen = [opened.page.evaluate(value)]
     assert before.is_disabled()
-    row = opened.page.locator("#hard-row")
     after.scroll_into_view_if_needed()
-    tops = {round((row.bounding_box() or {"y": -1.0})["y"])}
-    while not after.is_disabled():
-        after.click()
-        seen.append(opened.page.evaluate(value))
-        tops.add(round((row.bounding_box() or {"y": -1.0})["y"]))
+    seen, tops = opened.page.evaluate(STEPPED)
     assert seen == failed
+    assert after.is_disabled()
     assert max(tops) - min(tops) <= 2  # the map moves, and what is looked at stays
     before.click()
-    assert opened.page.evaluate(value) == failed[-2]
+    assert opened.page.input_value("#hard-failures") == failed[-2]
 
 
 def test_what_the_bisection_looked_at_is_chosen_in_the_panel(

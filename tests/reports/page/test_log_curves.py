@@ -9,6 +9,7 @@ import pytest
 
 from models.files import load_scene
 from reports.logs.map_file import ChannelTable, Map
+from reports.page.extremes import extreme_rows
 from reports.page.log_sections.curves import DrawnChannel, curves, turn_s
 from tests.reports.page.judged_logs import TURN_S, angles, judged, motion_of, points
 
@@ -131,3 +132,31 @@ def test_a_long_log_is_thinned_and_the_turn_of_its_spike_is_drawn_by_itself() ->
     assert curve.near.error[curve.near.worst] == pytest.approx(0.5)
     span = curve.near.time_s[[0, -1]] - motion.time_s[31_234]
     assert span == pytest.approx([-TURN_S / 2, TURN_S / 2], rel=0.01)
+
+
+def test_a_short_log_is_drawn_whole() -> None:
+    series = np.sin(np.arange(100.0))
+    assert extreme_rows((series, -series), 100).tolist() == list(range(100))
+
+
+@pytest.mark.parametrize("number", [101, 1000, 99_991])
+@pytest.mark.parametrize("row", [0, 1, 77, -1])
+def test_a_spike_of_one_row_stays_in_either_series(number: int, row: int) -> None:
+    for sign in (-1.0, 1.0):
+        calm, spiked = np.sin(0.01 * np.arange(number)), np.zeros(number)
+        spiked[row] = sign
+        rows = extreme_rows((calm, spiked), 100)
+        assert rows.size <= 110
+        assert row % number in rows
+        assert (rows[0], rows[-1]) == (0, number - 1)
+        assert np.all(np.diff(rows) > 0)
+        assert np.max(calm[rows]) == np.max(calm)
+        assert np.min(calm[rows]) == np.min(calm)
+
+
+def test_missing_samples_hide_no_spike_and_what_is_infinite_is_drawn() -> None:
+    series = np.zeros(1000)
+    series[100:300] = np.nan
+    series[250], series[700] = 3.0, -np.inf
+    rows = extreme_rows((series,), 50)
+    assert {250, 700} <= set(rows.tolist())

@@ -1,4 +1,4 @@
-"""The page of a solved scene: it loads nothing, moves its forces, and tells the largest."""
+"""Pages of a solved scene in a browser: they load nothing, and move with all that is on them."""
 
 from __future__ import annotations
 
@@ -8,13 +8,29 @@ from pathlib import Path
 
 import pytest
 
+from analytic.elastic.discretisation import Modes
+from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.free.release import release
 from models.files import load_scene
-from reports.face.scene_report import free_page_of, page_of
+from reports.face.scene_report import elastic_page_of, free_page_of, page_of
+from reports.page.scene_sections.elastic import factors
+from reports.sheets.polygons.polygon_instant import placed_at_time
+from reports.sheets.polygons.polygon_page import polygon_page
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
-from tests.reports.page.tab import Tab
+from tests.reports.page.tab import PHONE, WIDE, Tab
+from tests.worlds.tiers import slowly
 
+COUPLER = "#motion-picture .overlays .link:nth-child(2)"
 Write = Callable[[str], Path]
+
+
+@pytest.fixture(scope="module")
+def elastic(written: Write) -> Path:
+    scene = load_scene("fourbar-elastic")
+    motion = DrivenElasticMotion(
+        scene, scene.driver.law.period_s, Modes(3), "periodic", stiffened=True
+    )
+    return written(elastic_page_of(motion))
 
 
 def test_a_page_moves_with_its_forces_and_says_nothing_wrong(wide: Tab, written: Write) -> None:
@@ -60,3 +76,54 @@ def test_a_page_has_the_figures_that_there_are(propped: bool, pictures: int) -> 
     assert text.count("data:image/svg+xml;base64,") == pictures
     assert ("Reactions: none" in text) == propped
     assert "nan" not in text.partition("<main")[2].partition("<script")[0].lower().split()
+
+
+@pytest.mark.parametrize(
+    ("size", "width"),
+    [
+        ("phone", PHONE["width"]),
+        slowly("wide", WIDE["width"], reason="what fits a phone fits a computer"),
+    ],
+)
+def test_a_page_bends_its_links_by_the_factor_that_is_chosen(
+    elastic: Path, size: str, width: int, request: pytest.FixtureRequest
+) -> None:
+    tab: Tab = request.getfixturevalue(size)
+    seen = tab.open(elastic).page
+    tab.slide("motion-slider", 8)
+    assert seen.locator("#motion-factor").input_value() == "50"
+    (bent,) = tab.drawn(COUPLER)
+    assert bent.count("L") == 20
+    assert "coupler 1.05 mm" in seen.locator("#motion-deflection").inner_text()
+    seen.select_option("#motion-factor", "1")
+    assert tab.drawn(COUPLER) != [bent]
+    tab.slide("motion-slider", 60)
+    assert "coupler -0.669" in seen.locator("#motion-deflection").inner_text()
+    assert seen.evaluate("document.documentElement.scrollWidth") <= width
+    assert not tab.said
+    assert tab.asked == [tab.file.as_uri()]
+
+
+def test_factors_have_the_chosen_one_among_them() -> None:
+    for chosen in (1.0, 2.0, 50.0, 1000.0, 2e5):
+        values = [float(value) for value, _ in factors(chosen)]
+        assert chosen in values
+        assert values[0] == 1.0
+        assert values == sorted(values)
+        assert values[-1] <= 10.0 * chosen
+
+
+def test_polygons_move_and_are_drawn_step_by_step(wide: Tab, written: Write) -> None:
+    path = written(polygon_page(placed_at_time(load_scene("scotch-yoke"), 0.02)))
+    page = wide.open(path).page
+    arrows = page.locator("#polygons-velocity .head")
+    whole = arrows.count()
+    first = page.locator("#polygons-velocity-rows").inner_text()
+    wide.slide("polygons-slider", 60)
+    assert page.locator("#polygons-velocity-rows").inner_text() != first
+    wide.slide("polygons-step", 1)
+    assert 0 < arrows.count() < whole
+    assert "driver" in page.locator("#polygons-step-title").inner_text()
+    assert "one point, as omega is 0" in page.locator("#polygons-links").inner_text()
+    assert not wide.said
+    assert wide.asked == [wide.file.as_uri()]

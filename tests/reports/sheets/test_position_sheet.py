@@ -12,6 +12,7 @@ import pytest
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
 from models.laws import ConstantSpeed
+from reports.sheets.driver_range import assembled
 from reports.sheets.paper import Paper
 from reports.sheets.position_sheet import PositionSheet, draw_positions, positions
 
@@ -77,3 +78,9 @@ def test_a_driver_that_does_not_turn_fully_is_numbered_in_its_sense() -> None:
     sheet = positions(replace(scene, driver=replace(scene.driver, law=law)), 6, A4)
     assert np.all(np.diff(sheet.angles) < 0.0)
     assert sheet.placement.driver.omega < 0.0
+
+
+def test_singular_angles_are_left_out_one_by_one() -> None:
+    degrees = np.array([0.0, 45.0, 90.0, 120.0])
+    possible = assembled(load_scene("tangent"), np.radians(degrees))
+    assert possible.tolist() == [True, True, False, True]
