@@ -9,6 +9,7 @@ from functools import cache
 import pytest
 
 from tests.worlds.command import PYTHON
+from tests.worlds.tiers import few, slow
 
 HEAVY = ("mujoco", "pymunk", "pandas", "numpy", "matplotlib", "pyarrow", "openpyxl", "scipy")
 SCRIPT = """
@@ -40,9 +41,16 @@ def start(*args: str, counted: bool = True) -> tuple[int, int, list[str], str]:
     return code or 0, calls, loaded, "\n".join(output)
 
 
-@pytest.mark.parametrize("args", [["--help"], ["verify", "--help"], ["solve", "-h"], ["--version"]])
-def test_help_is_shown_after_few_calls_and_loads_no_engine(args: list[str]) -> None:
-    code, calls, loaded, output = start(*args)
+@pytest.mark.parametrize(
+    "line",
+    few(
+        ["--help", "verify --help", "solve -h", "--version"],
+        ["--help", "solve -h"],
+        "the same imports as of the others",
+    ),
+)
+def test_help_is_shown_after_few_calls_and_loads_no_engine(line: str) -> None:
+    code, calls, loaded, output = start(*line.split())
     assert code == 0
     assert loaded == []
     assert "crankcheck" in output
@@ -62,6 +70,7 @@ def test_the_reference_is_solved_without_an_engine() -> None:
     assert not {"mujoco", "pymunk", "matplotlib", "scipy"} & set(loaded)
 
 
+@slow("a start, for what test_refusals.py has in the process of the tests")
 def test_a_users_mistake_ends_with_2_and_no_traceback_in_a_real_process() -> None:
     line = [PYTHON, "-P", "-m", "crankcheck", "verify", "fourbar-lectur-1"]
     done = subprocess.run(line, capture_output=True, text=True, check=False)

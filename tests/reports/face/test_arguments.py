@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
@@ -17,6 +17,7 @@ import pytest
 import crankcheck
 from crankcheck.testing import assert_within
 from models.files import shipped
+from tests.worlds.tiers import slowly
 
 SCENE = "fourbar-lecture-1"
 LOG = {"time_s": [0.0, 0.1, 0.2], "rocker_rad": [1.9, 2.0, 2.1]}
@@ -75,8 +76,17 @@ def calls(
     ["solve", "solve_driven", "run", "check", "compare", "judge", "judge a run", "assert_within",
      "sweep", "report"],
 )  # fmt: skip
+@pytest.mark.parametrize(
+    "odds",
+    [ODD[::2], slowly(ODD[1::2], reason="two seconds for odder values of the same kinds")],
+    ids=["some", "others"],
+)
 def test_odd_arguments_are_errors_of_ours_told_at_the_call(
-    name: str, ran: crankcheck.Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str,
+    odds: Sequence[object],
+    ran: crankcheck.Simulation,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """None of them is another error, comes from deep inside, or speaks of options.
 
@@ -88,13 +98,13 @@ def test_odd_arguments_are_errors_of_ours_told_at_the_call(
     errors = {
         (argument, at): error
         for argument in right
-        for at, odd in enumerate(ODD)
+        for at, odd in enumerate(odds)
         if (error := error_of(partial(call, **{**right, argument: odd})))
     }
-    assert len(errors) > len(ODD) * len(right) / 3
+    assert len(errors) > len(odds) * len(right) / 3
     for (argument, at), error in errors.items():
-        assert len(traceback.extract_tb(error.__traceback__)) == 2, (argument, ODD[at])
-        if not isinstance(ODD[at], str | np.ma.MaskedArray):
+        assert len(traceback.extract_tb(error.__traceback__)) == 2, (argument, odds[at])
+        if not isinstance(odds[at], str | np.ma.MaskedArray):
             assert "--" not in str(error).replace("judge --write-map", ""), argument
 
 
