@@ -29,7 +29,7 @@ def test_as_many_chains_are_found_as_are_published(links: int, mobility: int) ->
     assert {chain.mobility for chain in every} == {mobility}
 
 
-@slow("half a minute: the number that is published of ten links")
+@slow("long to draw: the number that is published of ten links")
 def test_there_are_230_chains_of_ten_links() -> None:
     assert len(chains(10)) == 230
 
