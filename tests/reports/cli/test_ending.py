@@ -13,9 +13,10 @@ import pytest
 
 from reports.cli.broken_package import broken_package
 from reports.output.console import forget_odd_sizes
-from tests.worlds.command import COMMAND, PYTHON, script
+from tests.worlds.command import COMMAND
 from tests.worlds.command_line import crank, flat
-from tests.worlds.tiers import few, slowly
+from tests.worlds.forks import End, ends
+from tests.worlds.tiers import slowly
 
 ROOT = Path(__file__).parents[3]
 SOLVE = "solve fourbar-lecture-1"
@@ -37,18 +38,42 @@ def shell(command: str, **environment: str) -> tuple[int, str, str]:
     return done.returncode, done.stdout.decode("utf-8"), done.stderr.decode("utf-8")
 
 
+FULL = 'os.dup2(os.open("/dev/full", os.O_WRONLY), 1); sys.argv = {line!r}.split()'
+ASCII = """
+os.environ["COLUMNS"] = "9" * 5000  # a size of the terminal that is none
+sys.stdout.reconfigure(encoding="ascii")
+sys.argv = "crankcheck solve scene.toml".split()
+"""
+SWALLOWED = """
+def cut_short(*_):
+    try:
+        signal.raise_signal(signal.SIGINT)
+    except BaseException:
+        raise EngineError("engine mujoco: not installed")
+
+listing.scenes = cut_short
+"""
+FILLED = (SOLVE, "export tangent", "scenes", "--help")
+
+
+@pytest.fixture(scope="module")
+def ended(tmp_path_factory: pytest.TempPathFactory) -> dict[str, End]:
+    """Ends of the command, by name."""
+    folder = tmp_path_factory.mktemp("ends")
+    text = (ROOT / "models/scenes/kinematics/tangent.toml").read_text(encoding="utf-8")
+    text = text.replace('source = "', 'source = "\\u0110\\u1ed9ng ')
+    (folder / "scene.toml").write_text(text, encoding="utf-8")
+    full = {line: FULL.format(line=f"crankcheck {line}") for line in FILLED}
+    return ends({**full, "ascii": ASCII, "swallowed": SWALLOWED}, folder)
+
+
 @POSIX
 @HAS_FULL
-@pytest.mark.parametrize(
-    "args",
-    few(
-        [SOLVE, "export tangent", "scenes", "--help"],
-        [SOLVE, "--help"],
-        "a start each, for what prints as these do",
-    ),
-)
-def test_a_full_disk_behind_the_output_is_told_in_one_line(args: str) -> None:
-    code, _, complaint = shell(f"crankcheck {args} > /dev/full")
+@pytest.mark.parametrize("line", FILLED)
+def test_a_full_disk_behind_the_output_is_told_in_one_line(
+    line: str, ended: dict[str, End]
+) -> None:
+    code, _, complaint = ended[line]
     assert complaint.count("\n") == 1
     assert "standard output can not be written: No space left on device" in complaint
     assert code == 2
@@ -74,38 +99,14 @@ def test_a_reader_of_the_help_that_leaves_is_no_verdict() -> None:
     assert (code, complaint) == (0, "141\n")
 
 
-SWALLOWED = """
-import signal, sys
-from models.errors import EngineError
-from reports import cli
-from reports.cli.commands import listing
-
-def cut_short(*_):
-    try:
-        signal.raise_signal(signal.SIGINT)
-    except BaseException:
-        raise EngineError("engine mujoco: not installed")
-
-listing.scenes = cut_short
-sys.argv = ["crankcheck", "scenes"]
-cli.main()
-"""
+@POSIX
+def test_an_import_that_ctrl_c_cut_short_is_no_missing_engine(ended: dict[str, End]) -> None:
+    assert ended["swallowed"] == (130, "", "crankcheck: interrupted\n")
 
 
 @POSIX
-def test_an_import_that_ctrl_c_cut_short_is_no_missing_engine() -> None:
-    line = [PYTHON, "-P", "-c", script(SWALLOWED)]
-    done = subprocess.run(line, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (130, "crankcheck: interrupted\n")
-
-
-@POSIX
-def test_a_terminal_of_ascii_shows_an_escape(tmp_path: Path) -> None:
-    scene = tmp_path / "scene.toml"
-    text = (ROOT / "models/scenes/kinematics/tangent.toml").read_text(encoding="utf-8")
-    scene.write_text(text.replace('source = "', 'source = "\\u0110\\u1ed9ng '), encoding="utf-8")
-    line, odd = f"crankcheck solve {scene}", "9" * 5000  # a size of the terminal that is none
-    code, output, complaint = shell(line, PYTHONIOENCODING="ascii", COLUMNS=odd)
+def test_a_terminal_of_ascii_shows_an_escape(ended: dict[str, End]) -> None:
+    code, output, complaint = ended["ascii"]
     assert (code, complaint) == (0, "")
     assert r"\u0110\u1ed9ng" in output
 

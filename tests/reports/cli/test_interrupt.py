@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.worlds.command import COMMAND, PYTHON, script
+from tests.worlds.forks import ends
 from tests.worlds.programs import Start
 from tests.worlds.tiers import few, slow
 
@@ -173,23 +174,18 @@ def test_a_script_that_imports_crankcheck_hears_ctrl_c_as_ever(programs: Start) 
     assert "KeyboardInterrupt" in running.communicate()[1]
 
 
-ENDS = """
-import atexit, os, signal, sys, time
-from crankcheck.__main__ import main
-from reports.cli.commands import listing
-from reports.workers import signals
-
-def strike(*_):
-    os.kill(os.getpid(), signal.SIGINT)
-
+ENDS = {
+    "lost": """
 class Dies:
-    def __del__(self):
-        strike()
+    __del__ = strike
 
 def lost(*_):
     Dies()
     time.sleep(3600.0)
 
+listing.scenes = lost
+""",
+    "swallowed": """
 def swallowed(*_):
     signals.PATIENCE_S = 0.1
     try:
@@ -197,23 +193,15 @@ def swallowed(*_):
     except BaseException:
         time.sleep(3600.0)
 
-def finished(*_):
-    atexit.register(strike)
-
-def told(*_):
-    sys.stdout.flush = strike
-
-sys.argv = ["crankcheck", "scenes"]
-for listing.scenes in (lost, swallowed, finished, told):
-    if not os.fork():  # each end in a process of its own, and the imports of all in this one
-        main()
-        sys.exit(0)
-    print(os.waitstatus_to_exitcode(os.wait()[1]), file=sys.stderr, flush=True)
-"""
+listing.scenes = swallowed
+""",
+    "told": "listing.scenes = lambda *_: setattr(sys.stdout, 'flush', strike)",
+    "finished": "listing.scenes = lambda *_: atexit.register(strike)",
+}
 
 
-def test_ctrl_c_is_neither_lost_nor_told_with_a_traceback(programs: Start) -> None:
-    running = programs(PYTHON, "-P", "-c", script(ENDS))
-    _, complaint = running.communicate()
-    one = ["crankcheck: interrupted", "130"]
-    assert complaint.splitlines() == [*one, *one, "0", *one]
+def test_ctrl_c_is_neither_lost_nor_told_with_a_traceback(tmp_path: Path) -> None:
+    told = (130, "", "crankcheck: interrupted\n")
+    assert ends(ENDS, tmp_path) == {
+        "lost": told, "swallowed": told, "told": told, "finished": (0, "", "")
+    }  # fmt: skip
