@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -29,13 +30,8 @@ LABELS = {
 
 
 @pytest.fixture(scope="module")
-def drawn(store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """All figures, as SVG alone: fonts of a PDF take twice the time of all else."""
-    folder = tmp_path_factory.mktemp("drawn") / "figs"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.cli.commands.figures.FORMATS", ("svg",))
-        assert run_figures(store, folder, Console(file=io.StringIO())) == 0
-    return folder
+def drawn(store: Path, as_svg: Callable[[Path], Path]) -> Path:
+    return as_svg(store)
 
 
 @pytest.fixture(scope="module")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -29,13 +30,8 @@ LABELS = {
 
 
 @pytest.fixture(scope="module")
-def drawn(free_store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """As SVG alone: that a figure is written as PDF too, `test_files` says."""
-    folder = tmp_path_factory.mktemp("drawn") / "figs"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.cli.commands.figures.FORMATS", ("svg",))
-        assert run_figures(free_store, folder, Console(file=io.StringIO())) == 0
-    return folder
+def drawn(free_store: Path, as_svg: Callable[[Path], Path]) -> Path:
+    return as_svg(free_store)
 
 
 def test_what_was_let_go_has_its_own_figures_and_none_over_turns(drawn: Path) -> None:

@@ -13,7 +13,6 @@ from xml.etree import ElementTree as Xml
 import openpyxl
 import pandas as pd
 import pytest
-from playwright.sync_api import expect
 from rich.console import Console
 from typer.testing import CliRunner, Result
 
@@ -183,7 +182,7 @@ def test_the_page_shows_the_source_as_text(page: Path) -> None:
 def test_a_browser_runs_nothing_of_it(wide: Tab, page: Path) -> None:
     wide.open(page)
     assert wide.page.evaluate("typeof window.hacked") == "undefined"
-    expect(wide.page.locator(".note", has_text="window.hacked").first).to_be_attached()
+    assert wide.page.locator(".note", has_text="window.hacked").count() > 0
     assert wide.said == []
 
 
