@@ -43,9 +43,9 @@ def overlaps(figure: Figure) -> list[str]:
     canvas = FigureCanvasAgg(figure)
     texts = [t for axes in figure.axes for t in axes.texts if t.get_text().strip()]
     blanks = [a for axes in figure.axes for a in axes.patches if a.get_gid() == "blank"]
-    drawing = (_picture(canvas, hidden=texts) < INK) | (
-        _picture(canvas, hidden=[*texts, *blanks]) < DARK
-    )
+    drawing = _picture(canvas, hidden=texts) < INK
+    if blanks:
+        drawing |= _picture(canvas, hidden=[*texts, *blanks]) < DARK
     words = [_word(text, canvas) for text in texts]
     told = [
         f"{one.text!r} over {other.text!r}"
