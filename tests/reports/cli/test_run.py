@@ -1,4 +1,4 @@
-"""`crankcheck run`: the log of a run in a file, or in short on the terminal."""
+"""`crankcheck run`, the log of a run in a file or in short on the terminal, and `recipe`."""
 
 from __future__ import annotations
 
@@ -114,3 +114,13 @@ def test_a_log_of_the_start_alone_is_refused(tmp_path: Path) -> None:
     assert not path.exists()
     result = crank("run", "fourbar-lecture-1", *COARSE, "--every", "90", "-o", str(path))
     assert result.exit_code == 0
+
+
+def test_the_program_of_a_recipe_is_shown_or_written(tmp_path: Path) -> None:
+    shown = crank("recipe", "forces", "--engine", "mujoco")
+    assert shown.exit_code == 0
+    compile(shown.stdout, "shown", "exec")
+    path = tmp_path / "forces.py"
+    told = crank("recipe", "forces", "--engine", "mujoco", "-o", path)
+    assert told.exit_code == 0
+    assert path.read_text(encoding="utf-8") == shown.stdout
