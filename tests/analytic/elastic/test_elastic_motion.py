@@ -101,7 +101,7 @@ def test_of_a_chain_the_windows_alone_are_in_doubt() -> None:
     assert 0.0 < doubt.middle_m["coupler"].max() < 1e-8
 
 
-@pytest.mark.parametrize("bends", [True, False])
+@pytest.mark.parametrize("bends", few([True, False], {True}, "shorter by the same equations"))
 def test_a_stiff_link_comes_to_the_rigid_one_as_one_over_its_modulus(bends: bool) -> None:
     """A link that bends turns the others in the second order only, by its shortening."""
     soft = fourbar(axial_n=float("inf") if bends else 6.3e6)
@@ -183,7 +183,7 @@ def deflection(size: float, by: Discretisation) -> float:
     return float(np.abs(middle).max()) / size
 
 
-@pytest.mark.parametrize("by", [Elements(1), Segments(3)])
+@pytest.mark.parametrize("by", few([Elements(1), Segments(3)], {Elements(1)}, "as slopes, angles"))
 def test_similar_mechanisms_of_any_size_bend_alike(by: Discretisation) -> None:
     assert deflection(1e-4, by) == pytest.approx(deflection(1.0, by), rel=1e-6)
 

@@ -24,6 +24,7 @@ from models.laws import ConstantSpeed, FromRest
 from models.loads import Load
 from models.tabulated import Tabulated
 from tests.analytic.elastic.turning import form_of, fourbar
+from tests.worlds.tiers import few
 
 DRIVEN = [n for n in shipped("elastic") if type(load_scene(n).driver.law) is ConstantSpeed]
 
@@ -161,7 +162,9 @@ def test_what_kinks_leave_out_of_the_series_is_in_the_doubt(
     assert true > 1e-8 * np.abs(closely.z).max()
 
 
-@pytest.mark.parametrize("by", [Elements(3), Segments(6, corrected=True)])
+@pytest.mark.parametrize(
+    "by", few([Elements(3), Segments(6, corrected=True)], {Elements(3)}, "by angles as by slopes")
+)
 def test_links_swing_alike_by_coefficients_of_any_kind(by: Discretisation) -> None:
     """By slopes and angles as well as by lengths."""
     scene = fourbar(10.5)
