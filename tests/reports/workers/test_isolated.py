@@ -109,7 +109,7 @@ def test_what_the_function_imports_is_not_of_the_memory_of_a_job(
 
 
 def test_what_was_raised_comes_with_the_place_where_it_was() -> None:
-    with closing(Isolated[object](Limits())) as isolated:
+    with closing(Isolated[object](Limits(LIMIT_S))) as isolated:
         lost = isolated.call(fail)
         refused = isolated.call(refuse_scene, "scene.toml", ["one", "two"])
         odd = isolated.call(be_odd)
