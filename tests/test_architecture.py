@@ -85,6 +85,7 @@ MENTIONING: Mapping[str, str] = {
 """Where sentences mention engines, and why; an engine that is not mentioned works as well."""
 BESIDE = {"tests", "benchmarks"}
 """What stands beside the packages, and may import any of them."""
+BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
 REPORTS_ONLY = {"pandas", "matplotlib", "plotly", "rich", "typer", "openpyxl", "pyarrow"}
 
 
@@ -103,32 +104,31 @@ def name_of(path: Path, root: Path = ROOT) -> str:
     return ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
 
 
-def nodes(path: Path) -> list[ast.AST]:
-    """All of a file's syntax: it is looked through several times."""
-    return list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
-
-
 def imports(path: Path, root: Path = ROOT) -> Iterator[Import]:
     """What a file imports, also inside functions."""
-    every = nodes(path)
-    late = {
-        id(inner)
-        for node in every
-        if isinstance(node, ast.FunctionDef | ast.Lambda)
-        or (isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test))
-        for inner in ast.walk(node)
-        if isinstance(inner, ast.Import | ast.ImportFrom)
-    }
     by = name_of(path, root)
-    for node in every:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for node, late in _import_statements(tree, late=False):
         if isinstance(node, ast.Import):
-            yield from (Import(by, alias.name, id(node) in late) for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
+            yield from (Import(by, alias.name, late) for alias in node.names)
+        else:
             assert node.level == 0, f"{path}: import by full name"
             for alias in node.names:
                 whole = f"{node.module}.{alias.name}"
                 module = whole if _is_module(whole, root) else str(node.module)
-                yield Import(by, module, id(node) in late)
+                yield Import(by, module, late)
+
+
+def _import_statements(
+    block: ast.AST, late: bool
+) -> Iterator[tuple[ast.Import | ast.ImportFrom, bool]]:
+    """Those in a block and in the blocks within it; expressions hold none."""
+    for node in (n for name in BLOCKS for n in getattr(block, name, ())):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            yield node, late
+        else:
+            typing = isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
+            yield from _import_statements(node, late or typing or isinstance(node, ast.FunctionDef))
 
 
 def _is_module(name: str, root: Path) -> bool:
@@ -228,7 +228,7 @@ def strangers(found: list[Import]) -> list[str]:
 
 def words(path: Path) -> Iterator[tuple[int, str]]:
     """Identifiers and texts of a file with their lines, but for comments and docstrings."""
-    every = nodes(path)
+    every = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
     said = {id(node.value) for node in every if isinstance(node, ast.Expr)}
     for node in every:
         if id(node) not in said:

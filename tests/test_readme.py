@@ -23,6 +23,8 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 SCRIPTS = blocks(README, "python")
 THREADS = threads([command for command, _, _ in commands(README)], SCRIPTS)
 LONG: dict[str, str] = {
+    "crankcheck run fourbar-lecture-1 --engine mujoco --turns 1 -o log.csv": "15 s: a sweep, shown "
+    "in every way; each is tested by its room",
     "crankcheck selftest": "26 s: every fault is planted by tests/reports/selftest",
     "crankcheck stability grashof-excess n-fourbar": "10 s: every case runs in tests/reports",
     "crankcheck advise --dt 1/60 --speed 10 --target 1e-3": "6 s: tests/reports/advise",

@@ -29,12 +29,10 @@ READING: Mapping[str, str] = {
 def faults_of(text: str) -> Iterator[str]:
     """Clocks that a text names, in strings too, as those may be scripts; and limits of children
     that a slow machine could reach."""
-    tree = ast.parse(text)
-    lines = text.splitlines()
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(text.splitlines(), 1):
         if clock := CLOCKS.search(line):
             yield f"{number}: {clock[0]}"
-    for node in ast.walk(tree):
+    for node in ast.walk(ast.parse(text)) if "timeout" in text else ():
         if isinstance(node, ast.keyword) and node.arg == "timeout":
             limit = node.value.value if isinstance(node.value, ast.Constant) else None
             if isinstance(limit, int | float) and 0 < limit < MINUTE_S:

@@ -139,6 +139,8 @@ def stability_text(vibration: SteadyVibration) -> str:
             "vibration, and the mechanism does not stay on this motion. Take another speed, a "
             "lighter link that the elastic one moves, or more damping_s."
         )
+    if damped and largest == 0.0:  # below what a number holds
+        return "Stable: deviations die out within a turn."
     if damped and largest < 1.0 - STABLE:
         turns = -math.log(10.0) / math.log(largest)
         return f"Stable: deviations fall to a tenth in {readable(turns)} turns."

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 import re
-import time
 from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree as Xml
@@ -113,14 +112,11 @@ def test_a_second_run_replaces_the_files_of_the_first(tmp_path: Path) -> None:
 
 def test_junit_names_the_failure_and_skips_what_is_not_gated(tmp_path: Path) -> None:
     path = tmp_path / "j.xml"
-    began = time.perf_counter()
     result = crank(*ONE, "--engine", "mujoco", "--tol", "angle=1e-12", "--junit", str(path))
-    spent_s = time.perf_counter() - began
     assert result.exit_code == 1
     (suite,) = Xml.fromstring(path.read_text())
     times = [float(case.get("time", "nan")) for case in suite.iter("testcase")]
     assert all(each > 0.0 for each in times)
-    assert sum(times) < spent_s  # they are parts of it, however long it takes
     assert float(suite.get("time", "nan")) == pytest.approx(sum(times), abs=2e-3)
     assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("2", "1", "1")
     failure = suite.find("testcase/failure")

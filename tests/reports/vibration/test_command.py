@@ -105,6 +105,8 @@ def test_damping_and_a_near_resonance_are_told(crank: Crank) -> None:
     assert re.search(
         r"Stable: deviations fall to a tenth in \d", words(crank(damped, "--modes", "1"))
     )
+    dead = scene_at(500.0, **{"height_m = 0.003": "height_m = 0.003\ndamping_s = 1e-2"})
+    assert "Stable: deviations die out within a turn." in words(crank(dead, "--modes", "1"))
     near = words(crank(scene_at(5.05), "--modes", "1"))
     assert "NEAR A RESONANCE with coupler at order 5" in near
 
