@@ -28,8 +28,8 @@ MADE = {"forces": "figs", "elastic": "figs", "how-to/own-model": "out"}
 """Folders that a page has made, and names all files of."""
 
 
-SHORT = ("index", *(f"theory/{chapter}" for chapter in ("positions", "velocities", "centres")))
-"""Pages whose commands take some tenths of a second each."""
+SHORT = ("index", "theory/centres")
+"""Pages whose commands take some tenths of a second."""
 
 
 @pytest.mark.parametrize(

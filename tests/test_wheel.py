@@ -228,6 +228,7 @@ def test_five_lines_print_the_verdict_of_the_lectures_four_bar(installed: Path, 
     assert "\nWITHIN TOLERANCE: 1 cell (1 scene x 1 engine)\n" in done.stdout
 
 
+@slow("pytest in a process, beside the wheel; the command there is tried in `make test`")
 def test_a_project_with_packages_of_our_names_asserts_with_the_wheel(
     installed: Path, mine: Path
 ) -> None:

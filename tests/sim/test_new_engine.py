@@ -20,6 +20,7 @@ from sim.spoil import spoiler
 from sim.tuning import search_space
 from sim.viewing import viewer
 from tests.test_architecture import ARROWS, ROOT
+from tests.worlds.tiers import slow
 
 LINE = '    "fake": ".fake",\n'
 SCENE = "fourbar-lecture-1"
@@ -64,6 +65,9 @@ with in_this_process():
 Told = dict[str, tuple[int, str]]
 
 
+IN_A_HOUSE = slow("a copy of all packages and a process with every command, for one line more")
+
+
 @pytest.fixture(scope="module")
 def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """All packages, a folder more and a line more."""
@@ -95,6 +99,7 @@ def told(house: Path) -> Told:
     return {name: (code, output) for name, code, output in lines}
 
 
+@IN_A_HOUSE
 def test_it_is_listed_with_its_profiles(told: Told) -> None:
     code, output = told["engines"]
     assert code == 0
@@ -102,6 +107,7 @@ def test_it_is_listed_with_its_profiles(told: Told) -> None:
     assert "knob = 1: there has to be one" in output
 
 
+@IN_A_HOUSE
 @pytest.mark.parametrize("name", ["verify", "servo"])
 def test_it_is_verified(told: Told, name: str) -> None:
     code, output = told[name]
@@ -109,12 +115,14 @@ def test_it_is_verified(told: Told, name: str) -> None:
     assert "fake" in output
 
 
+@IN_A_HOUSE
 def test_it_is_among_all_engines(told: Told) -> None:
     code, output = told["all"]
     assert code == 0
     assert all(name in output for name in (*registry.usual(), "fake"))
 
 
+@IN_A_HOUSE
 def test_it_is_swept_and_shown_without_anything_to_copy(told: Told, house: Path) -> None:
     assert [told[name][0] for name in ("sweep", "page", "summary")] == [0, 0, 0], told
     page, summary = (house / name for name in ("page.html", "summary.md"))
@@ -123,6 +131,7 @@ def test_it_is_swept_and_shown_without_anything_to_copy(told: Told, house: Path)
     assert "<summary>mujoco" in summary.read_text()
 
 
+@IN_A_HOUSE
 def test_what_it_lacks_is_said(told: Told) -> None:
     assert told["tune"] == (
         2,
@@ -133,6 +142,7 @@ def test_what_it_lacks_is_said(told: Told) -> None:
     assert "it can be planted in mujoco and pymunk only; found --engine fake" in output
 
 
+@IN_A_HOUSE
 def test_it_is_advised_on_without_anything_to_copy(told: Told) -> None:
     code, output = told["advise"]
     assert code == 0, output
@@ -140,6 +150,7 @@ def test_it_is_advised_on_without_anything_to_copy(told: Told) -> None:
     assert "knob" not in output
 
 
+@IN_A_HOUSE
 def test_faults_are_planted_in_its_log_alone(told: Told) -> None:
     code, output = told["log"]
     assert code == 0, output
@@ -147,6 +158,7 @@ def test_faults_are_planted_in_its_log_alone(told: Told) -> None:
     assert "row-lost" in output
 
 
+@IN_A_HOUSE
 def test_its_name_is_suggested(told: Told) -> None:
     assert told["misspelt"] == (2, "crankcheck: engine 'fak': unknown; did you mean fake?\n")
 

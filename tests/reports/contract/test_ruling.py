@@ -13,9 +13,10 @@ from reports.contract.table import show
 from reports.workers.isolated import Limits
 from sim.registry import engine
 from tests.worlds.own_engines import fresh, with_faults
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 
+@slow("children that die: tests/reports/sweep has each of these ends in `make test`")
 def test_an_engine_that_crashes_hangs_or_raises_costs_its_clauses_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -97,6 +97,7 @@ def test_layers_stand_in_the_order_of_drawing_and_the_same_sheet_has_the_same_by
     assert polygon_file(sheet, ".pdf").startswith(b"%PDF")
 
 
+@slow("a second of frames: the layers that they show are tested as drawings")
 def test_an_animation_has_a_frame_for_each_layer_that_is_drawn() -> None:
     sheet = sheet_of("fourbar-lecture-1", 1.0, "180x120")
     with Image.open(io.BytesIO(polygon_file(sheet, ".gif"))) as picture:
