@@ -1,7 +1,7 @@
 """Which mutants the tests kill: the power of `make test`, of `make slow`, and of the tests before.
 
-    python benchmarks/mutants.py run       # hours in the background; resumes after a cut
-    python benchmarks/mutants.py table     # shares by folder, and the survivors
+    python -m benchmarks.mutants run     # hours in the background; resumes after a cut
+    python -m benchmarks.mutants table   # shares by folder, and the survivors
 
 Each mutant of `benchmarks/mutants.json` runs against the tests that reach its line, in the nearest
 folder first, until one fails. What `make test` misses runs in `make slow`; the tests at the tag
@@ -25,12 +25,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 
-ROOT = Path(__file__).parents[1]
-sys.path.insert(0, str(ROOT))
-
-from benchmarks.mutants_drawn import Mutant, listed  # noqa: E402 - found through the line above
-from tests.recorded import chosen, quick  # noqa: E402 - as above
-from tests.recorded.reached import Reached  # noqa: E402 - as above
+from benchmarks.mutants_drawn import ROOT, Mutant, listed
+from tests.recorded import chosen, quick
+from tests.recorded.reached import Reached
 
 HOME = ROOT / "out" / "mutants"
 VERDICTS = HOME / "verdicts.jsonl"

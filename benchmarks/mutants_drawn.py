@@ -4,7 +4,7 @@ A mutant replaces one piece of one line. The places are spread evenly over the l
 and the seven kinds of change take turns, so that no room and no kind is left out. The list itself,
 `benchmarks/mutants.json`, was committed before the tests that it measures were changed:
 
-    python benchmarks/mutants_drawn.py > benchmarks/mutants.json
+    python -m benchmarks.mutants_drawn > benchmarks/mutants.json
 """
 
 from __future__ import annotations
