@@ -34,7 +34,7 @@ lint: | $(VENV)/test
 
 # One thread for each of the two processes: with more, those of large products wait for a processor
 # and burn it meanwhile, which took a fifth of the time of what is let go for ten thousand steps.
-pytest slow quick record: export OPENBLAS_NUM_THREADS := 1
+pytest slow: export OPENBLAS_NUM_THREADS := 1
 
 # Stolen work keeps both processes busy to the end, and the tests of a folder, which share what is
 # made for them, mostly in one of them.

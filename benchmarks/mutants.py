@@ -98,7 +98,7 @@ def reaching(mutant: Mutant, record: Reached) -> list[str]:
     """The tests that run the line, in the nearest folder first, then the cheapest. A line that runs
     when its file is imported counts as run by whatever runs a line of the file or of one that
     imports it."""
-    first, last, in_function = statement(ROOT / mutant.file, mutant.line)
+    first, last, in_function = statement(record.root / mutant.file, mutant.line)
     if in_function:
         by_line = record.by_line(mutant.file)
         tests = {t for line in range(first, last + 1) for t in by_line.get(line, ())}

@@ -34,13 +34,16 @@ def record(folder: Path = FOLDER, root: Path = ROOT, *, tier: str = TIER) -> Non
     folder.mkdir(parents=True)
     settings = recording.settings(folder, root)
     variables = {"COVERAGE_PROCESS_START": str(settings), "PYTHONPATH": str(root)}
-    _pytest(["-p", "tests.recorded.recording", "-m", tier], root, variables)
+    if _pytest(["-p", "tests.recorded.recording", "-m", tier], root, variables) not in (0, 1):
+        raise SystemExit(f"{root}: the tests could not be run; nothing was recorded")
     (folder / DONE.name).touch()
 
 
 def _pytest(arguments: Sequence[str], root: Path, variables: dict[str, str]) -> int:
     command = [sys.executable, "-m", "pytest", "-q", "-n", "2", "--dist", "worksteal", *arguments]
-    return subprocess.call(command, cwd=root, env={**os.environ, **variables})
+    own = {**os.environ, "OPENBLAS_NUM_THREADS": "1", **variables}  # a thread each: see Makefile
+    own.pop("PYTEST_CURRENT_TEST", None)  # of a test that records others
+    return subprocess.call(command, cwd=root, env=own)
 
 
 def differing() -> list[str]:
