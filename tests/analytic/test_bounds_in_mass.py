@@ -16,7 +16,7 @@ from tests.analytic.chain import Chain, coordinates
 from tests.analytic.change_points.jets import Jet
 from tests.analytic.oracle import Place
 from tests.analytic.wide_chain import HAS_DIGITS, PI, Rows, Solved, Wide, WideChain
-from tests.worlds.tiers import few, slow
+from tests.worlds.tiers import few, slow, slowly
 from tests.worlds.wide_angles import made, times
 
 pytestmark = pytest.mark.skipif(not HAS_DIGITS, reason="long doubles here are floats")
@@ -100,10 +100,11 @@ def test_errors_stay_below_their_bounds_at_thousands_of_samples() -> None:
     _hold(range(6))
 
 
-def test_bounds_are_within_a_few_tens_of_the_errors() -> None:
+@pytest.mark.parametrize("count", [5, slowly(10, reason="random mechanisms")])
+def test_bounds_are_within_a_few_tens_of_the_errors(count: int) -> None:
     """Medians within the first turn; they grow with what is derived from what."""
     loose: dict[str, list[Array]] = {name: [] for name in LOOSE}
-    for number in range(5):
+    for number in range(count):
         for row in held(number):
             if row.quantity in LOOSE:
                 known = np.flatnonzero((row.error > 0.0) & np.isfinite(row.bound))

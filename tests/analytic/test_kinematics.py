@@ -8,14 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given
 
 from analytic import prepared
 from analytic.kinematics import reach, solve, solve_driven
 from models.errors import CrankcheckError, ReachError
 from models.files import load_scene, parse_scene
-from tests.worlds.strategies import FORMS, mechanisms
+from tests.worlds.strategies import FORMS, Designed, examples, mechanisms
+from tests.worlds.tiers import slowly
 
 
 @pytest.mark.parametrize(
@@ -152,18 +152,24 @@ def test_angle_out_of_reach_raises() -> None:
         )
 
 
+@pytest.mark.parametrize("count", [5, slowly(15, reason="random mechanisms")])
 @pytest.mark.parametrize("form", [form for form in FORMS if form[:3] in ("RRP", "RPR")])
-@settings(max_examples=5, deadline=None, derandomize=True, database=None)
-@given(data=st.data())
-def test_branch_of_a_slider_is_the_way_along_its_line(form: str, data: st.DataObject) -> None:
+def test_branch_of_a_slider_is_the_way_along_its_line(form: str, count: int) -> None:
     """Of the two assemblies, +1 is the one with the greater displacement, in every role."""
-    scene = data.draw(mechanisms([form])).scene
-    (name,) = scene.sliders
-    ahead, behind = (
-        solve(replace(scene, branch={name: side}), np.zeros(1)).sliders[name].displacement[0]
-        for side in (1, -1)
-    )
-    assert ahead > behind
+
+    @examples(count)
+    @given(mechanisms([form]))
+    def hold(designed: Designed) -> None:
+        (name,) = designed.scene.sliders
+        ahead, behind = (
+            solve(replace(designed.scene, branch={name: side}), np.zeros(1))
+            .sliders[name]
+            .displacement[0]
+            for side in (1, -1)
+        )
+        assert ahead > behind
+
+    hold()
 
 
 @pytest.mark.parametrize("name", ["fourbar-lecture-1", "fourbar-crossed", "sixbar-watt"])

@@ -51,6 +51,7 @@ LIMITS = Limits(time_s=600.0, memory_gb=1.0)
 """The time ends what hangs. Memory is that beyond a child with all engines in it, which has 0.2 GB
 in use."""
 MOST_BYTES = 800_000_000
+"""Beyond what the process held before its first file."""
 SEED = 20260
 EACH, PARTS = 250, 20
 """Files of each kind in each part of ten thousand, and the parts."""
@@ -66,6 +67,7 @@ class Bench:
         self.apart = apart
         self.ends: Counter[str] = Counter()
         self.peak = 0
+        self.held: int | None = None
 
     def try_out(self, raw: bytes, command: str) -> list[str]:
         """The faults that a file brings about."""
@@ -75,7 +77,9 @@ class Bench:
         self.ends[f"exit {ended.code}"] += 1
         self.ends.update(ended.outcomes)
         self.peak = max(self.peak, ended.peak)
-        more = ended.peak - ended.before
+        if self.held is None:
+            self.held = ended.before
+        more = ended.peak - self.held
         over = [f"{more / 1e6:.0f} MB of memory"] if more > MOST_BYTES else []
         return ended.faults + over
 

@@ -22,6 +22,7 @@ from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.analytic.forces.beside import AGREED, apart, out_of_balance, series, turn
 from tests.worlds.loading import loaded
 from tests.worlds.rubbing import rubbed, rubbed_mechanism
+from tests.worlds.tiers import slowly
 
 PRESS = """
 name = "press"
@@ -166,9 +167,10 @@ def test_a_fault_in_friction_makes_them_disagree() -> None:
         power.power_balance(scene, solve(scene, time_s), found.torque)
 
 
-def test_without_a_coefficient_the_forces_are_those_without_friction() -> None:
+@pytest.mark.parametrize("every", [8, slowly(4, reason="random mechanisms")])
+def test_without_a_coefficient_the_forces_are_those_without_friction(every: int) -> None:
     """And with a small one they are near it, by as much."""
-    for number in range(0, 40, 8):
+    for number in range(0, 40, every):
         scene, _ = rubbed_mechanism(number)
         time_s = np.linspace(0.01, 1.0, 7) * scene.driver.law.period_s
         bare = kinetostatics.forces(replace(scene, friction={}), time_s)

@@ -17,13 +17,12 @@ from models.errors import StructureError
 from models.files import load_scene
 from models.motion import Motion
 from tests.analytic.multibody.scenes import DOUBLE_PENDULUM, scene
+from tests.worlds.tiers import slowly
 
-END_S = 0.15
 
-
-@pytest.fixture(scope="module")
-def pendulum() -> FreeMotion:
-    return release(scene(DOUBLE_PENDULUM), END_S)
+@pytest.fixture(scope="module", params=[0.15, slowly(0.3, reason="errors that grow with time")])
+def pendulum(request: pytest.FixtureRequest) -> FreeMotion:
+    return release(scene(DOUBLE_PENDULUM), request.param)
 
 
 def moved(motion: Motion, by_rad: float, by_m: float) -> Motion:
@@ -46,7 +45,7 @@ def test_several_freedoms_go_by_all_bodies_and_windows_by_their_driver(
 
 
 def test_beside_a_run_both_its_angles_stay_and_its_pins_are_closed(pendulum: FreeMotion) -> None:
-    run = moved(pendulum.at(np.linspace(0.0, END_S, 7)), 0.2, 1e-3)
+    run = moved(pendulum.at(np.linspace(0.0, pendulum.until_s, 7)), 0.2, 1e-3)
     beside = pendulum.beside(run)
     for name, link in run.links.items():
         assert np.abs(beside.links[name].theta - link.theta).max() < 1e-14
@@ -56,7 +55,7 @@ def test_beside_a_run_both_its_angles_stay_and_its_pins_are_closed(pendulum: Fre
 
 
 def test_beside_nothing_there_is_nothing(pendulum: FreeMotion) -> None:
-    run = pendulum.at(np.linspace(0.0, END_S, 3))
+    run = pendulum.at(np.linspace(0.0, pendulum.until_s, 3))
     run.links["lower"].theta[1] = math.nan
     found = pendulum.beside(run).points["C"].position
     assert np.isnan(found[1]).all()
@@ -78,7 +77,7 @@ def test_what_leads_to_the_start_goes_on_through_it(pendulum: FreeMotion) -> Non
 def test_its_own_error_covers_that_of_a_coarser_integration(pendulum: FreeMotion) -> None:
     assert isinstance(pendulum, BodiesMotion)
     rough = BodiesMotion(replace(pendulum.bodies, method=Projection(1e-10)))
-    time_s = np.linspace(0.0, END_S, 31)
+    time_s = np.linspace(0.0, pendulum.until_s, 31)
     own, other = rough.at(time_s), pendulum.at(time_s)
     for name, link in own.links.items():
         off = np.abs(link.theta - other.links[name].theta)
@@ -88,11 +87,11 @@ def test_its_own_error_covers_that_of_a_coarser_integration(pendulum: FreeMotion
 
 
 def test_energy_of_it_balances(pendulum: FreeMotion) -> None:
-    energy = pendulum.energy(np.linspace(0.0, END_S, 31))
+    energy = pendulum.energy(np.linspace(0.0, pendulum.until_s, 31))
     assert np.ptp(energy.balance) < 1e-11 * energy.kinetic.max()
 
 
 def test_what_can_not_be_let_go_is_told_both_ways() -> None:
     unnamed = DOUBLE_PENDULUM.split("[start]")[0]
     with pytest.raises(StructureError, match=r"mobility W = .* lower start is not named"):
-        release(scene(unnamed.replace("speed_rad_s = 1.0", "")), END_S)
+        release(scene(unnamed.replace("speed_rad_s = 1.0", "")), 0.1)

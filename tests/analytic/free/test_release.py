@@ -144,22 +144,31 @@ def test_past_limits_the_motion_is_that_of_all_bodies(until_s: float) -> None:
     assert np.abs(found - bodies_after(scene, until_s)).max() < 1e-10
 
 
-PASSING = "half a second each: as the first, faster, and at a slider"
+PASSING = "smaller steps, of a faster one and of a slider"
 
 
 @pytest.mark.parametrize(
-    "scene",
+    ("scene", "until_s", "samples"),
     [
-        past_limits(),
-        slowly(past_limits(start_deg=20.0, speed_rad_s=15.0), reason=PASSING),
-        slowly(slider_crank(0.3, 0.2, 0.05, start_deg=20.0, speed_rad_s=8.0), reason=PASSING),
+        (past_limits(), 0.9, 601),
+        *(
+            slowly(each, 1.0, 1501, reason=PASSING)
+            for each in (
+                past_limits(),
+                past_limits(start_deg=20.0, speed_rad_s=15.0),
+                slider_crank(0.3, 0.2, 0.05, start_deg=20.0, speed_rad_s=8.0),
+            )
+        ),
     ],
 )
-def test_past_limits_everything_goes_on_smoothly_in_the_right_assembly(scene: Scene) -> None:
-    free = released(scene, 0.9)
+def test_past_limits_everything_goes_on_smoothly_in_the_right_assembly(
+    scene: Scene, until_s: float, samples: int
+) -> None:
+    free = released(scene, until_s)
     assert len(free.passages) > 1
     near = [p.time_s + x for p in free.passages for x in (-1e-4, -1e-7, 0.0, 1e-7, 1e-4)]
-    time_s = np.sort(np.concatenate([np.linspace(0.0, 0.9, 601), np.clip(near, 0.0, 0.9)]))
+    even = np.linspace(0.0, until_s, samples)
+    time_s = np.sort(np.concatenate([even, np.clip(near, 0.0, until_s)]))
     motion, step = free.at(time_s), np.diff(time_s)
     for link in motion.links.values():
         steady = 0.5 * (link.omega[1:] + link.omega[:-1])
@@ -177,8 +186,9 @@ def test_past_limits_everything_goes_on_smoothly_in_the_right_assembly(scene: Sc
               replace(fourbar(), friction={"C": ConstantFriction("C", 0.02)}),
               *(scene for scene, _ in KINKED.values())],
 )  # fmt: skip
-def test_energy_balances(scene: Scene) -> None:
-    energy = released(scene, 0.4).energy(np.linspace(0.0, 0.4, 201))
+@pytest.mark.parametrize("until_s", [0.4, slowly(0.6, reason="energy that goes by and by")])
+def test_energy_balances(scene: Scene, until_s: float) -> None:
+    energy = released(scene, until_s).energy(np.linspace(0.0, until_s, 301))
     off = np.abs(energy.balance - energy.balance[0])
     assert off.max() <= 1e-11 * energy.kinetic.max()
 

@@ -96,7 +96,9 @@ def test_energy_balances_at_any_time(name: str, until_s: float) -> None:
     assert off.max() <= 1e-11 * energy.kinetic.max()
 
 
-@pytest.mark.parametrize("until_s", [0.5, slowly(10.0, reason="many turns")])
+@pytest.mark.parametrize(
+    "until_s", [0.5, slowly(1.0, reason="the closest limit"), slowly(10.0, reason="many turns")]
+)
 def test_the_chain_goes_as_its_closed_form_says(until_s: float) -> None:
     free, time_s = released(load_scene("fourbar-chain"), until_s), np.linspace(0.0, until_s, 333)
     off = np.abs(free.law.at(time_s)[0] - ChainMotion(Chain(2)).at(time_s)[0])

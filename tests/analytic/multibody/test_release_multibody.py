@@ -33,7 +33,7 @@ from tests.analytic.multibody.scenes import (
     THESIS,
     scene,
 )
-from tests.worlds.tiers import few, slow, slowly
+from tests.worlds.tiers import slow, slowly
 
 SPRINGS = """
 [springs.line]
@@ -63,8 +63,6 @@ frame = "body"
 direction_deg = 90.0
 force_n = 0.4
 """
-LASTS_S = {"pulse": 0.5}
-"""What moves from rest by a pulse takes its time; others 0.1 s."""
 CASES = {
     "swing": load_scene("fourbar-swing"),
     "spun": scene(SLIDER_CRANK + "speed_rad_s = 15.0\n"),
@@ -73,9 +71,21 @@ CASES = {
 }
 
 
+FAST = ("swing", "spun", "springs")
+"""What moves from rest by a pulse takes its time."""
+few_times = pytest.mark.parametrize(
+    ("name", "until_s"),
+    [
+        ("pulse", 0.5),
+        *((name, 0.1) for name in FAST),
+        *(slowly(name, 0.5, reason="errors that grow with time") for name in FAST),
+    ],
+)
+
+
 @cache
-def case(name: str) -> MultibodyMotion:
-    return let_go(CASES[name], LASTS_S.get(name, 0.1))
+def case(name: str, until_s: float) -> MultibodyMotion:
+    return let_go(CASES[name], until_s)
 
 
 def let_go(mechanism: Scene, until_s: float) -> MultibodyMotion:
@@ -94,10 +104,10 @@ def test_a_mechanism_of_micrometres_has_masses_too() -> None:
     assert here == pytest.approx(there, abs=1e-10)
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_it_goes_as_the_equation_of_the_machine_says(name: str) -> None:
-    free = case(name)
-    time_s, other = np.linspace(0.0, free.until_s, 11), release(CASES[name], free.until_s)
+@few_times
+def test_it_goes_as_the_equation_of_the_machine_says(name: str, until_s: float) -> None:
+    free, other = case(name, until_s), release(CASES[name], until_s)
+    time_s = np.linspace(0.0, until_s, 11)
     grown = free.sensitivity(time_s)
     found, wanted = free.at(time_s), other.at(time_s, bound=False)
     for link, motion in found.links.items():
@@ -111,10 +121,9 @@ def test_it_goes_as_the_equation_of_the_machine_says(name: str) -> None:
         assert place.acceleration == pytest.approx(wanted.points[point].acceleration, abs=1e-6)
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_joints_stay_closed_and_energy_balances(name: str) -> None:
-    free = case(name)
-    time_s = np.linspace(0.0, free.until_s, 37)
+@few_times
+def test_joints_stay_closed_and_energy_balances(name: str, until_s: float) -> None:
+    free, time_s = case(name, until_s), np.linspace(0.0, until_s, 37)
     energy = free.energy(time_s)
     assert free.gap(time_s).max() < 1e-15
     assert np.ptp(energy.balance) < 3e-11 * energy.kinetic.max()
@@ -142,11 +151,12 @@ def test_faults_in_the_equations_are_seen(monkeypatch: pytest.MonkeyPatch) -> No
     assert np.abs(wrong - right).max() > 1e-8
 
 
+@pytest.mark.parametrize("until_s", [0.12, slowly(0.25, reason="errors that grow with time")])
 @pytest.mark.parametrize("text", [DOUBLE_PENDULUM, FIVE_BAR], ids=["double pendulum", "five-bar"])
-def test_two_freedoms_converge_and_keep_their_energy(text: str) -> None:
-    time_s = np.linspace(0.0, 0.12, 11)
-    fine = release_multibody(scene(text), 0.12)
-    rough = release_multibody(scene(text), 0.12, Projection(1e-9))
+def test_two_freedoms_converge_and_keep_their_energy(text: str, until_s: float) -> None:
+    time_s = np.linspace(0.0, until_s, 11)
+    fine = release_multibody(scene(text), until_s)
+    rough = release_multibody(scene(text), until_s, Projection(1e-9))
     for link, motion in fine.at(time_s).links.items():
         assert motion.theta == pytest.approx(rough.at(time_s).links[link].theta, abs=1e-7)
     energy = fine.energy(time_s)
@@ -154,7 +164,7 @@ def test_two_freedoms_converge_and_keep_their_energy(text: str) -> None:
     assert fine.sensitivity(time_s)[-1] >= 1.0
 
 
-@slow("half a second, and a bound alone: what a speed grows by is held closely")
+@slow("half a second of motion: only so long a changed start grows by as much")
 def test_sensitivity_is_what_a_changed_start_grows_by() -> None:
     mechanism = CASES["swing"]
     law, end = mechanism.driver.law, np.array([0.5])
@@ -214,13 +224,14 @@ stroke = "forward"
 """
 
 
-def test_a_load_on_one_stroke_jumps_where_the_slider_turns() -> None:
+@pytest.mark.parametrize("until_s", [0.05, slowly(0.1, reason="both ends of the stroke")])
+def test_a_load_on_one_stroke_jumps_where_the_slider_turns(until_s: float) -> None:
     """Its work is its force times the strokes."""
     text = SLIDER_CRANK + "speed_rad_s = 40.0\nstart_deg = 150.0\n" + CUT + "force_n = 2.0\n"
-    free = let_go(scene(text), 0.05)
-    energy = free.energy(np.linspace(0.0, 0.05, 11))
+    free = let_go(scene(text), until_s)
+    energy = free.energy(np.linspace(0.0, until_s, 11))
     assert np.ptp(energy.balance) < 1e-11 * energy.kinetic.max()
-    slider = free.at(np.linspace(0.0, 0.05, 1001)).sliders["C"]
+    slider = free.at(np.linspace(0.0, until_s, 2001)).sliders["C"]
     forward = np.maximum(np.diff(slider.displacement), 0.0).sum()
     assert energy.work[-1] == pytest.approx(-2.0 * forward, abs=1e-5)
     assert energy.work[-1] < -0.05
@@ -299,15 +310,24 @@ def test_a_parallelogram_goes_through_its_flat_positions(
 
 
 @pytest.mark.parametrize(
-    "beside", few([1e-7, -1e-9], {1e-7}, "a second: nearer, to the other side")
+    ("beside", "start_deg", "until_s"),
+    [
+        (1e-7, 150.0, 0.12),
+        *(
+            slowly(beside, 80.0, 0.3, reason="nearer, to the other side, and from farther off")
+            for beside in (1e-7, -1e-9)
+        ),
+    ],
 )
-def test_one_that_just_misses_a_change_point_turns_off_beside_it(beside: float) -> None:
+def test_one_that_just_misses_a_change_point_turns_off_beside_it(
+    beside: float, start_deg: float, until_s: float
+) -> None:
     """To what rounding leaves of its lengths; and its steps do not shrink to nothing either."""
-    own = fourbar(0.15, 0.3, 0.15 * (1.0 + beside), 0.3, start_deg=150.0, speed_rad_s=9.0)
-    free = let_go(own, 0.12)
+    own = fourbar(0.15, 0.3, 0.15 * (1.0 + beside), 0.3, start_deg=start_deg, speed_rad_s=9.0)
+    free = let_go(own, until_s)
     assert free.change_points_s == ()
     assert free._history.steps < 250
-    energy = free.energy(np.linspace(0.0, 0.12, 11))
+    energy = free.energy(np.linspace(0.0, until_s, 11))
     assert np.ptp(energy.balance) < 1e-14 / abs(beside) * energy.kinetic.max()
 
 

@@ -91,9 +91,12 @@ def reversal_s() -> float:
     return float(looks[0])
 
 
-@pytest.mark.parametrize(
-    "let_go", few([by_bodies, by_its_equation], {by_its_equation}, "a second for many steps")
+few_ways = pytest.mark.parametrize(
+    "let_go", few([by_bodies, by_its_equation], {by_its_equation}, "all bodies: a second of steps")
 )
+
+
+@few_ways
 @pytest.mark.parametrize("share", few([1.0, 0.9], {0.9}, "while it stands, not just before"))
 def test_one_that_has_turned_back_does_not_run_away(
     let_go: Callable[[Scene], None], share: float, reversal_s: float
@@ -102,8 +105,6 @@ def test_one_that_has_turned_back_does_not_run_away(
     let_go(scene(RAISED + crowd_of_rows(reversal_s / share)))
 
 
-@pytest.mark.parametrize(
-    "let_go", few([by_bodies, by_its_equation], {by_its_equation}, "one that turned back is quick")
-)
+@few_ways
 def test_one_that_leaves_its_rest_does_not_run_away(let_go: Callable[[Scene], None]) -> None:
     let_go(scene(ROTOR + crowd_of_rows(0.5), 0.0))

@@ -69,7 +69,7 @@ def test_a_yoke_without_loads_by_hand() -> None:
     few(
         ["engine-four-stroke", "compressor", "toggle-press"],
         {"compressor"},
-        "half a second each, as that of the compressor",
+        "cycles of two turns and of a press: half a second each",
     ),
 )
 def test_the_scene_with_the_flywheel_has_the_coefficient(name: str) -> None:

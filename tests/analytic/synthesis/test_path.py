@@ -129,17 +129,21 @@ def test_cognates_are_among_them(starts: int) -> None:
     assert sum(fit.rms_m < 1e-9 * task.radius_m for fit in fits) >= 2
 
 
-def test_the_same_seed_gives_the_same_answer() -> None:
+@pytest.mark.parametrize(
+    ("starts", "closed"), [(FEW, True), slowly(10, False, reason="an open path, and more starts")]
+)
+def test_the_same_seed_gives_the_same_answer(starts: int, closed: bool) -> None:
     _, _, task = random_path(3, 10, timed=False, closed=False)
-    one, other = (generate(task, starts=FEW, seed=7) for _ in range(2))
+    one, other = (generate(task, starts=starts, seed=7) for _ in range(2))
     assert [fit.four_bar for fit in one.fits] == [fit.four_bar for fit in other.fits]
-    timed = random_path(3, 10, timed=True, closed=True, noise=0.02)[2]
+    timed = random_path(3, 10, timed=True, closed=closed, noise=0.02)[2]
     seeds = [generate(timed, starts=4, seed=seed).fits[0].rms_m for seed in (1, 1, 2)]
     assert seeds[0] == seeds[1] != seeds[2]
 
 
-def test_a_search_ends_with_its_time_and_tells_how_far_it_is() -> None:
-    _, _, task = random_path(0, 12, timed=False, closed=True)
+@pytest.mark.parametrize("points", [12, slowly(30, reason="a longer search to tell of")])
+def test_a_search_ends_with_its_time_and_tells_how_far_it_is(points: int) -> None:
+    _, _, task = random_path(0, points, timed=False, closed=True)
     told: list[tuple[float, float]] = []
     found = generate(task, time_s=0.0, progress=lambda *each: told.append(each))
     assert not found.complete
@@ -226,10 +230,14 @@ def test_what_is_no_path_is_refused(ask, told: str) -> None:  # type: ignore[no-
         ask()
 
 
-@few_starts
+@pytest.mark.parametrize(
+    ("points", "starts"), [(14, FEW), slowly(24, 16, reason="more of the heart, and more ways")]
+)
 @pytest.mark.parametrize("timed", [True, False])
-def test_a_transmission_angle_is_kept_at_the_cost_of_the_distance(timed: bool, starts: int) -> None:
-    turn = math.tau * (np.arange(14) + 0.1) / 14
+def test_a_transmission_angle_is_kept_at_the_cost_of_the_distance(
+    timed: bool, points: int, starts: int
+) -> None:
+    turn = math.tau * (np.arange(points) + 0.1) / points
     heart = 16 * np.sin(turn) ** 3 + 1j * (13 * np.cos(turn) - 5 * np.cos(2 * turn))
     crank = tuple(turn.tolist()) if timed else None
     task = PathTask(tuple(heart.tolist()), crank, closed=True)

@@ -53,7 +53,11 @@ def test_the_largest_clearance_is_that_of_all_joints_at_once() -> None:
         ("quick-return", "whitworth", 40),
         *(
             slowly(*task, 200, reason="of more dimensions and mechanisms")
-            for task in (("coupler", "three-positions"), ("coupler", "driving-dyad"))
+            for task in (
+                ("coupler", "three-positions"),
+                ("coupler", "driving-dyad"),
+                ("quick-return", "whitworth"),
+            )
         ),
     ],
 )
@@ -71,17 +75,19 @@ def test_a_monte_carlo_stays_within_the_worst_case_and_comes_near(
     assert spread.lost == 0
 
 
-def test_the_same_seed_gives_the_same() -> None:
+@pytest.mark.parametrize("count", [10, slowly(50, reason="more of them, drawn at random")])
+def test_the_same_seed_gives_the_same(count: int) -> None:
     one = central()
-    first, second = (monte_carlo(one, 1e-4, [1e-4, 1e-4], 10) for _ in range(2))
+    first, second = (monte_carlo(one, 1e-4, [1e-4, 1e-4], count) for _ in range(2))
     assert first.largest.tolist() == second.largest.tolist()
-    other = monte_carlo(one, 1e-4, [1e-4, 1e-4], 10, seed=1)
+    other = monte_carlo(one, 1e-4, [1e-4, 1e-4], count, seed=1)
     assert other.largest.tolist() != first.largest.tolist()
 
 
-def test_mechanisms_that_can_not_be_assembled_are_counted() -> None:
+@pytest.mark.parametrize("count", [40, slowly(100, reason="more of them, drawn at random")])
+def test_mechanisms_that_can_not_be_assembled_are_counted(count: int) -> None:
     one = best("coupler", "three-positions")
-    assert monte_carlo(one, 0.1, [1.0] * 9, 40).lost > 5
+    assert monte_carlo(one, 0.1, [1.0] * 9, count).lost > 5
 
 
 def test_a_bar_has_one_length() -> None:

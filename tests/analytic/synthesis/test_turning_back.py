@@ -22,9 +22,10 @@ from tests.worlds.tiers import few
 RATIOS = ("stroke_and_ratio", "slotted_lever", "whitworth", "crank_rocker")
 
 
+@pytest.mark.parametrize("number", few(range(2), [0], "another random task"))
 @pytest.mark.parametrize("kind", RATIOS)
-def test_the_reference_measures_the_time_ratio_that_was_asked_for(kind: str) -> None:
-    found = random_solutions(kind, 0)
+def test_the_reference_measures_the_time_ratio_that_was_asked_for(kind: str, number: int) -> None:
+    found = random_solutions(kind, number)
     assert isinstance(found.task, (StrokeTask, QuickReturnTask))
     assert found.sound
     for one in found.sound[:3]:

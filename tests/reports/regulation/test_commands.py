@@ -96,7 +96,7 @@ def test_files_hold_all_digits(crank: Crank) -> None:
     assert json.loads(Path("c.json").read_text())["cycle"]["delta"] == pytest.approx(0.2)
 
 
-@pytest.mark.parametrize("free", few([False, True], {True}, "half a second: the same machine"))
+@pytest.mark.parametrize("free", few([False, True], {True}, "the driven scene: half a second"))
 def test_the_written_scene_has_the_flywheel(crank: Crank, free: bool) -> None:
     options = ["--write", "w.toml", *(["--free"] * free)]
     result = crank("flywheel", "compressor", "--delta", "0.03", *options)

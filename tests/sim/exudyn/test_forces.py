@@ -21,7 +21,7 @@ from models.loads import Load
 from models.scene import Scene
 from models.tabulated import Tabulated
 from reports.contract.clauses.reactions import named
-from sim.engine import Drive, Log, Settings
+from sim.engine import Drive, Settings
 from sim.exudyn.engine import ENGINE
 from sim.exudyn.session import ExudynSession
 from sim.force_recipes import force_recipe
@@ -60,10 +60,6 @@ def opened(
     return ENGINE.open(scene, state, asked, scene.driver.law.period_s / steps, drive)
 
 
-def acting(log: Log) -> Forces:
-    return log.forces
-
-
 def off(scene: Scene, forces: Forces) -> tuple[Array, Array]:
     """At each sample the largest error of all reactions over the largest of them, a moment over the
     largest moment, and the error of the torque over the largest torque."""
@@ -90,7 +86,7 @@ def off(scene: Scene, forces: Forces) -> tuple[Array, Array]:
 def test_reactions_and_torque_are_those_of_the_reference(name: str) -> None:
     scene = load_scene(name)
     limit = WITHIN.get(name, 2.5e-4)
-    for wrong in off(scene, acting(opened(scene).record_forces(720, 1))):
+    for wrong in off(scene, opened(scene).record_forces(720, 1).forces):
         assert wrong[0] < 1e-6
         assert np.nanmax(wrong[SETTLED:]) < limit
 
@@ -101,7 +97,7 @@ def test_reactions_and_torque_are_those_of_the_reference(name: str) -> None:
 def test_errors_shrink_as_the_step_squared(name: str, settings: Settings) -> None:
     scene = load_scene(name)
     coarse, fine = (
-        off(scene, acting(opened(scene, n, settings).record_forces(n, 1))) for n in (360, 1440)
+        off(scene, opened(scene, n, settings).record_forces(n, 1).forces) for n in (360, 1440)
     )
     for one, other in zip(coarse, fine, strict=True):
         assert 12.0 < np.nanmax(one[SETTLED:]) / np.nanmax(other[SETTLED:]) < 20.0
@@ -109,7 +105,7 @@ def test_errors_shrink_as_the_step_squared(name: str, settings: Settings) -> Non
 
 def test_what_the_start_shakes_is_a_share_of_the_step_and_gone_soon() -> None:
     coarse, fine = (
-        off(FOURBAR, acting(opened(FOURBAR, n).record_forces(60, 1)))[0] for n in (360, 1440)
+        off(FOURBAR, opened(FOURBAR, n).record_forces(60, 1).forces)[0] for n in (360, 1440)
     )
     assert 3.0 < coarse.max() / fine.max() < 5.0
     assert fine.max() == fine[1]
@@ -120,25 +116,25 @@ def test_what_the_start_shakes_is_a_share_of_the_step_and_gone_soon() -> None:
 def test_the_motion_is_the_same_to_the_bit_and_two_stretches_are_one(settings: Settings) -> None:
     scene = load_scene("fourbar-double-rocker")
     plain, whole, parts = (opened(scene, settings=settings) for _ in range(3))
-    moved, forces = plain.record(90, 3).poses, whole.record_forces(90, 3)
-    for one, other in zip(moved.bodies.values(), forces.poses.bodies.values(), strict=True):
+    moved, log = plain.record(90, 3).poses, whole.record_forces(90, 3)
+    for one, other in zip(moved.bodies.values(), log.poses.bodies.values(), strict=True):
         assert all(np.array_equal(vars(one)[key], vars(other)[key]) for key in vars(one))
     parts.record_forces(30, 3)
-    later = acting(parts.record_forces(60, 3)).torque
-    np.testing.assert_allclose(later, acting(forces).torque[10:], rtol=1e-7)
+    later = parts.record_forces(60, 3).forces.torque
+    np.testing.assert_allclose(later, log.forces.torque[10:], rtol=1e-7)
 
 
 def test_a_motor_and_nothing_at_all_have_the_torque_that_they_have() -> None:
     heavy = replace(FOURBAR, gravity_m_s2=(0.0, -9.81))
-    motor = acting(opened(heavy, drive="servo").record_forces(720, 1))
+    motor = opened(heavy, drive="servo").record_forces(720, 1).forces
     assert off(heavy, motor)[1][200:].max() < 5e-3
-    assert np.all(acting(opened(heavy, drive="free").record_forces(20, 1)).torque == 0.0)
+    assert np.all(opened(heavy, drive="free").record_forces(20, 1).forces.torque == 0.0)
 
 
 @pytest.mark.parametrize("number", few([0, 4, 6, 8, 18, 36], {4, 8}, "more of them at random"))
 def test_loads_of_every_kind_are_felt_in_mechanisms_of_every_dyad(number: int) -> None:
     scene, _ = loaded_mechanism(number)
-    for wrong in off(scene, acting(opened(scene, 1440).record_forces(720, 1))):
+    for wrong in off(scene, opened(scene, 1440).record_forces(720, 1).forces):
         assert wrong[0] < 1e-5
         assert np.nanmax(wrong[SETTLED:]) < 1e-4
 
@@ -152,14 +148,14 @@ LOADED = {
 
 def test_what_acts_on_a_block_without_mass_goes_to_its_pin_and_its_guide() -> None:
     loaded = replace(MASSLESS, loads=LOADED)
-    forces = acting(opened(loaded).record_forces(720, 1))
+    forces = opened(loaded).record_forces(720, 1).forces
     for wrong in off(loaded, forces):
         assert np.nanmax(wrong[SETTLED:]) < 1e-4
     assert float(np.abs(forces.sliders["C"].moment).max()) > 10.0
     moving = load_scene("slotted-lever")
     along = Load("along", "block B", "B", WAVE, direction_rad=0.7, frame="body")
     turned = replace(moving, loads={"along": along})
-    wrong, _ = off(turned, acting(opened(turned).record_forces(720, 1)))
+    wrong, _ = off(turned, opened(turned).record_forces(720, 1).forces)
     assert np.nanmax(wrong[SETTLED:]) < 2.5e-4
 
 
@@ -180,7 +176,7 @@ def test_constant_friction_takes_the_power_that_it_has_to(
     plain = load_scene(name)
     rubbing = {joint: ConstantFriction(joint, size) for joint, size in sizes.items()}
     rubbed = replace(plain, friction=rubbing)
-    felt, bare = (acting(opened(s).record_forces(720, 1)) for s in (rubbed, plain))
+    felt, bare = (opened(s).record_forces(720, 1).forces for s in (rubbed, plain))
     times = plain.driver.law.period_s / 720 * np.arange(721)
     true = [
         kinetostatics.forces(s, times, bound=False, skip_dead_points=True).torque
@@ -225,7 +221,7 @@ def test_the_recipe_prints_what_is_reported(name: str) -> None:
     assert "crankcheck" not in text
     assert max(len(line) for line in text.splitlines() if line.startswith("#")) <= 100
     log = np.genfromtxt(io.StringIO(printed(text)), delimiter=",", names=True, deletechars="")
-    forces = acting(opened(scene, 180).record_forces(180, 1))
+    forces = opened(scene, 180).record_forces(180, 1).forces
     assert len(log) == 181
     scale = float(np.abs(forces.torque).max())
     np.testing.assert_allclose(log["torque_n_m"], forces.torque, atol=1e-6 * scale)

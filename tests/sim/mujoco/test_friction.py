@@ -22,7 +22,7 @@ from sim.mujoco import session
 from sim.registry import engine
 from sim.run import run
 from sim.settings import resolved
-from tests.sim.mujoco.test_reactions import STEPS, acting, opened
+from tests.sim.mujoco.test_reactions import STEPS, opened
 
 FOURBAR = load_scene("fourbar-lecture-1")
 
@@ -46,7 +46,7 @@ def test_friction_costs_the_torque_of_the_reference(name: str, sizes: dict[str, 
     """At 720 steps a turn, but for the samples about a turning point: there friction goes from one
     side to the other, in MuJoCo over some steps."""
     scene = rubbing(load_scene(name), **sizes)
-    found = acting(opened(scene).record_forces(STEPS, 1)).stretch(slice(5, None))
+    found = opened(scene).record_forces(STEPS, 1).forces.stretch(slice(5, None))
     true = kinetostatics.forces(scene, found.time_s, bound=False)
     turning = np.zeros(len(found.time_s), dtype=bool)
     for joint, size in sizes.items():

@@ -18,7 +18,7 @@ from models.mjcf import build
 from models.scene import Scene
 from models.tabulated import Tabulated
 from sim.run import run
-from tests.sim.mujoco.test_reactions import acting, opened, worst_of
+from tests.sim.mujoco.test_reactions import opened, worst_of
 from tests.worlds.loading import loaded_mechanism
 
 FOURBAR = load_scene("fourbar-lecture-1")
@@ -33,7 +33,7 @@ def with_loads(scene: Scene, *loads: Load) -> Scene:
 def off(scene: Scene, *, steps: int = 2000) -> float:
     """The largest error of a reaction or of the torque, as shares, in the first instants."""
     log = opened(scene, steps=steps).record_forces(SETTLED + 20, 1)
-    return max(worst_of(scene, acting(log).stretch(slice(SETTLED, None))))
+    return max(worst_of(scene, log.forces.stretch(slice(SETTLED, None))))
 
 
 @pytest.mark.parametrize("number", [2, 6, 8, 10, 20, 26, 38, 68, 82, 126])
@@ -89,7 +89,7 @@ def test_a_load_of_the_crank_angle_is_one_whether_it_is_known_ahead_or_read() ->
     places = tuple(np.linspace(0.0, 2.0 * np.pi, 13)[:-1])
     course = Tabulated(places, tuple(np.sin(places)), "pchip", 2.0 * np.pi)
     scene = with_loads(FOURBAR, Load("cam", "rocker", None, course, "angle"))
-    found = [acting(opened(scene, drive=d).record_forces(200, 1)) for d in ("prescribed", "servo")]
+    found = [opened(scene, drive=d).record_forces(200, 1).forces for d in ("prescribed", "servo")]
     told, read = (forces.pins["D"]["rocker"][100:] for forces in found)
     assert np.abs(told - read).max() < 0.01 * np.abs(told).max()
     assert mujoco.get_mjcb_control() is None

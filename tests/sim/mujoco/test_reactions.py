@@ -12,7 +12,7 @@ from analytic.kinematics import solve
 from models.files import load_scene, shipped
 from models.forces import Forces
 from models.scene import Scene
-from sim.engine import Drive, ForceSession, Log, Settings
+from sim.engine import Drive, ForceSession, Settings
 from sim.registry import engine
 from sim.settings import resolved
 from tests.worlds.equilibrium import left_over
@@ -46,10 +46,6 @@ def opened(
     return session  # type: ignore[return-value]
 
 
-def acting(log: Log) -> Forces:
-    return log.forces
-
-
 def worst_of(scene: Scene, forces: Forces) -> tuple[float, float]:
     """The largest error of a reaction over the largest reaction, and that of the torque."""
     true = kinetostatics.forces(scene, forces.time_s, bound=False, skip_dead_points=True)
@@ -68,11 +64,11 @@ def worst_of(scene: Scene, forces: Forces) -> tuple[float, float]:
 def test_forces_are_those_of_the_reference_and_of_each_bodys_equilibrium(name: str) -> None:
     scene = load_scene(name)
     log = opened(scene).record_forces(STEPS, 1)
-    for by_body in acting(log).pins.values():
+    for by_body in log.forces.pins.values():
         assert np.abs(sum(by_body.values())).max() == pytest.approx(0.0, abs=1e-12)
     force, moment = left_over(scene, log)
     assert max(force, moment / scene.longest_m) < 1e-9
-    reaction, torque = worst_of(scene, acting(log))
+    reaction, torque = worst_of(scene, log.forces)
     assert max(reaction, torque) < WITHIN.get(name, 1e-4)
 
 
@@ -82,7 +78,7 @@ def test_forces_change_nothing_of_the_motion() -> None:
     for name, pose in alone.poses.bodies.items():
         for key, series in vars(pose).items():
             np.testing.assert_array_equal(series, vars(with_forces.poses.bodies[name])[key])
-    assert len(acting(with_forces).time_s) == len(alone.poses.time_s) == 21
+    assert len(with_forces.forces.time_s) == len(alone.poses.time_s) == 21
 
 
 @pytest.mark.parametrize("close", ["B", "C", "D"])
@@ -91,4 +87,4 @@ def test_forces_do_not_depend_on_where_the_loop_is_closed(close: str) -> None:
     log = opened(scene, {"close": close}).record_forces(STEPS, 4)
     force, moment = left_over(scene, log)
     assert max(force, moment / scene.longest_m) < 1e-9
-    assert max(worst_of(scene, acting(log))) < 1e-4
+    assert max(worst_of(scene, log.forces)) < 1e-4

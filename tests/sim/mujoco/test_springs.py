@@ -25,7 +25,6 @@ from sim.mujoco.session import MujocoSession
 from sim.registry import engine
 from sim.run import run
 from sim.settings import resolved
-from tests.sim.mujoco.test_reactions import acting
 from tests.worlds.equilibrium import left_over
 from tests.worlds.let_go import released
 
@@ -110,7 +109,7 @@ def test_springs_are_no_reactions_and_nothing_drives_the_crank(name: str) -> Non
     scene = SCENES[name]
     log = opened(scene).record_forces(40, 1)
     assert max(left_over(scene, log)) < 1e-5
-    forces = acting(log)
+    forces = log.forces
     largest = max(float(np.abs(f).max()) for by in forces.pins.values() for f in by.values())
     assert np.abs(forces.torque).max() < 5e-7 * largest * scene.longest_m
 
@@ -120,7 +119,7 @@ def test_springs_of_a_driven_mechanism_are_borne_by_its_drive() -> None:
     scene = replace(load_scene(FOURBAR), springs={"l": spring})
     state, law = solve(scene, np.zeros(1)).state(), scene.driver.law
     session = MujocoSession(scene, state, TUNED, law.period_s / 720, "prescribed")
-    forces = acting(session.record_forces(100, 1)).stretch(slice(5, None))
+    forces = session.record_forces(100, 1).forces.stretch(slice(5, None))
     theta, omega, _ = law.at(forces.time_s)
     machine = Machine(scene)
     _, slope = machine.inertia(theta)

@@ -14,7 +14,7 @@ from models.friction import ConstantFriction
 from models.scene import Scene
 from sim.pymunk.engine import ENGINE
 from sim.run import run
-from tests.sim.pymunk.test_reactions import START, acting, misses, of_a_turn
+from tests.sim.pymunk.test_reactions import START, misses, of_a_turn
 
 
 def renamed(name: str, slider: str) -> Scene:
@@ -42,7 +42,7 @@ RUBBING = {
 def test_constant_friction_is_against_the_motion(where: str) -> None:
     """But for the samples at which a joint turns back, where it may be anything within its size."""
     scene = RUBBING[where]
-    found = acting(of_a_turn(scene, 720))
+    found = of_a_turn(scene, 720).motion.forces
     exact = forces(scene, found.time_s, bound=False)
     same = np.ones(len(found.time_s), dtype=bool)
     for joint, law in scene.friction.items():

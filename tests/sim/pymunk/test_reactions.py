@@ -34,13 +34,9 @@ def of_a_turn(scene: Scene, steps: int, **given: object) -> Run:
     return run(scene, state, ENGINE, dt_s=period / steps, steps=steps, with_forces=True, **given)  # type: ignore[arg-type]
 
 
-def acting(result: Run) -> Forces:
-    return result.motion.forces
-
-
 def errors(scene: Scene, steps: int) -> dict[str, float]:
     """The worst of a turn."""
-    found = acting(of_a_turn(scene, steps))
+    found = of_a_turn(scene, steps).motion.forces
     exact = forces(scene, found.time_s, bound=False)
     assert {p: [*b] for p, b in found.pins.items()} == {p: [*b] for p, b in exact.pins.items()}
     return {key: float(off.max()) for key, off in misses(found, exact, scene.longest_m).items()}
@@ -104,7 +100,7 @@ def test_the_motion_is_that_of_a_run_without_forces_to_the_bit() -> None:
 
 
 def test_no_step_leads_to_the_first_sample_and_it_has_no_forces() -> None:
-    found = acting(of_a_turn(load_scene("fourbar-lecture-1"), 90))
+    found = of_a_turn(load_scene("fourbar-lecture-1"), 90).motion.forces
     assert np.isnan(found.torque[0])
     assert np.isfinite(found.torque[1:]).all()
     assert np.isnan(found.pins["C"]["rocker"][0]).all()
@@ -122,9 +118,9 @@ def test_no_step_leads_to_the_first_sample_and_it_has_no_forces() -> None:
 def test_momentum_says_of_every_joint_what_its_impulse_does(name: str, drive: Drive) -> None:
     """Converged or not: iterations change what the joints bear, not what they did."""
     result = of_a_turn(load_scene(name), 180, drive=drive, settings={"iterations": 5})
-    assert acting(result).contradictions == ()
+    assert result.motion.forces.contradictions == ()
     if drive == "free":
-        assert not acting(result).torque[1:].any()
+        assert not result.motion.forces.torque[1:].any()
 
 
 def test_an_impulse_that_momentum_does_not_confirm_is_said() -> None:
@@ -144,7 +140,7 @@ def test_of_redundant_links_the_torque_alone_is_given() -> None:
     scene = double_parallelogram("double-parallelogram", source="test")
     scene = replace(scene, gravity_m_s2=(0.0, -9.81))
     state = solve(scene, np.zeros(1)).state()
-    found = acting(run(scene, state, ENGINE, dt_s=1e-3, steps=200, with_forces=True))
+    found = run(scene, state, ENGINE, dt_s=1e-3, steps=200, with_forces=True).motion.forces
     exact = forces(scene, found.time_s, bound=False)
     assert not found.pins
     assert "redundant links" in found.undetermined
@@ -194,7 +190,7 @@ def test_a_load_of_a_stroke_acts_on_that_stroke() -> None:
         "slider-crank-offset",
         Load("a", "block C", "C", Constant(5.0), slider="C", stroke="forward"),
     )
-    found = acting(of_a_turn(scene, 360))
+    found = of_a_turn(scene, 360).motion.forces
     exact = forces(scene, found.time_s, bound=False)
     off = np.abs(found.torque - exact.torque)[START:] > 1e-3 * np.abs(exact.torque).max()
     assert off.sum() <= 2  # at the ends of the stroke
