@@ -35,7 +35,7 @@ def judged(scene: str, columns: dict[str, object]) -> JudgedLog:
         ("sixbar-watt", "C_vx_m_s"),
     ],
 )
-@pytest.mark.parametrize("value", [slowly(0.0, reason="as at another number"), 37.3])
+@pytest.mark.parametrize("value", [slowly(0.0, reason="as without power; its mean is 0"), 37.3])
 def test_a_sensor_that_stands_still_is_out_and_said_to_stand(
     scene: str, column: str, value: float
 ) -> None:

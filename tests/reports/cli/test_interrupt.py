@@ -48,7 +48,7 @@ SECOND_STARTS: Moment = ("subprocess.Popen", "python", 2)
 FIRST_ANSWER: Moment = ("pickle.find_class", "reports.judge.cell", 1)
 LONG = ("verify", "--turns", "4", "-o", "out")
 """Some ten seconds of work, which ends in its first moments."""
-BRIEF = ("solve", "fourbar-lecture-1", "-o", "out.csv")
+BRIEF = ("verify", "fourbar-lecture-1", "-o", "out")
 """Work that comes to its end."""
 DEAF = ("sh", "-c", 'trap "" INT; exec "$@"', "sh")
 """Starts a program that ignores Ctrl-C, as `nohup` and a script's background do."""
@@ -97,7 +97,7 @@ def test_sigterm_ends_in_the_same_way(programs: Start, tmp_path: Path, moment: M
 def test_ctrl_c_stays_ignored_where_the_parent_ignores_it(programs: Start, tmp_path: Path) -> None:
     code, _, complaint = ended(programs, tmp_path, GROUP, IMPORTS, times=2, deaf=True)
     assert (code, complaint) == (0, "")
-    assert (tmp_path / "out.csv").exists()
+    assert (tmp_path / "out" / "verify.csv").exists()
 
 
 START = """

@@ -21,7 +21,10 @@ def family(scene: str, members: str, file: Path, *more: str) -> Result:
 )
 @pytest.mark.parametrize(
     ("scene", "members"),
-    [("slotted-lever", "R=0.1,0.12"), slowly("shaper", "rod=0.2,0.3", reason="the same writers")],
+    [
+        ("slotted-lever", "R=0.1,0.12"),
+        slowly("shaper", "rod=0.2,0.3", reason="members of two loops"),
+    ],
 )
 def test_the_ending_says_what_is_written(
     scene: str, members: str, ending: str, begins: bytes, tmp_path: Path

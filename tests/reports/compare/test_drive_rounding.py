@@ -43,7 +43,7 @@ def drive_share(scene: Scene, engine: str, law: Law, steps_per_turn: float, step
 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("steps_per_turn", [slowly(90.0, reason="another step"), 977.3])
+@pytest.mark.parametrize("steps_per_turn", [slowly(90.0, reason="steps that divide a turn"), 977.3])
 def test_the_drive_of_a_long_run_is_within_what_rounding_explains(
     steps_per_turn: float, law: str, engine: str, fourbar: Scene
 ) -> None:

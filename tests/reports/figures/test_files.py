@@ -121,6 +121,19 @@ def test_a_second_run_gives_the_same_bytes(
     assert (tmp_path / name).read_bytes() == (drawn / name).read_bytes()
 
 
+@slow("two seconds: a diagram has marks, legends and clipping that a mechanism has not")
+def test_a_second_run_gives_the_same_bytes_of_a_diagram_too(store: Path, tmp_path: Path) -> None:
+    for folder in ("one", "other"):
+        only = ["work-precision", "mechanism"]
+        run_figures(store, tmp_path / folder, Console(file=io.StringIO()), SCENES[:1], only)
+    made = sorted((tmp_path / "one").iterdir())
+    assert len(made) == 4
+    for path in made:
+        assert path.read_bytes() == (tmp_path / "other" / path.name).read_bytes(), path.name
+        assert b"CreationDate" not in path.read_bytes()
+        assert b"dc:date" not in path.read_bytes()
+
+
 def test_scene_and_only_choose(chosen: tuple[Path, str]) -> None:
     folder, said = chosen
     assert {path.name for path in folder.iterdir()} == {

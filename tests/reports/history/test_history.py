@@ -6,6 +6,7 @@ import csv
 import io
 import os
 import shutil
+import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -21,7 +22,7 @@ from reports.cli.commands.history import run_history
 from reports.history import verification
 from reports.history.environments import EngineVersion, NotMeasuredError
 from reports.workers.programs import Ended
-from tests.worlds.command import PYTHON, script, shadows
+from tests.worlds.command import COMMAND, PYTHON, script, shadows
 from tests.worlds.fake_installer import fake_installer
 from tests.worlds.programs import Start, until
 from tests.worlds.tiers import slow, slowly
@@ -205,6 +206,24 @@ def test_another_text_of_a_scene_is_not_answered_from_the_cache(
         path.write_text(content, encoding="utf-8")
         history("3.7.0", scenes=[str(path)], cache=tmp_path)
         assert len(measured) == count
+
+
+@posix
+@slow("a start of the command, and what it finds there as well; in this process it is above")
+def test_packages_of_our_names_in_the_working_folder_change_nothing(
+    installer: Path, cache: Path, tmp_path: Path
+) -> None:
+    options = ("--turns", "1", "--steps-per-turn", "360", "--cache", str(cache), "-o", "out")
+    done = subprocess.run(
+        [COMMAND, "history", "mujoco", "3.7.0", "--scene", SCENE, *options],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=shadows(tmp_path / "mine"),
+        env=os.environ | {"PATH": f"{installer}{os.pathsep}{os.environ['PATH']}"},
+    )
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "mine" / "out" / "mujoco-3.7.0" / "verify.csv").is_file()
 
 
 def test_another_code_of_crankcheck_has_another_key(

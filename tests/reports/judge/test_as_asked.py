@@ -23,7 +23,7 @@ from tests.worlds.tiers import few
 SCENES = few(
     ("fourbar-lecture-1", "slider-crank-offset", "shaper"),
     {"fourbar-lecture-1"},
-    "the words of a run are the same of every scene",
+    "blocks and several loops, which make other models of the same settings",
 )
 STEPS = 180
 

@@ -106,8 +106,9 @@ def alarms(found: list[Driven]) -> list[str]:
     return texts
 
 
-def test_three_random_mechanisms_raise_no_alarm() -> None:
-    raised = alarms(drawn(SEED, 3))
+@pytest.mark.parametrize("count", [3, slowly(8, reason="five more shapes of this seed")])
+def test_a_few_random_mechanisms_raise_no_alarm(count: int) -> None:
+    raised = alarms(drawn(SEED, count))
     assert not raised, "\n\n".join(raised)
 
 
@@ -181,8 +182,9 @@ def test_no_limit_depends_on_the_masses() -> None:
     assert checked(heavy, "mujoco").limits == checked(one, "mujoco").limits
 
 
-def test_a_printed_scene_file_is_the_mechanism(tmp_path: Path) -> None:
-    for one in drawn(SEED, 3)[:1]:
+@pytest.mark.parametrize("count", [1, slowly(3, reason="joints that the first one has not")])
+def test_a_printed_scene_file_is_the_mechanism(count: int, tmp_path: Path) -> None:
+    for one in drawn(SEED, 3)[:count]:
         path = tmp_path / f"{one.scene.name}.toml"
         path.write_text(one.text)
         assert load_scene(str(path)) == one.scene

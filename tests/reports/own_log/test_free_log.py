@@ -24,6 +24,7 @@ from reports.own_log.judged import JudgedLog, LogRequest, judge_log
 from reports.own_log.log_limits import EVERY
 from reports.own_log.table import footer, no_cause_text
 from reports.page.log_page import log_page
+from tests.worlds.tiers import slowly
 
 SWING = "fourbar-swing"
 TIME_S = np.linspace(0.0, 0.4, 201)
@@ -61,7 +62,14 @@ def rules(one: JudgedLog) -> list[str]:
 
 @pytest.mark.parametrize(
     ("name", "engine", "seconds"),
-    [(SWING, "mujoco", 0.3), ("fourbar-double-rocker-swing", "pymunk", 0.3)],
+    [
+        (SWING, "mujoco", 0.3),
+        ("fourbar-double-rocker-swing", "pymunk", 0.3),
+        slowly(
+            *("fourbar-double-rocker-swing", "pymunk", 1.0),
+            reason="only then has its driver turned back at a limit, at 0.42 s",
+        ),
+    ],
 )
 def test_a_run_that_was_logged_has_the_numbers_of_its_verification(
     name: str, engine: str, seconds: float

@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.judge.rules import RULES
@@ -23,8 +24,6 @@ from tests.worlds.tiers import slowly
 
 SCENE = load_scene("fourbar-lecture-1")
 TIME_S = np.linspace(0.0, 1.2, 601)
-SOME_S = TIME_S[::4]
-"""Enough to find a speed in."""
 MOTION = solve(SCENE, TIME_S)
 ROCKER = MOTION.links["rocker"]
 
@@ -99,20 +98,23 @@ def test_two_copies_of_a_pin_that_part_are_an_open_joint() -> None:
     assert gap.maximum == pytest.approx(1e-3 * np.sin(1.2))
 
 
-@pytest.fixture(params=[6, slowly(drives.STARTS, reason="as many starts as users have tried")])
-def starts(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> int:
-    """Start angles that are tried, which take the time of a fit; few are enough for what these
-    logs hold."""
-    monkeypatch.setattr(drives, "STARTS", request.param)
-    return int(request.param)
+ALL = "all starts and rows: a fit that ends beside the best one is found in long logs first"
 
 
-@pytest.mark.usefixtures("starts")
+@pytest.fixture(params=[(6, 4), slowly((drives.STARTS, 1), reason=ALL)], ids=["few", "all"])
+def time_s(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Array:
+    """The instants of a log whose drive is fitted. Start angles that are tried take the time of a
+    fit, and so do rows: few of both are enough for what these logs hold."""
+    starts, every = request.param
+    monkeypatch.setattr(drives, "STARTS", starts)
+    return TIME_S[::every]
+
+
 @pytest.mark.parametrize("crank", [True, False])
-def test_a_drive_is_fitted_with_its_doubt(crank: bool) -> None:
-    other = solve(moved(SCENE, 10.07, 0.35), SOME_S)
-    noise = 1e-5 * np.random.default_rng(1).normal(size=(2, 151))
-    columns = {"t": SOME_S, "rocker": other.links["rocker"].theta + noise[0]}
+def test_a_drive_is_fitted_with_its_doubt(crank: bool, time_s: Array) -> None:
+    other = solve(moved(SCENE, 10.07, 0.35), time_s)
+    noise = 1e-5 * np.random.default_rng(1).normal(size=(2, len(time_s)))
+    columns = {"t": time_s, "rocker": other.links["rocker"].theta + noise[0]}
     if crank:
         columns["crank"] = np.mod(other.links["crank"].theta + noise[1], 2 * np.pi)
     assert judged(columns).verdict == "out"
@@ -123,27 +125,26 @@ def test_a_drive_is_fitted_with_its_doubt(crank: bool) -> None:
     assert 2 * np.pi * abs(turns - round(turns)) < 4 * one.fit.start_doubt < 1e-4
 
 
-@pytest.mark.usefixtures("starts")
 @pytest.mark.parametrize(
     ("speed", "column"),
     [
         (-10.0, "C.x"),
-        *[slowly(speed, "rocker", reason="as found as another") for speed in (20.0, 1.0)],
+        slowly(20.0, "rocker", reason="twice the speed of the scene, where fits start"),
+        slowly(1.0, "rocker", reason="a fifth of a turn in all"),
     ],
 )
-def test_any_speed_is_found_without_the_crank(speed: float, column: str) -> None:
-    other = solve(moved(SCENE, speed, 0.7), SOME_S)
+def test_any_speed_is_found_without_the_crank(speed: float, column: str, time_s: Array) -> None:
+    other = solve(moved(SCENE, speed, 0.7), time_s)
     places = {"rocker": other.links["rocker"].theta, "C.x": other.points["C"].position[:, 0]}
-    one = judged({"t": SOME_S, column: places[column]}, drive="fitted")
+    one = judged({"t": time_s, column: places[column]}, drive="fitted")
     assert one.verdict == "within"
     assert one.fit.explains
     assert one.fit.speed_rad_s == pytest.approx(speed, rel=1e-9)
 
 
-@pytest.mark.usefixtures("starts")
-def test_a_log_that_no_speed_explains_is_out_and_says_so() -> None:
-    noise = np.random.default_rng(1).normal(size=151)
-    one = judged({"t": SOME_S, "rocker": noise}, drive="fitted")
+def test_a_log_that_no_speed_explains_is_out_and_says_so(time_s: Array) -> None:
+    noise = np.random.default_rng(1).normal(size=len(time_s))
+    one = judged({"t": time_s, "rocker": noise}, drive="fitted")
     assert one.verdict == "out"
     assert "no speed and start" in one.notes[0]
     assert one.causes == ()

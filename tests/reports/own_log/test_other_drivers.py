@@ -15,7 +15,7 @@ from models.scene import Scene
 from reports.cli import app
 from reports.describe.frame import motion_frame
 from reports.describe.with_forces import with_forces
-from tests.worlds.tiers import few
+from tests.worlds.tiers import few, slowly
 
 
 def judged(path: Path, scene: Scene, of: Scene, *options: str, kept: str = "") -> Result:
@@ -27,9 +27,14 @@ def judged(path: Path, scene: Scene, of: Scene, *options: str, kept: str = "") -
     return CliRunner().invoke(app, ["judge", scene.name, str(log), "--target", "1e-6", *options])
 
 
-def test_a_log_of_another_assembly_of_a_triad_is_told_by_its_number(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "kept", ["_theta_rad", slowly("", reason="a second, with the places, rates and forces of all")]
+)
+def test_a_log_of_another_assembly_of_a_triad_is_told_by_its_number(
+    kept: str, tmp_path: Path
+) -> None:
     scene = load_scene("triad-platform")
-    told = judged(tmp_path, scene, replace(scene, branch={"plate": 2}), kept="_theta_rad")
+    told = judged(tmp_path, scene, replace(scene, branch={"plate": 2}), kept=kept)
     assert told.exit_code == 1
     assert "the log is of another assembly at plate" in " ".join(told.output.split())
     assert "plate = 2 under [branch]" in " ".join(told.output.split())

@@ -41,6 +41,7 @@ WORDS = {
 EITHER = list(product(LINKAGES, WORDS))
 IN_TURN = list(zip(cycle(LINKAGES), WORDS, strict=False))
 """Each fault in one linkage."""
+ONE_AND_ALL = few(LINKAGES, list(LINKAGES)[:1], "channels of a block and of a second loop")
 
 
 @pytest.fixture
@@ -105,7 +106,7 @@ def test_in_all_guises_at_once_too(
     holds(case, WORDS[fault], *blamed(scene, case.log, mapped=mapped))
 
 
-@pytest.mark.parametrize("scene", few(LINKAGES, list(LINKAGES)[:1], "the same of each linkage"))
+@pytest.mark.parametrize("scene", ONE_AND_ALL)
 def test_rates_half_a_sample_late_are_told_and_the_map_that_is_told_mends_it(
     scene: str, blamed: Callable[..., tuple[str, list[str]]], judge: Judge
 ) -> None:
@@ -127,7 +128,7 @@ def test_rates_half_a_sample_late_are_told_and_the_map_that_is_told_mends_it(
     assert judge(scene, Dress().text(log), mapped=told).exit_code == 0
 
 
-@pytest.mark.parametrize("scene", few(LINKAGES, list(LINKAGES)[:1], "the same of each linkage"))
+@pytest.mark.parametrize("scene", ONE_AND_ALL)
 def test_a_mean_that_is_not_late_is_a_filter_too(
     scene: str, blamed: Callable[..., tuple[str, list[str]]]
 ) -> None:
@@ -138,7 +139,7 @@ def test_a_mean_that_is_not_late_is_a_filter_too(
     assert "mean over 21 samples" in text
 
 
-@pytest.mark.parametrize("scene", few(LINKAGES, list(LINKAGES)[:1], "the same of each linkage"))
+@pytest.mark.parametrize("scene", ONE_AND_ALL)
 def test_several_samples_that_stick_are_told_as_one_stretch(
     scene: str, blamed: Callable[..., tuple[str, list[str]]]
 ) -> None:

@@ -23,6 +23,7 @@ from tests.reports.page import hard_runs
 from tests.reports.page.hostile import evil
 from tests.reports.page.tab import PHONE, WIDE, Tab
 from tests.worlds.in_process import in_this_process
+from tests.worlds.tiers import slowly
 
 STUDY = """
 scenes = ["fourbar-lecture-1", "shaper"]
@@ -133,10 +134,21 @@ def tiny_page(tiny: Stored, written: Callable[[str], Path]) -> Path:
     return written(page(tiny))
 
 
+FULL = "scenes, engines and times beside each other: what is left out of a page is another part"
+
+
+@pytest.fixture(scope="session", params=["tiny", slowly("small", reason=FULL)])
+def paged(request: pytest.FixtureRequest) -> tuple[Stored, Path]:
+    """A store and its page, as a file."""
+    return request.getfixturevalue(request.param), request.getfixturevalue(f"{request.param}_page")
+
+
 @pytest.fixture(scope="session")
-def both_page(tiny: Stored, hard_matrix: Matrix, written: Callable[[str], Path]) -> Path:
-    """The page of the tiny store with the hard cases beside it, as a file."""
-    return written(page(tiny, hard_matrix))
+def both_page(
+    paged: tuple[Stored, Path], hard_matrix: Matrix, written: Callable[[str], Path]
+) -> Path:
+    """The page of that store with the hard cases beside it, as a file."""
+    return written(page(paged[0], hard_matrix))
 
 
 def chromium() -> str:

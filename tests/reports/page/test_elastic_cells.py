@@ -29,13 +29,16 @@ from reports.store.reader import Stored, read_store
 from tests.reports.page.hostile import Outline
 from tests.reports.page.tab import OUT, Tab
 from tests.worlds.in_process import in_this_process
-from tests.worlds.tiers import few
+from tests.worlds.tiers import few, slowly
 
 SCENE = "fourbar-elastic"
 
 
-@pytest.fixture(scope="module")
-def bent(tmp_path_factory: pytest.TempPathFactory) -> Stored:
+FINER = "finer steps, whose errors are the segments' own: other cells are recommended and drawn"
+
+
+@pytest.fixture(scope="module", params=["360,720", slowly("720,1440", reason=FINER)])
+def bent(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Stored:
     folder = tmp_path_factory.mktemp("elastic") / "store"
     nowhere = Console(file=StringIO())
     asked = SweepRequest(
@@ -44,7 +47,7 @@ def bent(tmp_path_factory: pytest.TempPathFactory) -> Stored:
         engines=("mujoco",),
         profiles=("tuned",),
         segments="3,4",
-        steps_per_turn="360,720",
+        steps_per_turn=request.param,
         turns=1.0,
         jobs=1,
     )

@@ -249,9 +249,9 @@ def test_hostile_text_is_shown_and_not_read(hard_matrix: Matrix) -> None:
 
 
 def test_the_hard_cases_stand_in_the_report_and_change_no_other_section(
-    tiny_page: Path, both_page: Path
+    paged: tuple[Stored, Path], both_page: Path
 ) -> None:
-    without, found = (path.read_text(encoding="utf-8") for path in (tiny_page, both_page))
+    without, found = (path.read_text(encoding="utf-8") for path in (paged[1], both_page))
     # Neither were forces asked for, nor was one let go, nor has one elastic links.
     there = [name for name in SECTIONS if name not in ("reading_forces", "free", "elastic")]
     assert Outline(found).sections() == there
@@ -291,12 +291,15 @@ def test_a_page_of_many_large_pictures_is_below_8_megabytes(
 
 
 def test_pictures_give_way_where_the_report_gets_too_large(
-    tiny: Stored, hard_matrix: Matrix, both_page: Path, monkeypatch: pytest.MonkeyPatch
+    paged: tuple[Stored, Path],
+    hard_matrix: Matrix,
+    both_page: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     whole = both_page.read_text(encoding="utf-8")
     most = len(whole.encode()) - 30_000
     monkeypatch.setattr(build, "MOST_BYTES", most)
-    found = page(tiny, hard_matrix)
+    found = page(paged[0], hard_matrix)
     assert len(found.encode()) <= most
     assert 0 < len(carried(found)["pictures"]) < len(carried(whole)["pictures"])
     assert "to keep the page small" in found.lower()

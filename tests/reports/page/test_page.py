@@ -68,8 +68,11 @@ def test_a_store_in_which_everything_failed_has_a_page(small: Stored) -> None:
     assert "stability" in outline.sections()
 
 
-def test_a_store_without_the_text_of_its_scenes_has_a_page_without_drawings(tiny: Stored) -> None:
-    outline = Outline(page(replace(tiny, manifest=Manifest({}, tiny.manifest.runs))))
+def test_a_store_without_the_text_of_its_scenes_has_a_page_without_drawings(
+    paged: tuple[Stored, Path],
+) -> None:
+    stored, _ = paged
+    outline = Outline(page(replace(stored, manifest=Manifest({}, stored.manifest.runs))))
     assert outline.sections() == [name for name in STORED if name != "motion"]
 
 
@@ -107,11 +110,11 @@ def test_the_page_of_the_default_study_is_below_8_megabytes(small: Stored) -> No
 
 
 def test_drawings_give_way_where_the_page_gets_too_large(
-    tiny: Stored, tiny_page: Path, monkeypatch: pytest.MonkeyPatch
+    paged: tuple[Stored, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole = tiny_page.read_text(encoding="utf-8")
+    whole = paged[1].read_text(encoding="utf-8")
     monkeypatch.setattr(build, "MOST_BYTES", len(whole.encode()) - build.BUDGET + 1000)
-    thinned = page(tiny)
+    thinned = page(paged[0])
     assert len(re.findall('"base64"', thinned)) < len(re.findall('"base64"', whole))
 
 

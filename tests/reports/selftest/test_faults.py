@@ -215,15 +215,26 @@ def test_what_need_not_be_seen_of_free_motion_is_not_seen() -> None:
         assert one.nothing == ()
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_the_model_check_refuses_gravity_by_name(engine: str) -> None:
-    finding = planted("gravity-left-on", FOURBAR, engine).finding
+GRAVITY = places_of("gravity-left-on")
+
+
+@pytest.mark.parametrize(
+    "place",
+    few(GRAVITY, [at for at in GRAVITY if at[0] == FOURBAR], "the model of a block as well"),
+)
+def test_the_model_check_refuses_gravity_by_name(place: tuple[str, str]) -> None:
+    finding = planted("gravity-left-on", *place).finding
     assert "does not hold" in finding.text
     assert "gravity is (0.0, -9.81), not (0.0, 0.0) m/s^2" in finding.text
 
 
 @pytest.mark.parametrize(
-    "place", few(places_of("float32-arithmetic"), [(FOURBAR, "pymunk")], "the same elsewhere")
+    "place",
+    few(
+        places_of("float32-arithmetic"),
+        [(FOURBAR, "pymunk")],
+        "other sums and scenes in which few digits may show elsewhere than in the drive",
+    ),
 )
 def test_float32_arithmetic_is_seen_in_the_drive_alone(place: tuple[str, str]) -> None:
     assert planted("float32-arithmetic", *place).failed == ("CC102",)

@@ -76,7 +76,10 @@ def test_inside_an_engine_a_size_of_0_changes_no_bit(name: str, engine: str) -> 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(
     ("name", "size", "sign"),
-    [("damping-left-on", 0.1, -1), ("explicit-euler", 1.0, 1), ("energy-fed", 1e-3, 1)],
+    [
+        *(("damping-left-on", 0.1, -1), ("explicit-euler", 1.0, 1), ("energy-fed", 1e-3, 1)),
+        ("loose-damped", 0.1, -1),  # of elastic links, whose runs are slow: the same inside
+    ],
 )
 def test_energy_is_taken_or_fed(name: str, size: float, sign: int, engine: str) -> None:
     before, after = joules(sound(engine)), joules(planted(name, engine, size))

@@ -14,6 +14,7 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell
+from reports.plan.steps import MOST_SEARCHED
 from reports.sweep.measured import Repeats, measured
 from reports.tune.attempt import DEARER, NONE_KNOWN, Attempt, Bench, Goal, LostError, Row, error_of
 from reports.tune.timing import GUESS_US, times
@@ -22,6 +23,7 @@ from sim.engine import Settings, SettingValue
 from sim.mujoco.knobs import work
 from sim.mujoco.settings import TUNED
 from tests.reports.tune.conftest import timed
+from tests.worlds.tiers import slowly
 
 SETTINGS: dict[str, SettingValue] = {name: s.value for name, s in TUNED.settings.items()}
 SCENES = ("fourbar-lecture-1", "slider-crank-excel-210")
@@ -64,10 +66,13 @@ def test_a_coarser_step_misses_the_target(two: Bench) -> None:
     assert max(error(two, index, coarser) for index in (0, 1)) > 1e-4
 
 
+@pytest.mark.parametrize(
+    "most", [8000, slowly(MOST_SEARCHED, reason="the floor itself, at steps as fine as users have")]
+)
 def test_settings_with_a_floor_reach_nothing_and_say_how_far_they_are(
-    two: Bench, monkeypatch: pytest.MonkeyPatch
+    most: int, two: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("reports.tune.attempt.MOST_SEARCHED", 8000)
+    monkeypatch.setattr("reports.tune.attempt.MOST_SEARCHED", most)
     soft = {**SETTINGS, "solref_timeconst_steps": 0.0, "solimp_dmin": 0.9, "solimp_dmax": 0.9}
     found = two.attempt(soft, None)
     assert not found.reached

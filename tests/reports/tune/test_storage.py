@@ -34,10 +34,13 @@ def test_another_search_is_refused_and_what_differs_is_named(tmp_path: Path) -> 
     path = tmp_path / "kept.db"
     with study_in(path, ASKED):
         pass
-    words = 'holds a search with profile {"iterations": 2}; asked was profile {"iterations": 3}'
-    other = {**ASKED, "profile": {"iterations": 3}}
-    with pytest.raises(CrankcheckError, match=words), study_in(path, other):
-        pass
+    for name, value, words in (
+        ("target", 1e-4, "holds a search with target 1e-06; asked was target 0.0001"),
+        ("engine", "pymunk", "holds a search with engine mujoco; asked was engine pymunk"),
+        ("profile", {"iterations": 3}, 'with profile {"iterations": 2}; asked was profile {"it'),
+    ):
+        with pytest.raises(CrankcheckError, match=words), study_in(path, {**ASKED, name: value}):
+            pass
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from reports.workers.isolated import Isolated, Limits, Lost
 from reports.workers.scheduler import FEW, as_they_end, run_all
 from tests.worlds.jobs import refuse, sleepy, unlucky, where
 from tests.worlds.programs import ROOT, until
+from tests.worlds.tiers import slowly
 
 MANY = list(range(FEW + 2))
 MUCH = Limits(3600.0)
@@ -28,11 +29,17 @@ def test_results_come_in_order_and_what_is_lost_has_one_too() -> None:
     assert sorted(heard) == sorted(results)
 
 
-def test_what_takes_too_long_is_lost() -> None:
-    assert (
-        run_all(sleepy, [3600] * 2, 2, Limits(0.2), lost, apart=True)
-        == ["3600: no end within 0.2 s"] * 2
-    )
+@pytest.mark.parametrize(
+    ("seconds", "jobs", "limit_s"),
+    [
+        ([3600] * 2, 2, 0.2),
+        slowly([0, *[3600] * FEW], 3, 10.0, reason="a child that was ended has another one's turn"),
+    ],
+)
+def test_what_takes_too_long_is_lost(seconds: list[int], jobs: int, limit_s: float) -> None:
+    assert run_all(sleepy, seconds, jobs, Limits(limit_s), lost, apart=True) == [
+        f"{each}: no end within {limit_s:g} s" if each else "0" for each in seconds
+    ]
 
 
 def test_few_are_done_here() -> None:

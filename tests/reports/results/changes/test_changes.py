@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from models.errors import CrankcheckError
 from reports.results.changes.changes import ErrorChange, compare, floor, other_settings
 from reports.results.changes.runs import COMPARED, CellName, StoredCell, StoredRun, steps_told
+from tests.worlds.tiers import slowly
 
 Make = Callable[..., StoredCell]
 Group = Callable[..., StoredRun]
@@ -37,9 +38,15 @@ def made(content: dict[tuple[str, float], tuple[str, dict[str, float]]]) -> Stor
     )
 
 
-@settings(max_examples=30, deadline=None)
-@given(runs)
-def test_a_run_against_itself_is_all_equal(content: dict[object, object]) -> None:
+NUMBERS = [30, slowly(100, reason="rare pairs: cells that one run has alone, errors without end")]
+
+
+@pytest.mark.parametrize("number", NUMBERS)
+def test_a_run_against_itself_is_all_equal(number: int) -> None:
+    settings(max_examples=number, deadline=None)(given(runs)(against_itself))()
+
+
+def against_itself(content: dict[object, object]) -> None:
     found = made(content)  # type: ignore[arg-type]
     diff = compare(found, found)
     assert len(diff.those("equal")) == len(diff.pairs) == len(found.cells)
@@ -47,11 +54,13 @@ def test_a_run_against_itself_is_all_equal(content: dict[object, object]) -> Non
     assert diff.code(strict=True) == 0
 
 
-@settings(max_examples=30, deadline=None)
-@given(runs, runs, st.floats(1.0, 10.0))
-def test_old_and_new_exchanged_exchange_better_and_worse(
-    one: dict[object, object], two: dict[object, object], factor: float
-) -> None:
+@pytest.mark.parametrize("number", NUMBERS)
+def test_old_and_new_exchanged_exchange_better_and_worse(number: int) -> None:
+    drawn = given(runs, runs, st.floats(1.0, 10.0))
+    settings(max_examples=number, deadline=None)(drawn(exchanged))()
+
+
+def exchanged(one: dict[object, object], two: dict[object, object], factor: float) -> None:
     there = compare(made(one), made(two), factor)  # type: ignore[arg-type]
     back = compare(made(two), made(one), factor)  # type: ignore[arg-type]
     assert [c.name for c in there.missing] == [c.name for c in back.added]

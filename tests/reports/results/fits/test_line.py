@@ -6,10 +6,13 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from reports.judge.three_steps import AT_ROUNDING
 from reports.results.fits.line import FitKind, LineFit, fit_line
-from tests.worlds.tiers import few, slowly
+from tests.worlds.strategies import examples
+from tests.worlds.tiers import few, slow, slowly
 
 MORE = "more draws say the same more sharply"
 STEPS = 1e-2 / 2.0 ** np.arange(6)
@@ -273,9 +276,23 @@ def same(fit: LineFit, other: LineFit, error: float, dt: float) -> None:
             assert others == pytest.approx(dt * own)
 
 
+UNITS = st.floats(1e-3, 1e3)
+
+
 @pytest.mark.parametrize("name", ERRORS)
 @pytest.mark.parametrize(("error", "dt"), [(1e-3, 1e3), (1e3, 1e-3), (700.0, 300.0)])
 def test_units_of_error_and_time_do_not_matter(name: str, error: float, dt: float) -> None:
+    check_units(name, error, dt)
+
+
+@slow("units that nobody has chosen: a threshold that is not relative shows at some alone")
+@examples(15)
+@given(st.sampled_from(list(ERRORS)), UNITS, UNITS)
+def test_no_unit_at_random_matters(name: str, error: float, dt: float) -> None:
+    check_units(name, error, dt)
+
+
+def check_units(name: str, error: float, dt: float) -> None:
     kind, errors = ERRORS[name]
     fit = fit_line(STEPS, errors)
     assert fit.kind == kind
@@ -285,8 +302,18 @@ def test_units_of_error_and_time_do_not_matter(name: str, error: float, dt: floa
 @pytest.mark.parametrize("name", ERRORS)
 @pytest.mark.parametrize("order", ["543210", "120543", "350142"])
 def test_the_order_in_which_runs_come_does_not_matter(name: str, order: str) -> None:
+    check_order(name, [int(each) for each in order])
+
+
+@slow("any of 720 orders: three are chosen in `make test`")
+@examples(15)
+@given(st.sampled_from(list(ERRORS)), st.permutations(range(6)))
+def test_no_order_at_random_matters(name: str, places: list[int]) -> None:
+    check_order(name, places)
+
+
+def check_order(name: str, places: list[int]) -> None:
     _, errors = ERRORS[name]
-    places = [int(each) for each in order]
     fit, other = fit_line(STEPS, errors), fit_line(STEPS[places], errors[places])
     back = np.argsort(places)
     assert tuple(np.array(other.used)[back]) == fit.used

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import re
+from functools import cache
 from xml.etree import ElementTree
 
 import numpy as np
@@ -19,7 +20,7 @@ from models.files import load_scene
 from reports.sheets.paper import Paper
 from reports.sheets.polygons.polygon_files import polygon_file, turning_file
 from reports.sheets.polygons.polygon_sheet import PolygonSheet, draw_lines, draw_sheet, laid_out
-from tests.worlds.tiers import slow
+from tests.worlds.tiers import few, slow
 
 MM_PER_POINT = 25.4 / 72.0
 TENTH_MM = 0.1
@@ -83,23 +84,34 @@ def check_measured(name: str, theta: float) -> None:
             assert nodes[point] == pytest.approx(exact, abs=0.01 * TENTH_MM * drawn.scale)
 
 
-def test_layers_stand_in_the_order_of_drawing_and_the_same_sheet_has_the_same_bytes() -> None:
-    sheet = sheet_of("shaper", 1.2)
-    svg = polygon_file(sheet, ".svg")
-    layers = re.findall(r'inkscape:label="([^"]*)"', svg.decode())
+@cache
+def svg_of(name: str, theta: float) -> bytes:
+    return polygon_file(sheet_of(name, theta), ".svg")
+
+
+def test_layers_stand_in_the_order_of_drawing() -> None:
+    layers = re.findall(r'inkscape:label="([^"]*)"', svg_of("shaper", 1.2).decode())
     assert layers[:3] == ["frame", "scheme", "table"]
     assert layers[3:6] == [
         "velocity-1-driver-crank",
         "velocity-2-RPR--lever--block-B",
         "velocity-3-RRP--rod--block-F",
     ]
-    assert svg == polygon_file(sheet, ".svg")
+
+
+@pytest.mark.parametrize(
+    "at",
+    few([("shaper", 1.2), ("fourbar-lecture-1", 1.0)], [("shaper", 1.2)], "pins alone"),
+)
+def test_the_same_sheet_has_the_same_bytes(at: tuple[str, float]) -> None:
+    sheet = sheet_of(*at)
+    assert polygon_file(sheet, ".svg") == svg_of(*at)
     assert polygon_file(sheet, ".pdf").startswith(b"%PDF")
 
 
 @slow("a second of frames: the layers that they show are tested as drawings")
 def test_an_animation_has_a_frame_for_each_layer_that_is_drawn() -> None:
-    sheet = sheet_of("fourbar-lecture-1", 1.0, "180x120")
+    sheet = sheet_of("fourbar-lecture-1", 1.0, "A5")
     with Image.open(io.BytesIO(polygon_file(sheet, ".gif"))) as picture:
         # nothing; the table; driver, group, letters of each polygon; images of accelerations, as
         # those of velocities are the vectors themselves
