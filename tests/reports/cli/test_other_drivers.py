@@ -28,7 +28,7 @@ def test_the_driver_is_told_in_its_own_words_and_units(line: str) -> None:
     assert [text for text in SHOWN[line] if text not in flat(told.output)] == []
 
 
-@pytest.mark.parametrize("scene", few([PISTON, COUPLER], [PISTON], "the same sheet"))
+@pytest.mark.parametrize("scene", few([PISTON, COUPLER], [PISTON], "a pin between two links"))
 def test_positions_are_numbered_along_what_is_driven(scene: str, tmp_path: Path) -> None:
     sheet = tmp_path / "sheet.svg"
     told = crank("positions", scene, "-o", sheet)

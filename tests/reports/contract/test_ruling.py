@@ -85,8 +85,10 @@ def test_what_refuses_every_scene_holds_nothing() -> None:
     ("code", "limit_s", "reason"),
     [
         ("import os\nos._exit(3)\n", 600.0, "the engine ended its process (exit code 3)"),
-        slowly("while True:\n    pass\n", 0.5, "no end within 0.5 s", reason="a process more"),
-        slowly("1 / 0\n", 600.0, "ZeroDivisionError", reason="a process more"),
+        slowly(
+            "while True:\n    pass\n", 0.5, "no end within 0.5 s", reason="a limit on an import"
+        ),
+        slowly("1 / 0\n", 600.0, "ZeroDivisionError", reason="an error of an import"),
     ],
 )
 def test_what_ends_or_hangs_when_it_is_imported_is_said(

@@ -53,7 +53,9 @@ def test_a_large_diff_is_not_ninety_screens(large: Diff) -> None:
     assert "and 140 more rows" in text, "of 150 better rows 10 are shown"
 
 
-@pytest.mark.parametrize("width", few([40, 60, 80, 100, 200], [40, 100], "the same tables"))
+@pytest.mark.parametrize(
+    "width", few([40, 60, 80, 100, 200], [40, 100], "widths at which other columns give way")
+)
 def test_no_line_is_wider_than_the_terminal(large: Diff, width: int) -> None:
     assert max(len(line.rstrip()) for line in shown(large, width).splitlines()) <= width
 

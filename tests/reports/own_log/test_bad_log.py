@@ -174,7 +174,9 @@ def apart() -> Iterator[Isolated[Ended]]:
 LONG = {"10 million rows", "a quote over 9 MB", "workbook, a cell far away", "workbook, laughs"}
 
 
-@pytest.mark.parametrize("name", few(CASES, CASES.keys() - LONG, "a tenth of a second or more"))
+@pytest.mark.parametrize(
+    "name", few(CASES, CASES.keys() - LONG, "sizes at which work on each byte shows")
+)
 def test_it_is_refused_at_once_with_one_message(
     name: str, apart: Isolated[Ended], tmp_path: Path
 ) -> None:

@@ -344,7 +344,9 @@ def test_a_run_to_a_singular_position_is_refused_with_the_range_that_can_be_set(
     assert "--start and --turns set the range of joint lever.A" in str(refused.value)
 
 
-@pytest.mark.parametrize("start", [None, slowly(-20.0, reason="half a second, as its pose takes")])
+@pytest.mark.parametrize(
+    "start", [None, slowly(-20.0, reason="a triad that is led elsewhere first")]
+)
 def test_a_model_with_a_triad_has_a_reference_from_its_pose_and_from_elsewhere(
     tmp_path: Path, start: float | None
 ) -> None:

@@ -82,7 +82,7 @@ def test_it_is_whole_and_says_what_a_reviewer_asks(store: Path) -> None:
     assert "| pymunk no bias | error\\_bias 0 |" in text
 
 
-@pytest.mark.parametrize("number", [1, 40, slowly(80, reason="240 cells: a second")])
+@pytest.mark.parametrize("number", [1, 40, slowly(80, reason="240 cells, of which more is cut")])
 def test_a_large_store_fits_into_a_comment(number: int) -> None:
     text = summary(
         made(number, gated=True, verdict="out", failed_rules="CC103 CC105", reason="r" * 3000)
@@ -91,7 +91,7 @@ def test_a_large_store_fits_into_a_comment(number: int) -> None:
     assert ("more" in text) == (number > 1)
 
 
-@pytest.mark.parametrize("number", [80, slowly(160, reason="480 cells: a second")])
+@pytest.mark.parametrize("number", [80, slowly(160, reason="480 cells, of which more is cut")])
 def test_a_large_store_of_failures_with_long_names_fits(number: int) -> None:
     names = f"{NASTY} " * 4
     assert_whole(summary(made(number, variant=names, status="diverged", reason=NASTY * 40)))

@@ -192,7 +192,9 @@ def test_the_summary_in_markdown_starts_no_tag(store: Path) -> None:
     assert "hacked" not in text  # only names and reasons are told
 
 
-@pytest.mark.parametrize("kinds", [("svg",), slowly(("svg", "pdf"), reason="fonts: 0.5 s")])
+@pytest.mark.parametrize(
+    "kinds", [("svg",), slowly(("svg", "pdf"), reason="a PDF, whose fonts take 0.5 s")]
+)
 def test_figures_are_drawn_with_the_source_as_text(
     store: Path, tmp_path: Path, kinds: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -325,7 +325,7 @@ def test_nothing_runs_out_of_a_phone(phone: Tab, hard_page: Path) -> None:
     phone.page.locator("#hard .map").evaluate("each => { each.scrollLeft = 0; }")
 
 
-@slow("the same scripts as on a computer")
+@slow("the same scripts as on a computer, by touch: a map that scrolls by itself is tapped")
 def test_no_error_and_no_request_in_a_whole_visit_by_phone(phone: Tab, hard_page: Path) -> None:
     phone.open(hard_page).no_error_and_no_request()
 

@@ -37,7 +37,7 @@ def given(
     monkeypatch.setattr(module, "run", lambda *given, **_: asked.append(given))
     fault = FAULTS[name]
     for size in (fault.planted, 0.0):
-        fault.plant(size)(scene, "the start", ENGINE, "tuned", dt_s=STEP_S)  # type: ignore[arg-type]
+        fault.plant(size)(scene, "the start", ENGINE, "tuned", dt_s=STEP_S)
     (wrong, start, *names), (right, *_) = asked
     assert right == scene
     assert names == [ENGINE, "tuned"]
@@ -87,7 +87,7 @@ def test_links_that_are_let_go_have_other_springs_or_masses_and_the_same_start(
 ) -> None:
     rule, other = OTHER_CHAINS[name]
     wrong, start = given(name, CHAIN, segment_changes, monkeypatch)
-    assert (wrong, start) == (replace(CHAIN, **other), "the start")  # type: ignore[arg-type]
+    assert (wrong, start) == (replace(CHAIN, **other), "the start")
     assert (FAULTS[name].scenes, FAULTS[name].rule) == ((LOOSE,), rule)
 
 
@@ -164,9 +164,9 @@ def test_a_theory_stands_in_the_place_of_the_log(
     monkeypatch.setattr(node_changes, "DrivenElasticMotion", theory)
     monkeypatch.setattr(node_changes, "sound_run", lambda *_: Logged(logged))
     monkeypatch.setattr(node_changes, "_given_back", lambda *asked: asked)
-    done = fault.plant(1.0)(cell.given, "the start", "exudyn", "tuned", dt_s=1.0)  # type: ignore[arg-type]
-    cut, own, other = done.motion  # type: ignore[misc]
+    done = fault.plant(1.0)(cell.given, "the start", "exudyn", "tuned", dt_s=1.0)
+    cut, own, other = done.motion
     assert (cut.given, own, other) == (cell.given, logged, ("the theory at", logged.time_s))
     assert theories == [(cell.scene, 1.0, REFERENCE, "periodic", stiffened)]
-    assert fault.plant(0.0)(cell.given, "the start", "exudyn", "tuned").motion is logged  # type: ignore[arg-type]
+    assert fault.plant(0.0)(cell.given, "the start", "exudyn", "tuned").motion is logged
     assert (fault.scenes, fault.rule, fault.size) == ((BENT,), rule, None)

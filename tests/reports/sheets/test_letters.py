@@ -98,7 +98,7 @@ def test_paper_too_low_for_the_bodies_of_a_sheet_is_refused_with_what_would_do()
     assert centres_of(drawn, "coupler", Paper.of("180x131")).scale > 0.0
 
 
-@slow("two sheets for each scene: a second each")
+@slow("labels that meet in one scene alone: two sheets for each, a second")
 @pytest.mark.parametrize("name", shipped())
 def test_labels_of_positions_are_clear(name: str) -> None:
     for divisions in (12, 24):
@@ -106,7 +106,7 @@ def test_labels_of_positions_are_clear(name: str) -> None:
         assert overlaps(draw_positions(sheet, "note").figure) == []
 
 
-@slow("sheets at six angles for each link of each scene")
+@slow("centres far off or on each other: six angles for each link of each scene")
 @pytest.mark.parametrize("name", shipped())
 def test_labels_of_centres_are_clear(name: str) -> None:
     for tag, canvas in centre_sheets(load_scene(name)):
@@ -124,7 +124,7 @@ def centre_sheets(scene: Scene) -> Iterator[tuple[str, Canvas]]:
             yield f"{link or 'none'} at {math.degrees(theta):.1f} deg", draw_centres(sheet, "note")
 
 
-@slow("sheets at six angles for each scene")
+@slow("polygons that fold up at some angle: six angles for each scene")
 @pytest.mark.parametrize("name", shipped())
 def test_labels_of_polygons_are_clear(name: str) -> None:
     scene = load_scene(name)

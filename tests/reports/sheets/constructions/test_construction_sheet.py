@@ -155,7 +155,7 @@ def test_there_is_a_layer_for_each_step_and_the_same_sheet_has_the_same_bytes() 
     assert sheet_of("rocker by its angle").saved("pdf", "layers").startswith(b"%PDF")
 
 
-@pytest.mark.parametrize("case", few(SHEETS, QUICK, "a second for a sheet"), ids=str)
+@pytest.mark.parametrize("case", few(SHEETS, QUICK, "words that meet on another sheet"), ids=str)
 def test_no_letter_is_on_a_line_and_words_and_lines_stay_in_their_boxes(
     case: tuple[str, Paper],
 ) -> None:
