@@ -50,7 +50,6 @@ def shares(scene: Scene, time_s: Array) -> Array:
 
 def _shares_at(motion: Motion, solved: Solved, i: int) -> Array:
     bound = motion.bound
-    assert bound is not None
     assert solved.links.keys() == motion.links.keys() == bound.links.keys()
     assert solved.points.keys() == motion.points.keys() == bound.points.keys()
     assert solved.sliders.keys() == motion.sliders.keys() == bound.sliders.keys()

@@ -31,8 +31,6 @@ def _assert_same(
     old: Motion, new: Motion, turn: float, grow: float, fast: float, flip: bool
 ) -> None:
     """Motion ``new`` is ``old`` turned, grown, sped up, and mirrored in the x-axis."""
-    assert old.bound is not None
-    assert new.bound is not None
     side = -1.0 if flip else 1.0
     for name, m in old.links.items():
         found, b0, b1 = new.links[name], old.bound.links[name], new.bound.links[name]
@@ -91,8 +89,6 @@ def test_motion_does_not_depend_on_place_size_speed_or_hand(name: str, change: s
 def test_motion_moves_with_the_scene(name: str) -> None:
     scene, time_s = load_scene(name), swing_times(load_scene(name), 50)
     old, new = solve(scene, time_s), solve(transform.moved(scene, (3.0, -2.0)), time_s)
-    assert old.bound is not None
-    assert new.bound is not None
     for point, was in old.points.items():
         apart = new.points[point].position - was.position - np.array([3.0, -2.0])
         bounds = old.bound.points[point].position + new.bound.points[point].position

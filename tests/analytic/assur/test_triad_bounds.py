@@ -49,7 +49,7 @@ def as_drawn(kinds: tuple[str, str, str], seed: int) -> Scene:
 
 
 @pytest.mark.parametrize(
-    "seeds", [range(1), slowly(range(1, 20), reason="random triads, some near a limit")], ids=len
+    "seeds", [range(1), slowly(range(1, 40), reason="random triads, some near a limit")], ids=len
 )
 @few_kinds
 def test_error_stays_below_the_bound_in_every_kind_of_triad(
@@ -68,14 +68,11 @@ def test_bounds_are_infinite_beside_a_limit_position_and_never_nan() -> None:
     scene = as_drawn(("RR", "RR", "RR"), 0)
     track = step_of(scene).track({})
     low, high = track.low, track.high
-    assert high is not None
-    assert low is not None
     law = ConstantSpeed(0.5 * (low.theta + high.theta), 1.0)
     start = replace(scene.driver, law=law)
     beside = high.theta - law.start_rad - np.array([1e-3, 1e-6, 1e-9, 1e-12])
     motion = solve(replace(scene, driver=start), beside)
     bound = motion.bound
-    assert bound is not None
     for name, one in bound.links.items():
         for level in (one.theta, one.omega, one.alpha):
             assert not np.isnan(level).any(), name

@@ -7,8 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given
 
 import analytic
 from analytic import kinematics
@@ -26,9 +25,8 @@ from tests.analytic.chain import coordinates
 from tests.analytic.imported import reached
 from tests.analytic.test_bounds import SIX
 from tests.worlds.strategies import FORMS, OF_EACH_KIND, Designed, examples, mechanisms, swing_times
-from tests.worlds.tiers import few, slowly
+from tests.worlds.tiers import at_length, slowly
 
-SAMPLES = 11
 ROUNDINGS = 30.0
 
 
@@ -84,7 +82,6 @@ def _apart(value: Array, other: Array, *, turning: bool = False) -> Array:
 
 def disagreement(scene: Scene, closed: Motion, newton: Motion) -> float:
     """The largest difference of the two, over what the bound and Newton's rounding allow."""
-    assert closed.bound is not None
     allowed, worst = newton_rounding(scene, closed), 0.0
     kinds: tuple[tuple[Mapping[str, object], ...], ...] = (
         (closed.links, newton.links, closed.bound.links),
@@ -104,11 +101,18 @@ def disagreement(scene: Scene, closed: Motion, newton: Motion) -> float:
 
 
 @pytest.mark.parametrize(
-    "name", few(shipped(), SIX, "test_bounds.py has every scene of the closed form")
+    ("name", "samples"),
+    [
+        *((name, 11) for name in SIX),
+        *(
+            slowly(name, 73, reason="shapes of the same dyads, all over the turn")
+            for name in shipped()
+        ),
+    ],
 )
-def test_closed_form_and_newton_agree_over_a_period(name: str) -> None:
+def test_closed_form_and_newton_agree_over_a_period(name: str, samples: int) -> None:
     scene = load_scene(name)
-    closed, newton = both(scene, swing_times(scene, SAMPLES))
+    closed, newton = both(scene, swing_times(scene, samples))
     assert disagreement(scene, closed, newton) <= 1.0
     if {group.kind for group in analyse(scene).groups} == {"RPP"}:
         return  # linear in its coordinates: on some processors Newton's step ends on the same bits
@@ -134,17 +138,27 @@ def _hold_to_newton(designed: Designed) -> None:
 
 
 @pytest.mark.parametrize(
-    "form", few(FORMS, OF_EACH_KIND, "test_bounds.py has every form of the closed form")
+    ("form", "count"),
+    [
+        *((form, 2) for form in OF_EACH_KIND),
+        *(slowly(form, 4, reason="every role of a link, a block and a guide") for form in FORMS),
+    ],
 )
-@settings(max_examples=2, deadline=None, derandomize=True, database=None)
-@given(data=st.data())
-def test_every_form_of_dyad_agrees_with_newton(form: str, data: st.DataObject) -> None:
-    designed = data.draw(mechanisms([form]))
-    assert analyse(designed.scene).groups[-1].kind == form[:3]
-    _hold_to_newton(designed)
+def test_every_form_of_dyad_agrees_with_newton(form: str, count: int) -> None:
+    @examples(count)
+    @given(mechanisms([form]))
+    def hold(designed: Designed) -> None:
+        assert analyse(designed.scene).groups[-1].kind == form[:3]
+        _hold_to_newton(designed)
+
+    hold()
 
 
-@pytest.mark.parametrize("count", [5, slowly(500, reason="rare chains")])
+MORE = slowly(500, reason="rare chains")
+MOST = at_length(2_000, reason="rarer chains, a minute and a half")
+
+
+@pytest.mark.parametrize("count", [5, MORE, MOST])
 def test_chains_of_random_dyads_agree_with_newton(count: int) -> None:
     examples(count)(given(mechanisms())(_hold_to_newton))()
 

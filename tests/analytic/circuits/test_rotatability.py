@@ -22,8 +22,6 @@ def test_a_crank_rocker_swings_and_transmits_as_its_closed_form_says() -> None:
     assert turning["coupler", "crank"].turns == -1
     assert turning["rocker", "ground"].swing_rad == pytest.approx(bar.rocker_swing_rad, rel=1e-12)
     (dyad,), merit = transmissions(circuits)
-    assert dyad.smallest_rad is not None
-    assert dyad.largest_rad is not None
     assert (dyad.smallest_rad.value, dyad.largest_rad.value) == pytest.approx(bar.transmission_rad)
     assert merit.value == pytest.approx(min(math.sin(mu) for mu in bar.transmission_rad))
     dead = dead_points(circuits, list(turning.values()))

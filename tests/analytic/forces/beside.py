@@ -32,7 +32,6 @@ def unlocked(scene: Scene, time_s: Array) -> Array:
     found = kinetostatics.forces(
         replace(scene, friction=more), time_s, bound=False, skip_dead_points=True
     )
-    assert found.friction_solution is not None
     single = time_s[found.friction_solution.solutions == 1]
     assert 0 < single.size < time_s.size
     return single

@@ -223,11 +223,9 @@ def _apply(demand: _Demand, load: Load, time_s: float, solved: Solved) -> None:
     if load.over == "angle":
         x = law_at(scene.driver.law, time_s).value
     elif load.over == "displacement":
-        assert slider is not None
         x = slider.value
     size = value_of(load.characteristic, x)
     if load.stroke != "both":
-        assert slider is not None
         size = size if slider.rate * (1 if load.stroke == "forward" else -1) > 0 else mpf(0)
     if load.point is None:
         demand.couple(load.body, size)

@@ -43,7 +43,6 @@ class Held:
 
 def _held(found: Forces, exact: ExactForces, i: int) -> Iterator[Held]:
     bound = found.bound
-    assert bound is not None
     assert found.pins.keys() == exact.pins.keys() == bound.pins.keys()
     assert found.sliders.keys() == exact.sliders.keys() == bound.sliders.keys()
     yield Held("torque", _apart(found.torque[i], exact.torque), bound.torque[i])

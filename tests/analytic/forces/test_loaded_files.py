@@ -31,7 +31,6 @@ def test_a_changed_file_gives_forces_or_a_message(sound: str, files: int) -> Non
             scene = parse_scene(text, "changed")
             period = scene.driver.law.period_s
             found = forces(scene, np.linspace(0.01, 0.99, 5) * period, skip_dead_points=True)
-            assert found.bound is not None
             assert not np.isnan(found.bound.torque).any()
             solved += 1
         except CrankcheckError:

@@ -57,11 +57,9 @@ def test_a_cam_of_circles_moves_its_follower_as_its_links_do(name: str) -> None:
         crank = loops.columns["A"].start
         move *= 0.3 / move[crank]
         found = settled(loops, move)
-        assert found is not None
         for _ in range(30):  # back to the crank's angle, along the motion
             found[crank] += 0.3 - found[crank]
             found = settled(loops, found)
-            assert found is not None
         poses.append((found[crank], loops.placed(found)["follower"].pose))
     assert poses[0][0] == pytest.approx(poses[1][0], abs=1e-6)
     assert np.allclose(poses[0][1], poses[1][1], atol=1e-5)

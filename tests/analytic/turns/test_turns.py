@@ -76,7 +76,6 @@ def test_a_turn_is_counted_however_coarse_the_samples(apart: float, steps: int) 
     scene = whitworth(apart)
     time_s = np.arange(2 * steps + 1) * (PERIOD / steps)
     motion = solve(scene, time_s)
-    assert motion.bound is not None
     wanted = lever_at(apart, 10.0 * time_s)
     # A few roundings of the closed form, which too divides by the distance of the block.
     room = motion.bound.links["lever"].theta + 1e-14 / (0.2 - apart)
@@ -272,9 +271,10 @@ def test_a_reachable_range_may_be_as_narrow_as_it_likes(count: int) -> None:
                 assert np.abs(np.diff(angle)).max() < 1.0
 
 
-def test_the_angle_at_time_0_is_the_one_nearest_to_zero() -> None:
+@pytest.mark.parametrize("count", [60, slowly(200, reason="starts nearer to half a turn")])
+def test_the_angle_at_time_0_is_the_one_nearest_to_zero(count: int) -> None:
     """Also where the link jumps over half a turn within the cell that the driver starts in."""
-    for start in np.linspace(-math.pi, math.pi, 60):
+    for start in np.linspace(-math.pi, math.pi, count):
         scene = replace(whitworth(0.1), driver=Driver("crank", ConstantSpeed(start, 10.0)))
         theta = sampled(scene, np.array([0.0, 0.0, 1e-9, -1e-9, 0.1 * PERIOD]))["lever"]
         assert abs(theta[0]) <= math.pi
@@ -338,12 +338,10 @@ def test_the_bound_covers_the_count_after_a_million_turns(name: str) -> None:
     assert isinstance(law, ConstantSpeed)
     time_s = np.random.default_rng(7).uniform(-1e6, 1e6, 40) * law.period_s
     motion = solve(scene, time_s)
-    assert motion.bound is not None
     drive = [mpf(law.start_rad) + mpf(law.speed_rad_s) * mpf(float(t)) for t in time_s]
     turns = [mp.floor((d - mpf(law.start_rad)) / (2 * mp.pi)) for d in drive]
     within = np.array([float(d - 2 * mp.pi * n) for d, n in zip(drive, turns, strict=True)])
     once = driven(scene, np.concatenate([within, [law.start_rad, law.start_rad + math.tau]]))
-    assert once.bound is not None
     for link in scene.links:
         theta = once.links[link].theta
         gain = round((theta[-1] - theta[-2]) / math.tau)
