@@ -10,18 +10,18 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner, Result
+from typer.testing import Result
 
 from models.files import find_scene, load_scene, read_text
 from models.scene import Scene
 from reports.advise.demand import at_speed
-from reports.cli import app
 from reports.compare.beside import Beside, Truth
 from reports.compare.compare import places
 from reports.judge.cell import Cell
 from reports.quantities import named
 from sim.run import run
 from tests.worlds.bare import BARE
+from tests.worlds.command_line import crank
 from tests.worlds.in_process import in_this_process
 from tests.worlds.tiers import few
 
@@ -54,7 +54,7 @@ def timed(_: object, cells: Sequence[tuple[Cell, float]], rounds: int, done: Any
 
 
 def advise(*args: str) -> Result:
-    return CliRunner().invoke(app, ["advise", *args], catch_exceptions=False)
+    return crank("advise", *args)
 
 
 @pytest.fixture(scope="module")
@@ -240,7 +240,7 @@ MISTAKES: Mapping[str, tuple[Callable[[Path], list[str]], str]] = {
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_a_mistake_is_told_at_once_with_exit_code_2(mistake: str, tmp_path: Path) -> None:
     make, words = MISTAKES[mistake]
-    result = CliRunner().invoke(app, [*LINE, *make(tmp_path)], catch_exceptions=False)
+    result = crank(*LINE, *make(tmp_path))
     assert result.exit_code == 2, result.output
     assert result.stdout == ""
     assert result.stderr.count("crankcheck: ") == 1

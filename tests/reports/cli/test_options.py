@@ -7,9 +7,9 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from reports.cli import app, changes, checking, measuring, regulating, showing
+from reports.cli import changes, checking, measuring, regulating, showing
+from tests.worlds.command_line import crank, refused
 
 LEAST = {
     "verify": ("verify", checking.VerifyRequest()),
@@ -37,10 +37,10 @@ def asked(monkeypatch: pytest.MonkeyPatch, line: str, function: str) -> object:
         requests.append(request)
         return 1
 
-    command, *options = line.split()
+    command = line.split()[0]
     room = function if function == "verify_model" else command
     monkeypatch.setattr(import_module(f"reports.cli.commands.{room}"), function, run)
-    result = CliRunner().invoke(app, [command, *options], catch_exceptions=False)
+    result = crank(*line.split())
     assert result.exit_code == (command != "solve"), result.output
     (request,) = requests
     return request
@@ -72,9 +72,7 @@ def test_seconds_may_be_a_fraction(
         assert found == number
     for wrong in ("1/0", "1/", "/60", "1/60/2", "a", "60 Hz"):
         command = [wrong if word == "{}" else word for word in line.split()]
-        result = CliRunner().invoke(app, command, catch_exceptions=False)
-        assert result.exit_code == 2
-        assert "no number of seconds" in " ".join(result.output.replace("│", " ").split())
+        refused(crank(*command), "no number of seconds")
 
 
 def test_every_option_reaches_its_field(monkeypatch: pytest.MonkeyPatch) -> None:

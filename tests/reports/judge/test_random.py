@@ -24,16 +24,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
-from typer.testing import CliRunner
 
 from analytic.kinematics import solve
 from models.files import load_scene, parse_scene
 from models.scene import span
-from reports.cli import app
 from reports.judge.cell import Cell, Checked, check
 from reports.judge.rules import PLACES, RATES
 from reports.verify.advised import HELPS, advised
 from sim.engine import SettingValue
+from tests.worlds.command_line import crank
 from tests.worlds.driven import (
     HARD,
     ITERATIONS,
@@ -189,7 +188,7 @@ def test_a_printed_scene_file_is_the_mechanism(count: int, tmp_path: Path) -> No
         path.write_text(one.text)
         assert load_scene(str(path)) == one.scene
         steps = ["--steps-per-turn", str(one.steps_per_turn), "--turns", "1"]
-        done = CliRunner().invoke(app, ["verify", str(path), "--engine", "pymunk", *steps])
+        done = crank("verify", path, "--engine", "pymunk", *steps)
         assert done.exit_code == 0, done.output
 
 

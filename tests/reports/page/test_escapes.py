@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Callable
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -14,15 +13,14 @@ import openpyxl
 import pandas as pd
 import pytest
 from rich.console import Console
-from typer.testing import CliRunner, Result
 
 from models.errors import CrankcheckError, harmless
 from models.files import parse_scene, shipped
-from reports.cli import app
 from reports.cli.commands.figures import run_figures
 from reports.results.overview import Report
 from reports.store.reader import read_store
 from tests.reports.page.tab import Tab
+from tests.worlds.command_line import crank
 from tests.worlds.fuzzing import COMMANDS, attempt
 from tests.worlds.scene_files import toml
 from tests.worlds.tiers import few, slowly
@@ -52,12 +50,6 @@ def nasty_text(name: str = "fourbar-lecture-1") -> str:
     return toml({"source": NASTY, "note": f"{NASTY}\n\t{NASTY}"}) + "\n".join(kept)
 
 
-@pytest.fixture
-def crank() -> Callable[..., Result]:
-    runner = CliRunner()
-    return lambda *args: runner.invoke(app, [str(arg) for arg in args], catch_exceptions=False)
-
-
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The file of a nasty scene, with a nasty name."""
@@ -71,7 +63,7 @@ def store(scene: Path) -> Path:
     """A sweep of the nasty scene, into a folder with a nasty name."""
     folder = scene.parent / "[" / "x] <b>"  # reads as the end of a style: [/x]
     args = ["sweep", str(scene), "-o", str(folder), "--steps-per-turn", "90,180", "--turns", "1"]
-    result = CliRunner().invoke(app, [*args, "--jobs", "1", "--no-timing"], catch_exceptions=False)
+    result = crank(*args, "--jobs", 1, "--no-timing")
     assert result.exit_code == 0, result.output
     assert f"stored in {folder}" in result.output.replace("\n", "")
     return folder
@@ -80,13 +72,13 @@ def store(scene: Path) -> Path:
 @pytest.fixture(scope="module")
 def page(store: Path) -> Path:
     path = store.parent / "report.html"
-    assert CliRunner().invoke(app, ["report", str(store), "-o", str(path)]).exit_code == 0
+    assert crank("report", store, "-o", path).exit_code == 0
     return path
 
 
 def test_the_model_is_xml_that_compiles_and_tells_the_source(scene: Path) -> None:
     mujoco = pytest.importorskip("mujoco")
-    text = CliRunner().invoke(app, ["export", str(scene)]).output
+    text = crank("export", scene).output
     builder = Xml.TreeBuilder(insert_comments=True)
     root = Xml.fromstring(text, Xml.XMLParser(target=builder))
     source = next(child.text for child in root if child.tag is Xml.Comment)
@@ -101,7 +93,7 @@ def test_the_model_is_xml_that_compiles_and_tells_the_source(scene: Path) -> Non
 def test_a_verification_says_and_writes_text(scene: Path, tmp_path: Path, name: str) -> None:
     limit = ["--tol", "angle=1e-12"] if name == "tolerance" else []
     args = ["verify", str(scene), "--turns", "0.2", "-o", str(tmp_path), *limit]
-    assert CliRunner().invoke(app, args).exit_code == (1 if limit else 0)
+    assert crank(*args).exit_code == (1 if limit else 0)
     Xml.parse(tmp_path / "verify.junit.xml")
     cells = pd.read_csv(tmp_path / "verify.csv", dtype=str, keep_default_na=False)
     numbers = pd.to_numeric(cells.stack(), errors="coerce")
@@ -113,7 +105,7 @@ def test_a_verification_says_and_writes_text(scene: Path, tmp_path: Path, name: 
 def test_a_table_of_the_motion_holds_no_formula(scene: Path, tmp_path: Path, ending: str) -> None:
     (tmp_path / "[").mkdir()
     path = tmp_path / "[" / f"b]{ending}"
-    result = CliRunner().invoke(app, ["solve", str(scene), "-o", str(path)], catch_exceptions=False)
+    result = crank("solve", scene, "-o", path)
     assert f"{path}: 361 samples" in result.output.replace("\n", "")
     if ending == ".csv":
         assert all(name[0].isalpha() for name in pd.read_csv(path).columns)
@@ -134,12 +126,12 @@ def test_a_place_in_brackets_is_no_style(
     monkeypatch.chdir(tmp_path)
     Path("[").mkdir()
     args = [arg.format(scene) for arg in command.split()]
-    result = CliRunner().invoke(app, args, catch_exceptions=False)
+    result = crank(*args)
     assert result.exit_code == 0, result.output
     assert result.output.startswith("[/b].")
 
 
-def test_the_terminal_shows_the_source_as_it_is(crank: Callable[..., Result], scene: Path) -> None:
+def test_the_terminal_shows_the_source_as_it_is(scene: Path) -> None:
     output = "".join(crank("solve", scene).output.split())
     assert "".join(NASTY.split()) in output
 
@@ -187,7 +179,7 @@ def test_a_browser_runs_nothing_of_it(wide: Tab, page: Path) -> None:
 
 
 def test_the_summary_in_markdown_starts_no_tag(store: Path) -> None:
-    text = CliRunner().invoke(app, ["report", str(store), "--format", "md"]).output
+    text = crank("report", store, "--format", "md").output
     assert "<script" not in text
     assert "hacked" not in text  # only names and reasons are told
 
@@ -239,7 +231,7 @@ def test_the_name_of_a_file_is_text(name: str) -> None:
 
 @pytest.mark.parametrize("name", FILES, ids=ascii)
 def test_the_name_of_a_file_that_is_not_there_is_text(
-    crank: Callable[..., Result], name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     result = crank("solve", f"./no/{name}.toml")

@@ -9,14 +9,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner, Result
 
 from analytic.kinematics import reach
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
 from models.laws import Oscillating
-from reports.cli import app
 from reports.plan.singular import passage_note, refuse_singular
+from tests.worlds.command_line import crank
 
 Edit = Callable[..., str]
 
@@ -40,10 +39,6 @@ def edited(tmp_path: Path) -> Edit:
 RHOMBUS = (r"length_m = 0\.\d+", "length_m = 0.3")
 NEARLY = (r"(crank = .*length_m = )0\.3", r"\g<1>0.2999999999999")
 """Not in a change point, and too near to one for any rates in double precision."""
-
-
-def crank(*args: str) -> Result:
-    return CliRunner().invoke(app, list(args), catch_exceptions=False)
 
 
 @pytest.mark.parametrize("start", ["90.0", "90.137"])

@@ -4,42 +4,33 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
 import pytest
 from rich.console import Console
-from typer.testing import CliRunner, Result
+from typer.testing import Result
 
-from reports.cli import app
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import Evidence, Finding
 from reports.selftest.all_faults import FAULTS
 from reports.selftest.table import show
 from reports.selftest.trial import FaultTrial, Verdict, healthy
+from tests.worlds.command_line import crank, flat
 
 ENGINES = ("mujoco", "pymunk")
-Crank = Callable[..., Result]
 
 
-@pytest.fixture
-def crank() -> Crank:
-    """Run the command with arguments."""
-    runner = CliRunner()
-    return lambda *args: runner.invoke(app, ["selftest", *args], catch_exceptions=False)
-
-
-def flat(text: str) -> str:
-    return " ".join(text.replace("│", " ").split())
+def selftest(*arguments: object) -> Result:
+    return crank("selftest", *arguments)
 
 
 def named(*faults: str) -> list[str]:
     return [word for fault in faults for word in ("--fault", fault)]
 
 
-def test_faults_that_are_caught_end_with_0_and_their_smallest_sizes(crank: Crank) -> None:
-    result = crank(*named("jump", "nan-at-end"), "--engine", "mujoco")
+def test_faults_that_are_caught_end_with_0_and_their_smallest_sizes() -> None:
+    result = selftest(*named("jump", "nan-at-end"), "--engine", "mujoco")
     assert result.exit_code == 0, result.output
     assert "2 of 2 faults caught by the named rule" in result.output
     text = flat(result.output)
@@ -52,8 +43,8 @@ def test_faults_that_are_caught_end_with_0_and_their_smallest_sizes(crank: Crank
     assert "model check" not in text
 
 
-def test_few_faults_are_shown_with_what_the_rule_says(crank: Crank) -> None:
-    result = crank(*named("gravity-left-on"), "--engine", "pymunk")
+def test_few_faults_are_shown_with_what_the_rule_says() -> None:
+    result = selftest(*named("gravity-left-on"), "--engine", "pymunk")
     assert "caught gravity-left-on: gravity, of which the scene has none" in flat(result.output)
     assert "gravity is (0.0, -9.81), not (0.0, 0.0) m/s^2" in flat(result.output)
     assert "9.81 m/s^2 CC101* any" in flat(result.output)
@@ -62,7 +53,7 @@ def test_few_faults_are_shown_with_what_the_rule_says(crank: Crank) -> None:
 
 
 def test_a_blind_rule_lets_its_faults_escape_and_ends_with_1(
-    crank: Crank, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     sharp = RULES["CC107"]
 
@@ -73,7 +64,7 @@ def test_a_blind_rule_lets_its_faults_escape_and_ends_with_1(
             return Finding(self.id, "pass", "all is well")
 
     monkeypatch.setitem(RULES, "CC107", Blind())
-    result = crank(*named("jump", "spike"), "--engine", "mujoco", "--jobs", "1")
+    result = selftest(*named("jump", "spike"), "--engine", "mujoco", "--jobs", "1")
     assert result.exit_code == 1
     text = flat(result.output)
     assert "1 of 2 faults caught by the named rule" in text
@@ -83,9 +74,9 @@ def test_a_blind_rule_lets_its_faults_escape_and_ends_with_1(
     assert "ok spike" in text
 
 
-def test_files_hold_every_fault_in_every_place(crank: Crank, tmp_path: Path) -> None:
+def test_files_hold_every_fault_in_every_place(tmp_path: Path) -> None:
     extra = tmp_path / "extra.json"
-    result = crank(
+    result = selftest(
         *named("jump", "wrong-branch"), "-o", str(tmp_path / "out"), "--json", str(extra)
     )
     assert result.exit_code == 0
@@ -102,9 +93,9 @@ def test_files_hold_every_fault_in_every_place(crank: Crank, tmp_path: Path) -> 
     assert content["provenance"]["mujoco"].startswith("4")
 
 
-def test_faults_of_free_motion_tell_their_runs(crank: Crank, tmp_path: Path) -> None:
+def test_faults_of_free_motion_tell_their_runs(tmp_path: Path) -> None:
     file = tmp_path / "free.json"
-    result = crank(*named("torque-reversed"), "--engine", "pymunk", "--json", str(file))
+    result = selftest(*named("torque-reversed"), "--engine", "pymunk", "--json", str(file))
     assert result.exit_code == 0, result.output
     text = flat(result.output)
     assert "ok torque-reversed a torque turns the other way CC127 yes" in text
@@ -126,18 +117,16 @@ def test_faults_of_free_motion_tell_their_runs(crank: Crank, tmp_path: Path) -> 
         (["--csv", "/nowhere/at/all.csv"], ["--csv", "no folder"]),
     ],
 )
-def test_what_can_not_be_planted_ends_with_2(
-    crank: Crank, args: list[str], parts: list[str]
-) -> None:
-    result = crank(*args)
+def test_what_can_not_be_planted_ends_with_2(args: list[str], parts: list[str]) -> None:
+    result = selftest(*args)
     assert result.exit_code == 2, result.output
     for part in parts:
         assert part in flat(result.stderr)
 
 
-def test_an_engine_alone_gets_the_faults_that_it_can_have(crank: Crank, tmp_path: Path) -> None:
+def test_an_engine_alone_gets_the_faults_that_it_can_have(tmp_path: Path) -> None:
     file = tmp_path / "some.csv"
-    crank(*named("drive-too-light", "nan-at-end"), "--engine", "mujoco", "--csv", str(file))
+    selftest(*named("drive-too-light", "nan-at-end"), "--engine", "mujoco", "--csv", str(file))
     assert set(pd.read_csv(file)["engine"]) == {"mujoco"}
 
 

@@ -7,13 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner
 
-from reports.cli import app
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.grading import graded
 from reports.stability.matrix import Graded
-from tests.worlds.in_process import in_this_process
+from tests.worlds.command_line import crank, crank_alone, flat, refused
 
 ELASTIC = [name for name, case in CATALOGUE.items() if case.elastic]
 
@@ -36,9 +34,7 @@ def trials() -> Iterator[tuple[str, Any]]:
     ],
 )
 def test_what_is_not_elastic_is_refused(words: list[str], says: str) -> None:
-    done = CliRunner().invoke(app, ["stability", *words])
-    assert done.exit_code == 2
-    assert says in " ".join(done.output.replace("│", " ").split())
+    refused(crank("stability", *words), says)
 
 
 def test_every_case_gives_segments_and_few_samples() -> None:
@@ -61,11 +57,9 @@ def test_a_stiffness_that_the_step_does_not_hold_says_which_would() -> None:
 
 def test_one_value_is_shown_from_the_command_line() -> None:
     words = ["stability", "elastic-step", "--at", "360", "--profile", "tuned"]
-    with in_this_process():
-        done = CliRunner().invoke(app, [*words, "--engine", "pymunk"])
-        held = CliRunner().invoke(app, [*words, "--engine", "mujoco"])
+    done, held = (crank_alone(*words, "--engine", engine) for engine in ("pymunk", "mujoco"))
     assert done.exit_code == 1
-    told = " ".join(done.output.split())
+    told = flat(done.output)
     assert "a deflection, over the largest, is off by 0.029" in told
     assert "error of the deflection, over the largest: 0.0" in told
     assert held.exit_code == 0, held.output
@@ -79,8 +73,7 @@ def test_what_fails_is_drawn_with_its_nodes() -> None:
 
 def test_the_page_says_what_errors_are_of(tmp_path: Path) -> None:
     words = ["stability", "elastic-step", "--engine", "mujoco", "--profile", "as-shipped"]
-    with in_this_process():
-        done = CliRunner().invoke(app, [*words, "-o", str(tmp_path), "--jobs", "1"])
+    done = crank_alone(*words, "-o", tmp_path, "--jobs", 1)
     assert "Numbers: the worst error of the deflection, over the largest;" in done.stdout
     page = (tmp_path / "stability.html").read_text(encoding="utf-8")
     assert "Worst error of the deflection, over the largest:" in page

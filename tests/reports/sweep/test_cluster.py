@@ -14,17 +14,16 @@ from typing import Any, cast
 
 import pandas as pd
 import pytest
-from typer.testing import CliRunner
 
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.cli import app
 from reports.judge.cell import Cell
 from reports.store.reader import read_store
 from reports.sweep import cluster as clusters
 from reports.sweep.measured import measured
 from reports.workers.isolated import Limits
 from tests.worlds.command import COMMAND, PYTHON
+from tests.worlds.command_line import crank
 from tests.worlds.in_process import Here
 from tests.worlds.programs import Start, programs
 from tests.worlds.tiers import slow
@@ -144,7 +143,7 @@ def test_workers_with_other_packages_are_refused(
     monkeypatch.setattr("reports.sweep.running.on_cluster", there)
     options = ("--engine", "pymunk", "--profile", "tuned", "--no-timing", "-o", str(tmp_path / "s"))
     asked = ["sweep", GRID[0], "--steps-per-turn", "90", "--dask", "tcp://there:1", *options]
-    done = CliRunner().invoke(app, asked, catch_exceptions=False)
+    done = crank(*asked)
     assert done.exit_code == (2 if words else 0)
     assert re.search(words, " ".join(done.output.split()))
     if not words:

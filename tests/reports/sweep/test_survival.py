@@ -13,15 +13,14 @@ from typing import Any
 import psutil
 import pytest
 from filelock import FileLock
-from typer.testing import CliRunner
 
-from reports.cli import app
 from reports.store.reader import Stored, read_store, stored_keys
 from reports.sweep import running
 from reports.sweep.measured import MeasuredCell
 from reports.workers.signals import Stopped
 from tests.reports.store.test_damage import same
 from tests.worlds.command import COMMAND, PYTHON, script
+from tests.worlds.command_line import crank, crank_alone, refused
 from tests.worlds.in_process import in_this_process
 from tests.worlds.programs import Start, until
 from tests.worlds.tiers import few, slow
@@ -83,8 +82,7 @@ def counted(folder: Path, *options: str) -> tuple[int, ...]:
     disturbed."""
     with in_this_process() as patch:
         patch.setattr("reports.sweep.running.timed_in_turns", times)
-        args = ["sweep", *GRID, *STEPS, "-o", str(folder), *options]
-        done = CliRunner().invoke(app, args, catch_exceptions=False)
+        done = crank("sweep", *GRID, *STEPS, "-o", folder, *options)
     assert done.exit_code == 0, done.output
     found = re.search(r"(\d+) cells: (\d+) run now, (\d+) were there; (\d+) timed", done.output)
     assert found, done.output
@@ -152,7 +150,6 @@ def test_ctrl_c_keeps_what_is_done(
 def test_ctrl_c_keeps_the_timings_of_the_blocks_before(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    args = ["sweep", *GRID, *STEPS, "-o", str(tmp_path / "store")]
     blocks: list[int] = []
 
     def second_stops(isolated: object, cells: Sequence[object], rounds: int, _: object) -> object:
@@ -165,7 +162,7 @@ def test_ctrl_c_keeps_the_timings_of_the_blocks_before(
     monkeypatch.setattr("reports.sweep.running.BLOCK", 3)
     with in_this_process() as patch:
         patch.setattr("reports.sweep.running.timed_in_turns", second_stops)
-        done = CliRunner().invoke(app, args, catch_exceptions=False)
+        done = crank("sweep", *GRID, *STEPS, "-o", tmp_path / "store")
     assert done.exit_code == 130
     assert done.stderr.splitlines()[-2:] == KEPT
     assert blocks == [3, 3]
@@ -188,9 +185,7 @@ def test_ctrl_c_keeps_the_cells_before(tmp_path: Path, monkeypatch: pytest.Monke
         return real(*arguments)
 
     monkeypatch.setattr(running, "measured", third_stops)
-    args = ["sweep", *GRID, *STEPS, "-o", str(tmp_path / "store")]
-    with in_this_process():
-        done = CliRunner().invoke(app, args, catch_exceptions=False)
+    done = crank_alone("sweep", *GRID, *STEPS, "-o", tmp_path / "store")
     assert done.exit_code == 130
     assert done.stderr.splitlines()[-2:] == KEPT
     assert len(read_store(tmp_path / "store").cells) == 2
@@ -201,9 +196,7 @@ def test_ctrl_c_keeps_the_cells_before(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_a_folder_that_another_sweep_writes_to_is_refused(tmp_path: Path) -> None:
     with FileLock(tmp_path / ".lock"):
-        done = CliRunner().invoke(app, ["sweep", *GRID, *STEPS, "-o", str(tmp_path)])
-    assert done.exit_code == 2
-    assert "another sweep writes there now" in done.stderr
+        refused(crank("sweep", *GRID, *STEPS, "-o", tmp_path), "another sweep writes there now")
 
 
 @slow("two processes: `make test` holds the lock by itself")
