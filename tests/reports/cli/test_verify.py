@@ -158,22 +158,7 @@ def test_an_engine_that_is_not_installed_names_the_command_that_installs_it(
     refused(crank(*ONE), "engine mujoco: not installed", "pip install mujoco")
 
 
-def test_two_files_with_one_name_are_refused(tmp_path: Path) -> None:
-    path = tmp_path / "other.toml"
-    text = shipped()["fourbar-crossed"].read_text(encoding="utf-8")
-    text = text.replace('"fourbar-crossed"', '"fourbar-lecture-1"')
-    path.write_text(text, encoding="utf-8")
-    refused(crank(*ONE, str(path)), "a second scene called fourbar-lecture-1", "rename one")
-
-
-def test_a_fault_of_the_scene_is_told_before_anything_runs(tmp_path: Path) -> None:
-    path = tmp_path / "bad.toml"
-    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
-    path.write_text(text + "\n[tolerance]\nangel = 1e-3\n", encoding="utf-8")
-    refused(crank("verify", str(path)), "[tolerance] angel", "did you mean angle")
-
-
-def edited(tmp_path: Path, name: str, *changes: tuple[str, str]) -> str:
+def edited(tmp_path: Path, name: str, *changes: tuple[str, str]) -> Path:
     """A shipped scene with some of its text changed, as a file."""
     text = shipped()[name].read_text(encoding="utf-8")
     for old, new in changes:
@@ -181,26 +166,36 @@ def edited(tmp_path: Path, name: str, *changes: tuple[str, str]) -> str:
         text = text.replace(old, new)
     path = tmp_path / "edited.toml"
     path.write_text(text, encoding="utf-8")
-    return str(path)
+    return path
 
 
-def test_a_loop_that_can_not_follow_its_driver_is_told_with_its_range(tmp_path: Path) -> None:
-    path = edited(tmp_path, "fourbar-lecture-1", ("0.25", "0.17"))
-    refused(crank("verify", path), "crank can stand at", "deg")
+def test_two_files_with_one_name_are_refused(tmp_path: Path) -> None:
+    path = edited(tmp_path, "fourbar-crossed", ('"fourbar-crossed"', '"fourbar-lecture-1"'))
+    refused(crank(*ONE, path), "a second scene called fourbar-lecture-1", "rename one")
 
 
-def test_a_loop_that_never_closes_says_by_how_much(tmp_path: Path) -> None:
-    path = edited(
-        tmp_path, "fourbar-lecture-1", ("0.25", "0.01"), ("length_m = 0.2 ", "length_m = 0.05 ")
-    )
-    refused(crank("verify", path), "cannot be assembled", "open by", "change a length")
+LIMIT = ("[driver]", "[tolerance]\nangel = 1e-3\n[driver]")
+NEVER = [("0.25", "0.01"), ("length_m = 0.2 ", "length_m = 0.05 ")]
+
+
+@pytest.mark.parametrize(
+    ("changes", "parts"),
+    [
+        ([LIMIT], ["[tolerance] angel", "did you mean angle"]),
+        ([("0.25", "0.17")], ["crank can stand at", "deg"]),
+        (NEVER, ["cannot be assembled", "open by", "change a length"]),
+    ],
+    ids=["a limit of no quantity", "a driver that cannot go round", "a loop that never closes"],
+)
+def test_a_fault_of_the_scene_is_told_before_anything_runs(
+    changes: list[tuple[str, str]], parts: list[str], tmp_path: Path
+) -> None:
+    refused(crank("verify", edited(tmp_path, "fourbar-lecture-1", *changes)), *parts)
 
 
 def test_a_massless_link_is_refused_by_the_engine_that_needs_its_mass(tmp_path: Path) -> None:
-    path = edited(
-        tmp_path, "fourbar-lecture-1", ("length_m = 0.25", "length_m = 0.25, mass_kg = 0.0")
-    )
-    result = crank("verify", path, *FAST)
+    massless = ("length_m = 0.25", "length_m = 0.25, mass_kg = 0.0")
+    result = crank("verify", edited(tmp_path, "fourbar-lecture-1", massless), *FAST)
     refused(result, "coupler", "mass_kg")
     assert "unsupported" in result.output
 
