@@ -95,23 +95,35 @@ def test_the_estimated_error_is_not_under_the_true_one(
         assert theta.max() * BETWEEN >= true[f"theta {link}"] - 1e-15
 
 
-def test_of_a_chain_the_windows_alone_are_in_doubt() -> None:
-    motion = replace(driven(fourbar(), Segments(4), "quasi-static"), until_s=0.2)
+@pytest.mark.parametrize("count", [4, slowly(6, reason="windows for stiffer segments")])
+def test_of_a_chain_the_windows_alone_are_in_doubt(count: int) -> None:
+    motion = replace(driven(fourbar(), Segments(count), "quasi-static"), until_s=0.2)
     doubt = motion.doubt(np.linspace(0.0, 0.2, 9))
     assert 0.0 < doubt.middle_m["coupler"].max() < 1e-8
 
 
-@pytest.mark.parametrize("bends", few([True, False], {True}, "shorter by the same equations"))
-def test_a_stiff_link_comes_to_the_rigid_one_as_one_over_its_modulus(bends: bool) -> None:
+@pytest.mark.parametrize(
+    ("bends", "stiffer"),
+    [
+        (True, (5.0, 10.0)),
+        *(
+            slowly(bends, (5.0, 10.0, 20.0), reason="a link that stretches; that the ratio stays")
+            for bends in (True, False)
+        ),
+    ],
+)
+def test_a_stiff_link_comes_to_the_rigid_one_as_one_over_its_modulus(
+    bends: bool, stiffer: tuple[float, ...]
+) -> None:
     """A link that bends turns the others in the second order only, by its shortening."""
     soft = fourbar(axial_n=float("inf") if bends else 6.3e6)
     own, time_s = soft.elastic["coupler"], times(soft)
     flexural = own.flexural_n_m2 if bends else float("inf")
     rigid, rigid_forces = solve(soft, time_s), forces(soft, time_s)
     errors = []
-    for stiffer in (5.0, 10.0):
-        axial = stiffer * own.axial_n
-        scene = with_elastic(soft, flexural_n_m2=stiffer * flexural, axial_n=axial)
+    for times_as in stiffer:
+        axial = times_as * own.axial_n
+        scene = with_elastic(soft, flexural_n_m2=times_as * flexural, axial_n=axial)
         motion = driven(scene, Polynomials(4, 2)).at(time_s)
         shape = motion.elastic["coupler"]
         turned = motion.links["rocker"].theta - rigid.links["rocker"].theta
@@ -183,7 +195,9 @@ def deflection(size: float, by: Discretisation) -> float:
     return float(np.abs(middle).max()) / size
 
 
-@pytest.mark.parametrize("by", few([Elements(1), Segments(3)], {Elements(1)}, "as slopes, angles"))
+@pytest.mark.parametrize(
+    "by", few([Elements(1), Elements(2), Segments(4)], {Elements(1)}, "more slopes, and angles")
+)
 def test_similar_mechanisms_of_any_size_bend_alike(by: Discretisation) -> None:
     assert deflection(1e-4, by) == pytest.approx(deflection(1.0, by), rel=1e-6)
 

@@ -18,7 +18,7 @@ from analytic.elastic.reduced import ReducedForm
 from analytic.elastic.vibration import vibrate
 from models.array import Array
 from tests.analytic.elastic.turning import form_of, fourbar
-from tests.worlds.tiers import slow
+from tests.worlds.tiers import slow, slowly
 
 ONE = Modes(1, 0)
 
@@ -101,14 +101,15 @@ def scaled(state: Array, form: ReducedForm) -> Array:
     return state
 
 
-def test_an_unstable_motion_grows_as_its_multiplier_says() -> None:
+@pytest.mark.parametrize("turns", [1, slowly(2, reason="what has grown grows on")])
+def test_an_unstable_motion_grows_as_its_multiplier_says(turns: int) -> None:
     form = form_of(fourbar(4.15, rocker=30.0), ONE)
     found = stability_of(form, periodic_motion(form))
     assert found.largest == pytest.approx(2.58, abs=0.01)
     assert not found.is_stable
     assert found.deviations[0].order == 3.5  # twice that is 7: it feeds on the turning
-    start, end = deviated(form, 1, 1e-6, windows=16)
-    expected = found.monodromy.matrix @ start
+    start, end = deviated(form, turns, 1e-6, windows=16 * turns)
+    expected = np.linalg.matrix_power(found.monodromy.matrix, turns) @ start
     off = np.abs(scaled(end - expected, form)).max()
     assert off < 1e-6 * np.abs(scaled(expected, form)).max()
 

@@ -16,11 +16,12 @@ from analytic.elastic.steady_vibration import steady_vibration
 from analytic.elastic.swing import spectrum
 from models.errors import CrankcheckError
 from tests.analytic.elastic.turning import FEW, form_of, fourbar
+from tests.worlds.tiers import slowly
 
 
-@pytest.fixture(scope="module")
-def over() -> OverSpeeds:
-    return over_speeds(fourbar(), FEW, np.linspace(11.0, 24.0, 9))
+@pytest.fixture(scope="module", params=[9, slowly(27, reason="speeds nearer to critical ones")])
+def over(request: pytest.FixtureRequest) -> OverSpeeds:
+    return over_speeds(fourbar(), FEW, np.linspace(11.0, 24.0, request.param))
 
 
 def test_critical_speeds_are_those_next_to_whole_ratios(over: OverSpeeds) -> None:
@@ -53,7 +54,7 @@ def test_spectra_hold_the_whole_deflection(over: OverSpeeds) -> None:
     wave = np.cos(2.0 * np.pi * 3.0 * np.arange(65) / 65)
     assert spectrum(2.0 + 0.5 * wave)[[0, 3, 4]] == pytest.approx([2.0, 0.5, 0.0], abs=1e-12)
     amplitudes = spectra(over, "coupler")
-    assert amplitudes.shape == (9, 33)
+    assert amplitudes.shape == (len(over.points), 33)
     middle = np.abs(over.points[0].swings["coupler"].middle).max() / 0.75
     assert amplitudes[0].max() <= middle <= amplitudes[0].sum()
 

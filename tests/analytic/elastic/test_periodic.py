@@ -24,7 +24,7 @@ from models.laws import ConstantSpeed, FromRest
 from models.loads import Load
 from models.tabulated import Tabulated
 from tests.analytic.elastic.turning import form_of, fourbar
-from tests.worlds.tiers import few
+from tests.worlds.tiers import few, slowly
 
 DRIVEN = [n for n in shipped("elastic") if type(load_scene(n).driver.law) is ConstantSpeed]
 
@@ -143,8 +143,9 @@ def test_a_load_over_time_has_to_repeat(orders: float, repeats: bool) -> None:
             periodic_motion(form)
 
 
+@pytest.mark.parametrize("most", [65, slowly(129, reason="a longer series leaves out less")])
 def test_what_kinks_leave_out_of_the_series_is_in_the_doubt(
-    monkeypatch: pytest.MonkeyPatch,
+    most: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A load with kinks has a series without end: two motions that stop at as many of its terms
     leave the same out."""
@@ -152,8 +153,8 @@ def test_what_kinks_leave_out_of_the_series_is_in_the_doubt(
     scene = fourbar(10.5, damping_s=1e-3)
     scene = replace(scene, loads={"push": Load("push", "rocker", None, hat, "angle")})
     motion = DrivenElasticMotion(scene, 1.0, Modes(1), "periodic", stiffened=True)
-    closely = periodic_motion(motion.form, 257)
-    monkeypatch.setattr(periodic, "MOST", 65)
+    closely = periodic_motion(motion.form, 4 * most - 3)
+    monkeypatch.setattr(periodic, "MOST", most)
     assert isinstance(motion.history, PeriodicMotion)
     time_s = instants(40, motion.form.period_s)
     true = np.abs(motion.history.at(time_s)[0] - closely.at(time_s)[0]).max()
@@ -163,7 +164,12 @@ def test_what_kinks_leave_out_of_the_series_is_in_the_doubt(
 
 
 @pytest.mark.parametrize(
-    "by", few([Elements(3), Segments(6, corrected=True)], {Elements(3)}, "by angles as by slopes")
+    "by",
+    few(
+        [Elements(3), Elements(4), Segments(8, corrected=True)],
+        {Elements(3)},
+        "more slopes, and angles",
+    ),
 )
 def test_links_swing_alike_by_coefficients_of_any_kind(by: Discretisation) -> None:
     """By slopes and angles as well as by lengths."""

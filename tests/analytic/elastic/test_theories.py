@@ -9,7 +9,7 @@ from models.files import load_scene
 from tests.worlds.tiers import slow
 
 
-@slow("two seconds for a row of the benchmark, whose theories others hold one by one")
+@slow("the numbers of the benchmark themselves: two seconds for a row of them")
 def test_the_linear_theory_errs_more_than_a_chain_of_four_segments() -> None:
     told = row(load_scene("fourbar-elastic"), 5.5, (4,), (4,))
     assert told["linear"] == pytest.approx(0.0564, abs=2e-4)

@@ -23,6 +23,7 @@ from models.files import load_scene
 from models.laws import FromRest
 from models.scene import Scene
 from tests.analytic.elastic.driven import fourbar, with_elastic
+from tests.analytic.elastic.turning import FEW as TURNING
 from tests.analytic.elastic.turning import form_of as turning_form
 from tests.analytic.elastic.turning import fourbar as turning_fourbar
 from tests.worlds.tiers import slowly
@@ -48,17 +49,18 @@ def by_a_library(form: ReducedForm, until_s: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("scene", "by"),
+    ("scene", "by", "until"),
     [
-        (fourbar(damping_s=1e-3), Polynomials(2)),
-        slowly(load_scene("slider-crank-elastic"), Modes(2), reason=STEPS),
-        slowly(fourbar(), Segments(3), reason=STEPS),
+        (fourbar(damping_s=1e-3), Polynomials(2), 0.015),
+        slowly(fourbar(damping_s=1e-3), Polynomials(2), 0.03, reason=STEPS),
+        slowly(load_scene("slider-crank-elastic"), Modes(2), 0.03, reason=STEPS),
+        slowly(fourbar(), Segments(3), 0.03, reason=STEPS),
     ],
 )
 def test_a_straight_start_rings_as_a_library_integrates_it(
-    scene: Scene, by: Polynomials | Modes | Segments
+    scene: Scene, by: Polynomials | Modes | Segments, until: float
 ) -> None:
-    form, until = form_of(scene, by), 0.015
+    form = form_of(scene, by)
     expected = by_a_library(form, until)
     still = np.zeros(form.size)
     history = vibrate(form, still, still, until, 6)
@@ -67,12 +69,13 @@ def test_a_straight_start_rings_as_a_library_integrates_it(
     assert rates == pytest.approx(expected[form.size :], abs=1e-7 * np.abs(rates).max())
 
 
-def test_windows_end_at_kinks_and_in_between_the_motion_is_smooth() -> None:
+@pytest.mark.parametrize("count", [5, slowly(6, reason="shapes that ring faster")])
+def test_windows_end_at_kinks_and_in_between_the_motion_is_smooth(count: int) -> None:
     scene = fourbar()
     rise = 0.31
     law = FromRest(scene.driver.law.offset_rad, 8.0, rise)
     scene = replace(scene, driver=replace(scene.driver, law=law))
-    motion = DrivenElasticMotion(scene, 0.6, Polynomials(5), "straight", stiffened=True)
+    motion = DrivenElasticMotion(scene, 0.6, Polynomials(count), "straight", stiffened=True)
     edges = motion.history.edges_s
     assert rise in edges
     assert len(edges) >= 16
@@ -139,8 +142,11 @@ def test_a_link_that_hardly_bends_takes_no_more_windows_than_it_needs() -> None:
     assert len(motion.history.z) < 30
 
 
-def test_a_window_that_is_too_long_is_halved() -> None:
-    form = turning_form(turning_fourbar(1.3), Modes(1, 0))
+@pytest.mark.parametrize(
+    "by", [Modes(1, 0), slowly(TURNING, reason="a link that rings along itself as well")]
+)
+def test_a_window_that_is_too_long_is_halved(by: Modes) -> None:
+    form = turning_form(turning_fourbar(1.3), by)
     still = np.zeros(form.size)
     long, short = (vibrate(form, still, still, form.period_s, count) for count in (2, 30))
     middle = np.array([0.5 * form.period_s])
