@@ -70,7 +70,6 @@ def book(path: Path, *, merged: str = "", first: str = "", **cells: object) -> N
     """The log as a workbook with other cells, merged ones, or an empty sheet in front."""
     made = openpyxl.Workbook()
     sheet = made.active
-    assert sheet is not None
     sheet.append(HEADER.split(","))
     for row in ROWS:
         sheet.append([float(x) for x in row.split(",")])
@@ -87,7 +86,6 @@ def notes_first(path: Path) -> None:
     """The log behind a sheet of remarks."""
     made = openpyxl.Workbook()
     sheet = made.active
-    assert sheet is not None
     sheet.append(["made today"])
     made.create_sheet("log").append(HEADER.split(","))
     made.save(path)
@@ -116,7 +114,6 @@ def bomb(path: Path) -> None:
         new = zipfile.ZipInfo(old.filename)
         new.CRC, new.compress_type, new.compress_size = 0, zipfile.ZIP_DEFLATED, len(raw)
         new.file_size, new.header_offset = 100 * PART, file.start_dir
-        assert file.fp is not None
         file.fp.seek(file.start_dir)
         file.fp.write(new.FileHeader(zip64=False) + raw)
         file.start_dir = file.fp.tell()

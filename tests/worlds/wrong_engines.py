@@ -35,8 +35,6 @@ from sim.registry import engine
 from sim.settings import SettingError
 from tests.worlds.fake.engine import FakeEngine
 
-Opened = Callable[[Scene, State, Settings, float, Drive], Session]
-
 
 @dataclass
 class Meddled:

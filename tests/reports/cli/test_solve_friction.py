@@ -88,7 +88,6 @@ def test_a_cycle_has_an_efficiency(tmp_path: Path) -> None:
     path = written(replace(scene, name="rubbing", friction=rubbing), tmp_path)
     solution = crankcheck.solve(path, forces=True)
     cycle = solution.efficiency
-    assert cycle is not None
     assert 0.0 < cycle.cycle < 1.0
     output = flat(crank("solve", path, "--forces").output)
     assert f"Friction takes {cycle.wasted:.6g} J in a cycle; {cycle.useful:.6g} J of the" in output

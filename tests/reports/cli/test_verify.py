@@ -122,7 +122,6 @@ def test_junit_names_the_failure_and_skips_what_is_not_gated(tmp_path: Path) -> 
     assert float(suite.get("time", "nan")) == pytest.approx(sum(times), abs=2e-3)
     assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("2", "1", "1")
     failure = suite.find("testcase/failure")
-    assert failure is not None
     assert failure.get("type") == "CC103"
     assert "cure" in (failure.text or "")
 

@@ -33,7 +33,6 @@ def _undrawn(axes: Axes) -> Iterator[Text]:
 
 def has_room(figure: Figure | None) -> None:
     """Every word on the sheet, and none on another."""
-    assert figure is not None
     found, page = boxes(figure), figure.bbox
     assert len(found) > 5
     for text, box in found:

@@ -83,7 +83,6 @@ def test_beside_where_friction_locks_nothing_is_drawn_but_the_efficiency() -> No
     assert np.sum(far & ~is_drawn) <= 3  # where the load turns round
     assert any("within 5 deg" in note for note in turn.notes)
     figure = FORCE_FIGURES["efficiency"](turn)
-    assert figure is not None
     curve = np.ravel(figure.axes[0].lines[-1].get_ydata())
     assert np.nanmin(curve) < 0.05
     assert np.nanmax(curve) <= 1.0
@@ -94,7 +93,6 @@ def test_a_turn_locked_nearly_everywhere_draws_no_forces_and_says_so() -> None:
     """With mu = 10 only some degrees near the ends of the stroke are not locked."""
     scene = load_scene("slider-crank-self-locking")
     turn = force_turn(replace(scene, friction={"piston": CoulombFriction("piston", 10.0)}))
-    assert turn.motion.forces is not None
     assert np.isfinite(turn.motion.forces.torque).any()
     left = {name for name, draw in FORCE_FIGURES.items() if draw(turn) is not None}
     assert left == {"reduced", "efficiency"}
@@ -117,12 +115,10 @@ def test_the_shares_of_the_torque_are_the_torque(fourbar: Scene) -> None:
     """Inertia, weights and loads, and friction: constant friction of the drive's pin is its own."""
     rubbing = replace(fourbar, friction={"A": ConstantFriction("A", 0.25)})
     figure = FORCE_FIGURES["torque"](force_turn(rubbing))
-    assert figure is not None
     curves = [np.ravel(line.get_ydata()) for line in figure.axes[0].lines]
     friction, inertia, held, torque = (c for c in curves if c.size > 2)
     np.testing.assert_allclose(friction, 0.25, rtol=1e-12)
     np.testing.assert_allclose(inertia + held + friction, torque, atol=1e-12)
     bare = FORCE_FIGURES["torque"](force_turn(fourbar))
-    assert bare is not None
     alone = [np.ravel(line.get_ydata()) for line in bare.axes[0].lines]
     np.testing.assert_allclose(inertia, next(c for c in alone if c.size > 2), atol=1e-9)

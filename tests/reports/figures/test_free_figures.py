@@ -53,7 +53,6 @@ def test_a_figure_of_free_runs_is_refused_of_a_driven_store(store: Path, tmp_pat
 
 def test_a_portrait_goes_through_its_samples_and_smoothly_between(free_store: Path) -> None:
     shown = free_runs(Report(read_store(free_store)), SCENE)
-    assert shown is not None
     run = shown.runs[0]
     angle, speed = run.portrait()
     np.testing.assert_allclose(angle[::8], run.angle, rtol=0, atol=1e-12)

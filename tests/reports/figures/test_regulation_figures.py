@@ -39,10 +39,8 @@ def test_the_speed_has_a_panel_without_the_flywheel_and_a_closer_one(
     wanted: WantedFlywheel,
 ) -> None:
     figure = REGULATION_FIGURES["speed"](Regulated(wanted.cycle, wanted))
-    assert figure is not None
     far, near = (np.ptp(axes.get_ylim()) for axes in figure.axes)
     assert wanted.bare is not None
     assert far > 20.0 * near
     alone = REGULATION_FIGURES["speed"](Regulated(wanted.cycle))
-    assert alone is not None
     assert len(alone.axes) == 1

@@ -86,7 +86,6 @@ def test_control_takes_out_what_rings_without_it() -> None:
     assert with_it < 0.2 * without
     with styled():
         figure = draw(course)
-    assert figure is not None
     _, speeds, ahead = figure.axes
     assert [len(line.get_ydata()) for line in speeds.lines[:2]] == [201, 201]  # type: ignore[arg-type]
     assert ahead.get_ylabel() == "crank ahead by [deg]"

@@ -302,7 +302,6 @@ def test_a_second_process_waits_and_says_so(tmp_path: Path) -> None:
     ) as holder:
         stdin, stdout = holder.stdin, holder.stdout
         assert stdin is not None
-        assert stdout is not None
         assert stdout.readline().strip() == b"in"
 
         def told_to_wait() -> None:

@@ -80,14 +80,12 @@ def graded(name: str, engine: str, profile: str, steps: float) -> tuple[Graded, 
 
 
 def _place(scene: Scene, done: Run) -> float:
-    assert done.motion is not None
     truth = solve(scene, done.motion.time_s, bound=False)
     off = [done.motion.points[p].position - truth.points[p].position for p in moving_points(scene)]
     return float(np.max(np.abs(off))) / scene.longest_m
 
 
 def _picture(scene: Scene, found: Graded, done: Run) -> Picture:
-    assert done.motion is not None
     time_s = done.motion.time_s
     kept = np.unique(np.linspace(0, len(time_s) - 1, INSTANTS).astype(int))
     trace: dict[str, Array] = {"time_s": time_s[kept]}

@@ -85,10 +85,8 @@ def test_elastic_cells_have_a_section_with_their_own_heads(bent_path: Path) -> N
 
 def test_what_is_rigid_keeps_its_sections_without_what_bends(small: Stored, bent: Stored) -> None:
     report = PageReport(beside(small, bent))
-    assert report.driven is not None
     assert SCENE not in report.driven.scenes
     section = SECTIONS["convergence"](report)
-    assert section is not None
     assert "segments" not in json.dumps(section.embedded, default=list)
     assert SECTIONS["elastic"](report) is not None
 
@@ -104,7 +102,6 @@ def test_the_course_of_the_beam_is_that_of_the_engine_less_its_error(bent: Store
 def told(found: tuple[Recommendation, ...]) -> str:
     console = Console(file=StringIO(), width=100)
     console.print(recommendation_table(found, 100))
-    assert isinstance(console.file, StringIO)
     return console.file.getvalue()
 
 
@@ -144,6 +141,5 @@ def test_figures_of_elastic_cells_say_what_their_errors_are_of(bent: Stored) -> 
     for draw in (convergence.draw, work_precision.draw):
         with styled():
             figure = draw(report, SCENE)
-        assert figure is not None
         assert figure.axes[0].get_ylabel() == PLACE_ELASTIC
     assert f"convergence-{SCENE}" in _planned(report, ["convergence"], [])

@@ -82,7 +82,6 @@ def test_the_model_is_xml_that_compiles_and_tells_the_source(scene: Path) -> Non
     builder = Xml.TreeBuilder(insert_comments=True)
     root = Xml.fromstring(text, Xml.XMLParser(target=builder))
     source = next(child.text for child in root if child.tag is Xml.Comment)
-    assert source is not None
     assert source.strip().replace("- -", "--") == NASTY
     names = {element.tag for element in root.iter() if isinstance(element.tag, str)}
     assert not names & {"script", "b"}

@@ -35,7 +35,6 @@ def path(free: Stored, written: Callable[[str], Path]) -> Path:
 
 def embedded(report: PageReport, name: str) -> dict[str, object]:
     section = SECTIONS[name](report)
-    assert section is not None
     return json.loads(json.dumps(section.embedded, default=list))
 
 
@@ -56,7 +55,6 @@ def test_what_was_driven_keeps_its_sections_beside_what_was_let_go(
     both = replace(small, manifest=Manifest(scenes, small.manifest.runs), cells=cells)
     vars(both)["_traces"] = {**small._traces, **free._traces}
     report = PageReport(both)
-    assert report.driven is not None
     assert SCENE not in report.driven.scenes
     assert {x.number for x in report.driven.looks.values()} <= {
         x.number for x in report.looks.values()
@@ -84,7 +82,6 @@ def test_every_free_run_moves_with_its_courses(free: Stored) -> None:
 
 def test_columns_of_stability_stand_under_their_engines(free: Stored) -> None:
     section = SECTIONS["stability"](PageReport(free))
-    assert section is not None
     assert dict(section.words["engines"]) == {"mujoco": 2, "pymunk": 2}
     assert [look.engine for look in section.words["looks"]] == ["mujoco"] * 2 + ["pymunk"] * 2
 
@@ -122,6 +119,5 @@ def test_settings_of_free_motion_are_to_be_copied(free: Stored) -> None:
         assert "crank at" not in text
         assert "speed)" not in text
     section = SECTIONS["free"](PageReport(timed))
-    assert section is not None
     assert "copying.js" in section.scripts
     assert "To be copied" in page(timed)

@@ -128,7 +128,6 @@ def test_a_long_log_is_thinned_and_the_turn_of_its_spike_is_drawn_by_itself() ->
     assert curve.whole.is_thinned
     assert curve.whole.error.size < 1_100
     assert curve.largest == pytest.approx(0.5)
-    assert curve.near is not None
     assert curve.near.error[curve.near.worst] == pytest.approx(0.5)
     span = curve.near.time_s[[0, -1]] - motion.time_s[31_234]
     assert span == pytest.approx([-TURN_S / 2, TURN_S / 2], rel=0.01)

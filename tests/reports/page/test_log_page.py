@@ -43,7 +43,6 @@ def page(one: JudgedLog) -> str:
 def embedded(text: str, name: str) -> dict[str, object]:
     """What a section carries for its scripts."""
     found = re.search(rf'id="embedded-{name}">(.*?)</script>', text, re.DOTALL)
-    assert found is not None
     return json.loads(found[1])
 
 

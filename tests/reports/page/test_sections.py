@@ -245,14 +245,12 @@ def test_forces_are_told_at_the_finest_step_with_a_program_where_they_were_asked
     ]
     report = Report(stored(asked))
     section = build_forces(report)
-    assert section is not None
     (told,) = section.words["rows"]  # type: ignore[misc]  # a list, as the template has it
     assert (told["steps"], told["reaction"], told["reaction_scene"]) == (720, 2e-2, "b")
     assert (told["torque"], told["torque_scene"]) == (4e-2, "b")
     assert "4.0e-2" in render(report, [section])
     asked[-1] = asked[-1] | {"status": "diverged", "reaction_pure": math.nan}
     lost = build_forces(Report(stored(asked)))
-    assert lost is not None
     assert lost.words["rows"][0]["reaction"] == math.inf  # type: ignore[index]  # as above
 
 

@@ -120,7 +120,6 @@ def test_the_mechanism_stands_in_the_positions_that_are_asked_for() -> None:
     step = view.steps[0]
     asked = {each.letter: xy(each.place) for each in step.elements if isinstance(each, Dot)}
     for number, placed in enumerate(view.placements, 1):
-        assert placed is not None
         assert placed.points["C"] == pytest.approx(asked[f"C{number}"], abs=1e-9)
         assert placed.points["D"] == pytest.approx(asked[f"D{number}"], abs=1e-9)
     start = solve(view.examined.scene, np.zeros(1), bound=False)

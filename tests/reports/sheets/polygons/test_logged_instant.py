@@ -120,7 +120,6 @@ def sheet_beside(rates: Mapping[str, np.ndarray]) -> PolygonSheet:
 def test_the_error_is_drawn_magnified_from_the_image_to_the_log_s() -> None:
     sheet = sheet_beside({"C": OFF})
     drawn = sheet.velocity.logged
-    assert drawn is not None
     assert drawn.factor == 100.0  # 5e-4 m/s are 0.05 mm at 0.01 m/s to the mm
     exact = sheet.velocity.at(sheet.velocity.polygon.nodes["C"])
     assert drawn.tips["C"] - exact == pytest.approx(100.0 * OFF / sheet.velocity.scale)
@@ -133,7 +132,6 @@ def test_the_error_is_drawn_magnified_from_the_image_to_the_log_s() -> None:
 def test_an_error_that_leaves_the_sheet_makes_the_scale_coarser() -> None:
     sheet = sheet_beside({"C": np.array([-3.0, 4.0])})
     drawn, box = sheet.velocity.logged, sheet.boxes["velocity"]
-    assert drawn is not None
     assert drawn.factor == 1.0
     assert sheet.velocity.scale > laid_out(sheet.drawn, sheet.paper).velocity.scale
     low, high = np.array([box.left, box.bottom]), np.array([box.width, box.height])
