@@ -173,8 +173,9 @@ def test_a_run_is_compared_with_the_beam_that_it_was_let_go_from() -> None:
     assert error.pure < 1e-5
 
 
-def test_under_a_controller_a_run_of_segments_is_let_go_and_judged_as_such() -> None:
-    done = simulated(CONTROLLED, duration_s=0.01, segments=4)
+@pytest.mark.parametrize("lasts_s", [0.01, slowly(0.02, reason="errors that grow with time")])
+def test_under_a_controller_a_run_of_segments_is_let_go_and_judged_as_such(lasts_s: float) -> None:
+    done = simulated(CONTROLLED, duration_s=lasts_s, segments=4)
     assert done.drive == "free"
     assert judge(CONTROLLED, done).verdict == "within"
 

@@ -72,13 +72,13 @@ def test_files_hold_all(crank: Crank) -> None:
 
 
 def test_speeds_are_told_and_written(crank: Crank) -> None:
-    output = words(crank("fourbar-elastic", "--speeds", "14:21:8", "--modes", "1", "-o", "out"))
+    output = words(crank("fourbar-elastic", "--speeds", "14:21:15", "--modes", "1", "-o", "out"))
     assert re.search(r" 19\.3\d* 4\.00\d* 1 4 0\.\d+ ", output)
     assert re.search(r" 15\.4\d* 5\.00\d* 1 5 0\.\d+ ", output)
     assert "At none of these speeds deviations grow." in output
     speeds, fall = pd.read_csv("out/speeds.csv"), pd.read_csv("out/waterfall.csv")
-    assert list(speeds["speed_rad_s"]) == pytest.approx(np.linspace(14.0, 21.0, 8))
-    assert len(fall) == 8 * 33
+    assert list(speeds["speed_rad_s"]) == pytest.approx(np.linspace(14.0, 21.0, 15))
+    assert len(fall) == 15 * 33
     assert list(pd.read_csv("out/critical.csv")["order"]) == [4, 5]
     assert (Path("out") / "waterfall.svg").exists()
 
