@@ -21,6 +21,7 @@ from reports.figures.elastic.control import draw
 from reports.figures.style import styled
 from reports.figures.vibration import over_inertia, over_speed, over_turn
 from tests.reports.figures.room import has_room
+from tests.worlds.tiers import slowly
 
 ONE = Modes(1, 0)
 UNTIL_S = 0.4
@@ -32,9 +33,9 @@ def vibration() -> SteadyVibration:
     return steady_vibration(load_scene("fourbar-elastic"), ONE)
 
 
-@pytest.fixture(scope="module")
-def speeds() -> OverSpeeds:
-    return over_speeds(load_scene("fourbar-elastic"), ONE, np.linspace(8.0, 60.0, 14))
+@pytest.fixture(scope="module", params=[14, slowly(27, reason="sharper peaks, nearer to words")])
+def speeds(request: pytest.FixtureRequest) -> OverSpeeds:
+    return over_speeds(load_scene("fourbar-elastic"), ONE, np.linspace(8.0, 60.0, request.param))
 
 
 @pytest.fixture(scope="module")
