@@ -14,6 +14,7 @@ from __future__ import annotations
 import ast
 import json
 import os
+import resource
 import shutil
 import subprocess
 import sys
@@ -35,6 +36,8 @@ BEFORE = "c015253c"
 WORKERS = 2
 FIRST = 200
 """Tests of a first run, the nearest: to collect all that reach a line may take longer."""
+MOST_BYTES = 8 * 10**9
+"""Of the data of a process; a test needs a fourth."""
 KILLED, SURVIVED, UNREACHED = "killed", "survived", "unreached"
 _writing = Lock()
 
@@ -167,6 +170,8 @@ def _failing(tests: list[str], tree: Path, most_s: float) -> str:
         text=True,
         start_new_session=True,
     )
+    # A mutant that asks for all memory is refused it.
+    resource.prlimit(done.pid, resource.RLIMIT_DATA, (MOST_BYTES, MOST_BYTES))
     try:
         output, _ = done.communicate(timeout=most_s)
     except subprocess.TimeoutExpired:
