@@ -26,9 +26,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 
-from benchmarks.mutants_drawn import ROOT, Mutant, listed
+from benchmarks.mutants_drawn import Mutant, listed
 from tests.recorded import chosen, quick
 from tests.recorded.reached import Reached
+from tests.recorded.recording import OURS, ROOT
 
 HOME = ROOT / "out" / "mutants"
 VERDICTS = HOME / "verdicts.jsonl"
@@ -61,7 +62,7 @@ class Suite:
 
 def suites() -> dict[str, Suite]:
     """The three, with the commits that they stand for."""
-    now = _git("rev-parse", "--short", "HEAD")
+    now = _git("log", "-1", "--format=%h", "--", *OURS)  # other commits change no verdict
     tag = subprocess.run(["git", "rev-parse", "--short", "tests-before"], cwd=ROOT,
                          capture_output=True, text=True, check=False)  # fmt: skip
     before = tag.stdout.strip() or BEFORE

@@ -17,9 +17,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+from tests.recorded.recording import PACKAGES, ROOT
+
 LIST = Path(__file__).with_name("mutants.json")
-PACKAGES = ("models", "analytic", "sim", "reports", "crankcheck")
 SEED = 37
 COUNT = 120
 
