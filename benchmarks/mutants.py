@@ -4,8 +4,8 @@
     python -m benchmarks.mutants table   # shares by folder, and the survivors
 
 Each mutant of `benchmarks/mutants.json` runs against the tests that reach its line, in the nearest
-folder first, until one fails. What `make test` misses runs in `make slow`; the tests at the tag
-`tests-before`, or commit BEFORE where there is no tag, run too. All stands in `out/mutants`: three
+folder first, until one fails. What `make test` misses runs in `make slow` and in the tests at the
+tag `tests-before`, or commit BEFORE where there is no tag. All stands in `out/mutants`: three
 records of what tests reach (`tests/recorded`), checkouts to spoil, and a line for each verdict.
 """
 
@@ -89,26 +89,34 @@ def checkout(commit: str, folder: Path) -> Path:
     return folder
 
 
-def reached(suite: Suite) -> Reached:
-    """The record of a suite, made where there is none."""
+def reached(suite: Suite, mutants: Iterable[Mutant]) -> Reached:
+    """The record of a suite for the lines of these mutants, made where there is none."""
     checkout(suite.commit, suite.tree)
-    if not (suite.record / quick.DONE.name).exists():
-        print(f"recording {suite.name} at {suite.commit}", flush=True)
-        quick.record(suite.record, suite.tree, tier=suite.tier)
+    files = {file for each in mutants for file in _files(each, suite.tree)}
+    done = suite.record / quick.DONE.name
+    if not done.exists() or not files <= set(done.read_text(encoding="utf-8").splitlines()):
+        print(f"recording {suite.name} at {suite.commit}: {len(files)} files", flush=True)
+        quick.record(suite.record, suite.tree, tier=suite.tier, files=sorted(files))
     return Reached(suite.record, suite.tree)
 
 
+def _files(mutant: Mutant, root: Path) -> list[str]:
+    """The files whose tests may find the mutant. A line that runs when its file is imported counts
+    as run by whatever runs a line of the file or of one that imports it."""
+    if statement(root / mutant.file, mutant.line)[2]:
+        return [mutant.file]
+    module = mutant.file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+    return [mutant.file, *quick.importers(module, root)]
+
+
 def reaching(mutant: Mutant, record: Reached) -> list[str]:
-    """The tests that run the line, in the nearest folder first, then the cheapest. A line that runs
-    when its file is imported counts as run by whatever runs a line of the file or of one that
-    imports it."""
+    """The tests that run the line, in the nearest folder first, then the cheapest."""
     first, last, in_function = statement(record.root / mutant.file, mutant.line)
     if in_function:
         by_line = record.by_line(mutant.file)
         tests = {t for line in range(first, last + 1) for t in by_line.get(line, ())}
     else:
-        module = mutant.file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
-        files = [mutant.file, *quick.importers(module, record.root)]
+        files = _files(mutant, record.root)
         tests = {t for file in files for each in record.by_line(file).values() for t in each}
     good = tests - record.failed
     return sorted(good, key=lambda name: (-_near(mutant.file, name), record.seconds[name], name))
@@ -201,11 +209,11 @@ def run(names: Iterable[str] = ("test", "slow", "before")) -> None:
             m
             for m in listed()
             if (m.number, name) not in seen
-            and not (name == "slow" and seen[m.number, "test"]["verdict"] == KILLED)
+            and (name == "test" or seen[m.number, "test"]["verdict"] != KILLED)
         ]
         if not missing:
             continue
-        record = reached(own[name])
+        record = reached(own[name], listed() if name == "test" else missing)
         trees = [
             checkout(own[name].commit, HOME / f"{own[name].commit}-{k}") for k in range(WORKERS)
         ]
@@ -235,23 +243,21 @@ def _share(mutants: list[Mutant], record: Reached, suite: Suite, tree: Path) -> 
 
 
 def table() -> None:
-    """Shares by folder, of the mutants that any suite kills; then who survives what."""
+    """Counts by folder: the mutants, those that `make test` kills, and of those that it misses the
+    ones that the other two suites kill; then who survives what."""
     seen, by_folder = known(), defaultdict[str, list[Mutant]](list)
     for mutant in listed():
         by_folder["/".join(mutant.file.split("/")[:-1][:2])].append(mutant)
     by_folder["all"] = listed()
 
-    def kills(mutant: Mutant, *names: str) -> bool:
-        return any(seen.get((mutant.number, n), {}).get("verdict") == KILLED for n in names)
+    def kills(mutant: Mutant, name: str) -> bool:
+        return seen.get((mutant.number, name), {}).get("verdict") == KILLED
 
-    print("folder                      mutants  killed by any  make test  with slow  before")
+    print("folder                      mutants  make test  missed, but make slow  but before")
     for folder, some in by_folder.items():
-        killed = [m for m in some if kills(m, "test", "slow", "before")]
-        counts = [
-            sum(kills(m, *n) for m in killed) for n in (["test"], ["test", "slow"], ["before"])
-        ]
-        shares = [f"{100 * n / len(killed):8.1f} %" if killed else "       -  " for n in counts]
-        print(f"{folder:28}{len(some):6}{len(killed):14}   {' '.join(shares)}")
+        missed = [m for m in some if not kills(m, "test")]
+        slow, before = (sum(kills(m, name) for m in missed) for name in ("slow", "before"))
+        print(f"{folder:28}{len(some):7}{len(some) - len(missed):11}{slow:23}{before:12}")
     for mutant in listed():
         if not kills(mutant, "test"):
             rows = [seen.get((mutant.number, n), {}) for n in ("test", "slow", "before")]

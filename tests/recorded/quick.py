@@ -28,15 +28,19 @@ DOCUMENTS = {"README.md": ["tests/test_readme.py"], "docs": ["tests/test_docs.py
 """What no line of code stands for, and its tests."""
 
 
-def record(folder: Path = FOLDER, root: Path = ROOT, *, tier: str = TIER) -> None:
-    """Run a tier of the tests of a checkout, and note what each reaches."""
+def record(
+    folder: Path = FOLDER, root: Path = ROOT, *, tier: str = TIER, files: Iterable[str] = ()
+) -> None:
+    """Run a tier of the tests of a checkout, and note what each reaches, of all our files or of
+    these."""
+    files = list(files)
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    settings = recording.settings(folder, root)
+    settings = recording.settings(folder, root, files)
     variables = {"COVERAGE_PROCESS_START": str(settings), "PYTHONPATH": str(root)}
     if _pytest(["-p", "tests.recorded.recording", "-m", tier], root, variables) not in (0, 1):
         raise SystemExit(f"{root}: the tests could not be run; nothing was recorded")
-    (folder / DONE.name).touch()
+    (folder / DONE.name).write_text("\n".join(files), encoding="utf-8")
 
 
 def _pytest(arguments: Sequence[str], root: Path, variables: dict[str, str]) -> int:
