@@ -100,8 +100,13 @@ def _noted_cache(maxsize: object = 128, typed: bool = False) -> Any:
             name = f"{SHARED}{os.getpid()}:{next(_numbers)}:{function.__qualname__}"
             if not _stack:
                 return function(*args, **options), name
+            user = _stack[-1]
             with _noted_as(name):
-                return function(*args, **options), name
+                try:
+                    return function(*args, **options), name
+                except BaseException:  # no answer is kept that would name who used it
+                    _uses.add((user, name))
+                    raise
 
         @functools.wraps(function)
         def shared(*args: object, **options: object) -> object:

@@ -26,6 +26,8 @@ def low(number):
 
 @cache
 def doubled(number):
+    if number < 0:
+        raise ValueError
     return 2 * number
 
 
@@ -44,6 +46,9 @@ from models.code import LIMIT, alone, doubled, low
 def test_low(): assert low(2)
 def test_doubled(): assert doubled(4) == 8
 def test_doubled_again(): assert doubled(4) == 8
+
+def test_refused():
+    with pytest.raises(ValueError): doubled(-1)
 
 @pytest.fixture(scope="module")
 def made(): return alone()
@@ -80,9 +85,13 @@ def mutant(line: int) -> Mutant:
     [
         ("return number < LIMIT", {"low"}),
         ("return 2 * number", {"doubled", "doubled_again"}),
+        ("raise ValueError", {"refused"}),
         ("return 1", {"made", "made_again"}),
         ("return 5", {"child"}),
-        ("LIMIT = 3", {"low", "doubled", "doubled_again", "made", "made_again", "child"}),
+        (
+            "LIMIT = 3",
+            {"low", "doubled", "doubled_again", "refused", "made", "made_again", "child"},
+        ),
     ],
 )
 def test_a_line_is_reached_by_whoever_gets_what_it_made(
