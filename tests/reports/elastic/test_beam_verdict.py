@@ -28,11 +28,7 @@ def scene() -> Scene:
 
 
 def cell(
-    scene: Scene,
-    elements: int = 8,
-    engine: str = "exudyn",
-    steps: int = STEPS,
-    **changes: object,
+    scene: Scene, elements: int = 8, engine: str = "exudyn", steps: int = STEPS, **changes: object
 ) -> Cell:
     """A turn."""
     dt_s = scene.driver.law.period_s / steps

@@ -113,12 +113,7 @@ def test_rigid_links_have_no_deflection(tmp_path: Path) -> None:
 def test_a_log_starts_within_the_limit_of_its_run(elements: int, steps: int, springs: str) -> None:
     """Joints are solved for, whatever the beam is off by in its places."""
     run = face.run(
-        NAME,
-        engine="exudyn",
-        segments=elements,
-        springs=springs,
-        steps_per_turn=steps,
-        turns=1,
+        NAME, engine="exudyn", segments=elements, springs=springs, steps_per_turn=steps, turns=1
     )
     of_run = face.judge(NAME, run)
     assert run.motion is not None

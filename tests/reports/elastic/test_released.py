@@ -17,11 +17,7 @@ from reports.face.simulation import run as simulated
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
 from reports.judge.tolerance import limits
-from reports.plan.elastic import (
-    counted_released,
-    few_swings_s,
-    shortened_note,
-)
+from reports.plan.elastic import counted_released, few_swings_s, shortened_note
 from reports.plan.free import under_control
 from reports.selftest.segment_changes import in_chain, springs, stiffer
 from reports.verify.footer import footer

@@ -169,10 +169,7 @@ def cut(done: Run) -> Run:
     ids=["raises", "diverged", "logged nothing", "without gaps", "open pin", "short"],
 )
 def test_a_finer_run_that_does_not_end_well_fails_the_cell(
-    fourbar: Scene,
-    monkeypatch: pytest.MonkeyPatch,
-    change: Callable[[Run], Run],
-    words: str,
+    fourbar: Scene, monkeypatch: pytest.MonkeyPatch, change: Callable[[Run], Run], words: str
 ) -> None:
     monkeypatch.setattr(cells, "run", finer_run(change))
     found = check(cell(fourbar))

@@ -45,9 +45,7 @@ def test_what_the_engine_does_not_report_is_empty_and_the_rest_is_there(
         assert frame[name][0] >= 0.0
 
 
-def test_the_long_frame_has_one_row_per_quantity_body_source_and_kind(
-    slider_crank: Scene,
-) -> None:
+def test_the_long_frame_has_one_row_per_quantity_body_source_and_kind(slider_crank: Scene) -> None:
     cell = Cell(slider_crank, "mujoco", "tuned", slider_crank.driver.law.period_s / 360, 360)
     long = error_frame([check(cell)])
     key = ["scene", "engine", "profile", "dt_s", "quantity", "body_kind", "body", "source", "kind"]

@@ -33,16 +33,7 @@ from reports.judge.rules import PLACES, RATES
 from reports.verify.advised import HELPS, advised
 from sim.engine import SettingValue
 from tests.worlds.command_line import crank
-from tests.worlds.driven import (
-    HARD,
-    ITERATIONS,
-    LEFT,
-    TUNED_RANGE,
-    Driven,
-    Range,
-    made,
-    recipes,
-)
+from tests.worlds.driven import HARD, ITERATIONS, LEFT, TUNED_RANGE, Driven, Range, made, recipes
 from tests.worlds.tiers import at_length, slow, slowly
 
 SEED = 20_261_121

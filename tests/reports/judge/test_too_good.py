@@ -63,9 +63,7 @@ def test_a_short_stretch_says_nothing() -> None:
 @pytest.mark.parametrize(
     "each",
     few(
-        shipped(),
-        {"fourbar-lecture-1", "shaper", "tangent"},
-        "another body comes nearest in each",
+        shipped(), {"fourbar-lecture-1", "shaper", "tangent"}, "another body comes nearest in each"
     ),
 )
 def test_no_body_of_a_shipped_scene_comes_near_what_is_too_good(each: str) -> None:

@@ -167,10 +167,7 @@ def test_a_mistake_ends_with_2_one_message_and_nothing_written(crank: Crank, nam
 
 
 def motorised() -> Scene:
-    loads = {
-        "pull": (Sine(20.0, math.tau), "angle"),
-        "motor": (Polynomial((30.0, -3.0)), "omega"),
-    }
+    loads = {"pull": (Sine(20.0, math.tau), "angle"), "motor": (Polynomial((30.0, -3.0)), "omega")}
     return shaft(loads, free=True)  # type: ignore[arg-type]  # literals
 
 

@@ -14,8 +14,7 @@ from reports.selftest.fault import INSIDE
 from tests.worlds.tiers import slowly
 
 PARALLELOGRAM = replace(
-    fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source="Grashof's rule, equality"),
-    branch={"C": 1},
+    fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source="Grashof's rule, equality"), branch={"C": 1}
 )
 EVEN = "what turns as its crank does comes out right to rounding in an engine too"
 NO_FAULT_THERE = {
