@@ -82,8 +82,7 @@ def test_it_follows_where_the_frame_of_the_link_lies() -> None:
     points = {"B": (0.4, -0.3), "C": (0.4 + 0.75 * c, -0.3 + 0.75 * s)}
     centre = (0.4 + 0.375 * c, -0.3 + 0.375 * s)
     turned: Scene = replace(
-        scene,
-        links={**scene.links, "coupler": replace(coupler, points=points, centre_m=centre)},
+        scene, links={**scene.links, "coupler": replace(coupler, points=points, centre_m=centre)}
     )
     here, there = (node_start(BeamedScene(own, 4), "quasi-static") for own in (scene, turned))
     assert set(here.theta) == set(there.theta)

@@ -154,9 +154,7 @@ def test_a_window_that_is_too_long_is_halved(by: Modes) -> None:
     assert long.at(middle)[0][0, 0] == pytest.approx(short.at(middle)[0][0, 0], rel=1e-3)
 
 
-def test_what_is_stiff_is_met_as_well_as_rounding_lets_it(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_what_is_stiff_is_met_as_well_as_rounding_lets_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """Elements whose highest frequencies are a thousand times the first: what rounding leaves of
     the accelerations may be large, next to them."""
     taken = []

@@ -65,10 +65,7 @@ class _Body:
     def acceleration(self, local: Point) -> Pair:
         x, y = self.arm(local)
         w2 = self.omega**2
-        return (
-            self.push[0] - self.alpha * y - w2 * x,
-            self.push[1] + self.alpha * x - w2 * y,
-        )
+        return (self.push[0] - self.alpha * y - w2 * x, self.push[1] + self.alpha * x - w2 * y)
 
 
 @dataclass(frozen=True)

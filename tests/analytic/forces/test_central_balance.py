@@ -66,9 +66,7 @@ QUICK = {("RR", "PR", "RP"), ("PR", "PR", "PP")}
 
 
 @pytest.mark.parametrize(
-    "kinds",
-    few(KINDS, QUICK, "legs of each kind are among the few"),
-    ids="-".join,
+    "kinds", few(KINDS, QUICK, "legs of each kind are among the few"), ids="-".join
 )
 def test_every_kind_of_triad_has_the_forces_of_the_multipliers(kinds: tuple[str, str, str]) -> None:
     scene, _ = triad(kinds, 4, crank_m=0.05)

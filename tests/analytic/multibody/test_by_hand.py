@@ -8,14 +8,7 @@ import numpy as np
 import pytest
 
 from analytic.multibody.release_multibody import release_multibody, start_state
-from tests.analytic.multibody.scenes import (
-    DOUBLE_PENDULUM,
-    PARALLELOGRAM,
-    ROTOR,
-    ROTOR_J,
-    G,
-    scene,
-)
+from tests.analytic.multibody.scenes import DOUBLE_PENDULUM, PARALLELOGRAM, ROTOR, ROTOR_J, G, scene
 
 TIMES = np.linspace(0.0, 1.0, 21)
 

@@ -26,13 +26,7 @@ from models.scene import Scene
 from models.tabulated import Tabulated
 from models.window_chain import Chain
 from tests.analytic.free.mechanisms import fourbar
-from tests.analytic.multibody.scenes import (
-    DOUBLE_PENDULUM,
-    FIVE_BAR,
-    SLIDER_CRANK,
-    THESIS,
-    scene,
-)
+from tests.analytic.multibody.scenes import DOUBLE_PENDULUM, FIVE_BAR, SLIDER_CRANK, THESIS, scene
 from tests.worlds.tiers import slow, slowly
 
 SPRINGS = """

@@ -118,10 +118,7 @@ def test_a_machine_is_let_go_in_its_cycle() -> None:
 
 @pytest.mark.parametrize("delta", [0.0, -0.1, 1e-300, 9e-7, 2.0, 7.0, math.nan, math.inf])
 def test_a_coefficient_that_is_none_is_refused(delta: float) -> None:
-    with pytest.raises(
-        CrankcheckError,
-        match=rf"^delta {delta:g}: .*(0\.02|0\.2|1e-06 or more)",
-    ):
+    with pytest.raises(CrankcheckError, match=rf"^delta {delta:g}: .*(0\.02|0\.2|1e-06 or more)"):
         wanted(shaft(PULL), delta)  # type: ignore[arg-type]  # literals
 
 

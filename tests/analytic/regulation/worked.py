@@ -45,10 +45,7 @@ def shaft(
     law = Released(0.0, speed, 1.0) if free else ConstantSpeed(0.0, speed)
     torques = {n: Load(n, "crank", None, own, over) for n, (own, over) in loads.items()}
     return replace(
-        scene,
-        links={**scene.links, "crank": crank},
-        driver=Driver("crank", law),
-        loads=torques,
+        scene, links={**scene.links, "crank": crank}, driver=Driver("crank", law), loads=torques
     )
 
 
