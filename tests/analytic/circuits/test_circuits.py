@@ -1,19 +1,25 @@
-"""Circuits and branches: four-bars by Grashof, six-bars by a count on a grid of configurations."""
+"""Circuits, and what links do on them: four-bars by closed forms, six-bars by a count on a grid."""
 
 from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from analytic.circuits.circuits import Position, circuits_of
+from analytic.circuits.dead_points import dead_points
+from analytic.circuits.own_arc import own_arc
+from analytic.circuits.rotatability import Rotation, rotations
+from analytic.circuits.transmission import transmissions
+from analytic.dyads.driven import driver_scale
 from analytic.kinematics import reach, solve_driven
 from analytic.mechanism.fourbar import FourBar
 from models.array import Array
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, ReachError
 from models.files import load_scene
 from models.scene import Scene
 from tests.analytic.test_reach import fourbar
@@ -114,3 +120,85 @@ def test_circuits_that_meet_in_change_points_are_one() -> None:
     found = circuits_of(fourbar(0.1, 0.3, 0.1, 0.3))
     assert found.change_points
     assert len(found.circuits) == 1
+
+
+def by_pair(found: Iterable[Rotation]) -> dict[tuple[str, str], Rotation]:
+    return {(one.link, one.against): one for one in found}
+
+
+def turning(name: str) -> dict[tuple[str, str], Rotation]:
+    scene = load_scene(name)
+    return by_pair(rotations(scene, own_arc(scene)))
+
+
+def test_a_piston_stops_where_crank_and_rod_are_in_line_and_starts_nowhere_else() -> None:
+    scene = load_scene("slider-crank-by-piston")
+    arc = own_arc(scene)
+    ends = [end.angle_rad * driver_scale(scene) for end in (arc.low, arc.high) if end is not None]
+    assert ends == pytest.approx([0.2, 0.4], rel=1e-12)
+    assert turning(scene.name)["rod", "ground"].low_rad == pytest.approx(-math.asin(1.0 / 3.0))
+    elsewhere = replace(scene.driver, law=replace(scene.driver.law, centre_rad=0.0))
+    with pytest.raises(ReachError, match=r"can stand at -0\.4 to -0\.2 m and"):
+        own_arc(replace(scene, driver=elsewhere))
+
+
+def test_a_four_bar_does_the_same_whichever_joint_drives() -> None:
+    other = load_scene("fourbar-lecture-1")
+    by_coupler = turning("fourbar-by-coupler")
+    for one in rotations(other, circuits_of(other).own[1]):
+        told = by_coupler[one.link, one.against]
+        assert abs(told.turns) == abs(one.turns)
+        assert one.turns or told.swing_rad == pytest.approx(one.swing_rad, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("other", "links"),
+    [("platform-by-leg", ("leg2", "leg3", "plate")), ("slider-by-rocker", ("rocker", "plate"))],
+)
+def test_links_of_a_triad_swing_as_far_as_where_one_of_them_drives(
+    other: str, links: tuple[str, ...]
+) -> None:
+    told, dyads = turning(f"triad-{other.split('-')[0]}"), turning(f"triad-{other}")
+    for link in links:
+        swing = dyads[link, "ground"].swing_rad
+        assert told[link, "ground"].swing_rad == pytest.approx(swing, rel=1e-7), link
+
+
+def test_a_crank_rocker_swings_and_transmits_as_its_closed_form_says() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    bar, circuits = FourBar.of(scene), circuits_of(scene)
+    turning = by_pair(rotations(scene, circuits.own[1]))
+    assert turning["crank", "ground"].turns == 1
+    assert turning["coupler", "crank"].turns == -1
+    assert turning["rocker", "ground"].swing_rad == pytest.approx(bar.rocker_swing_rad, rel=1e-12)
+    (dyad,), merit = transmissions(circuits)
+    assert (dyad.smallest_rad.value, dyad.largest_rad.value) == pytest.approx(bar.transmission_rad)
+    assert merit.value == pytest.approx(min(math.sin(mu) for mu in bar.transmission_rad))
+    dead = dead_points(circuits, list(turning.values()))
+    assert [point.where for point in dead] == ["crank and coupler in line"] * 2
+    assert {point.input for point in dead} == {"rocker"}
+
+
+def test_a_driver_that_swings_is_dead_where_its_dyad_is_in_line() -> None:
+    scene = load_scene("fourbar-double-rocker")
+    circuits = circuits_of(scene)
+    turning = rotations(scene, circuits.own[1])
+    assert all(one.turns == 0 for one in turning)
+    low, high = FourBar.of(scene).driver_range_rad
+    found = [p for p in dead_points(circuits, turning) if p.input == "driver"]
+    assert [p.driver_rad for p in found] == pytest.approx([low, high], abs=1e-12)
+    assert {p.where for p in found} == {"coupler and rocker in line"}
+
+
+def test_pressure_angle_of_an_offset_slider_crank_is_its_closed_form() -> None:
+    scene = load_scene("slider-crank-central")
+    crank, rod = (math.dist(*scene.links[name].points.values()) for name in ("crank", "rod"))
+    (dyad,), _ = transmissions(circuits_of(scene))
+    assert dyad.pressure_rad == pytest.approx(math.asin(crank / rod))
+
+
+@pytest.mark.parametrize(("name", "turns"), [("whitworth", 1), ("slotted-lever", 0)])
+def test_the_guide_turns_in_whitworths_quick_return_alone(name: str, turns: int) -> None:
+    scene = load_scene(name)
+    turning = by_pair(rotations(scene, circuits_of(scene).own[1]))
+    assert turning["lever", "ground"].turns == turns

@@ -1,0 +1,157 @@
+"""Chains, counted as published and against graphs drawn without any theory; their inversions."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from analytic.chains.chain import Chain, assortments, has_rigid_part
+from analytic.chains.inversions import Mechanism, assur_groups, inversions
+from analytic.chains.layout import layout
+from analytic.chains.number_synthesis import chain_names, chains
+from analytic.chains.type_synthesis import every_joint_moves, type_in_letters, types
+from models.errors import CrankcheckError
+from tests.worlds.tiers import few
+
+PUBLISHED = {
+    (4, 1): 1, (6, 1): 2, (8, 1): 16, (10, 1): 230,
+    # of two freedoms those that no link parts
+    (5, 2): 1, (7, 2): 3, (9, 2): 35,
+    # trusses of G. G. Baranov, from each of which Assur groups come
+    (3, 0): 1, (5, 0): 1, (7, 0): 3, (9, 0): 28,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("sizes", few(PUBLISHED, {*PUBLISHED} - {(10, 1)}, "long to draw"), ids=str)
+def test_as_many_chains_are_found_as_are_published(sizes: tuple[int, int]) -> None:
+    """By links and mobility."""
+    every = chains(*sizes)
+    assert len(every) == PUBLISHED[sizes]
+    assert {chain.mobility for chain in every} == {sizes[1]}
+
+
+def test_chains_of_six_links_are_those_of_all_graphs() -> None:
+    """Each graph of seven joints is looked at; isomorphic ones are told by trying every order."""
+    pairs = list(itertools.combinations(range(6), 2))
+    orders = [np.array(order) for order in itertools.permutations(range(6))]
+    seen: set[bytes] = set()
+    many = 0
+    for joints in itertools.combinations(pairs, 7):
+        chain = Chain.of(6, joints)
+        table = _table(chain)
+        if min(chain.degrees) < 2 or table.tobytes() in seen or has_rigid_part(chain):
+            continue
+        if _is_one(chain):  # and in every order of its links
+            seen |= {table[np.ix_(order, order)].tobytes() for order in orders}
+            many += 1
+    assert many == len(chains(6)) == 2
+
+
+def _table(chain: Chain) -> np.ndarray:
+    table = np.zeros((chain.links, chain.links), dtype=np.uint8)
+    for a, b in chain.joints:
+        table[a, b] = table[b, a] = 1
+    return table
+
+
+def _is_one(chain: Chain) -> bool:
+    ways = np.linalg.matrix_power(_table(chain).astype(int) + np.eye(6, dtype=int), 6)
+    return bool((ways > 0).all())
+
+
+def test_chains_in_any_order_of_their_links_are_the_same() -> None:
+    draw = np.random.default_rng(3)
+    for chain in chains(8):
+        order = draw.permutation(8)
+        other = Chain.of(8, [(int(order[a]), int(order[b])) for a, b in chain.joints])
+        assert other.relabelled() == chain
+
+
+def test_a_rigid_part_is_seen() -> None:
+    # a triangle, on a loop of four
+    joints = [(0, 1), (1, 2), (0, 2), (2, 3), (3, 4), (4, 5), (5, 0)]
+    assert has_rigid_part(Chain.of(6, joints))
+
+
+def test_assortments_of_eight_links() -> None:
+    assert assortments(8, 1) == [(4, 4), (5, 2, 1), (6, 0, 2)]
+    many = [sum(chain.assortment == one for chain in chains(8)) for one in assortments(8, 1)]
+    assert many == [9, 5, 2]
+
+
+@pytest.mark.parametrize(
+    ("links", "mobility", "message"),
+    [(7, 1, "4, 6, 8, 10 links"), (12, 1, "3 to 10"), (6, -1, "0 to 7")],
+)
+def test_what_has_no_chain_is_refused(links: int, mobility: int, message: str) -> None:
+    with pytest.raises(CrankcheckError, match=message):
+        chains(links, mobility)
+
+
+def mechanisms(links: int) -> list[Mechanism]:
+    every = chains(links)
+    pairs = zip(every, chain_names(every), strict=True)
+    return [one for chain, name in pairs for one in inversions(chain, name)]
+
+
+@pytest.mark.parametrize(("links", "many"), [(4, 1), (6, 5), (8, 71)])
+def test_as_many_mechanisms_are_found_as_are_published(links: int, many: int) -> None:
+    assert len(mechanisms(links)) == many
+
+
+def test_six_bars_have_the_classes_of_the_textbooks() -> None:
+    six = {one.name: one for one in mechanisms(6)}
+    assert {name: sorted(one.classes().values()) for name, one in six.items()} == {
+        "Watt I": [2, 2],
+        "Watt II": [2, 2],
+        "Stephenson I": [2],
+        "Stephenson II": [3, 4],
+        "Stephenson III": [2, 3],
+    }
+    third = six["Stephenson III"]
+    assert third.chain.degrees[third.ground] == 3
+    second = six["Stephenson II"]
+    groups = [assur_groups(second.chain, second.ground, driver) for driver in second.drivers()]
+    assert {(one.class_number, one.order) for each in groups for one in each} == {(3, 3), (4, 2)}
+
+
+def test_groups_of_all_eight_bars_have_no_freedom() -> None:
+    for one in mechanisms(8):
+        for driver in one.drivers():
+            groups = assur_groups(one.chain, one.ground, driver)
+            assert sum(len(group.links) for group in groups) == 6
+            for group in groups:
+                assert 3 * len(group.links) == 2 * (len(group.inner) + group.order)
+
+
+def test_four_bars_with_sliders() -> None:
+    found = {type_in_letters(one): len(inversions(one, "")) for one in types(chains(4)[0], 4)}
+    assert found == {"RRRR": 1, "RRRP": 2, "RRPP": 3, "RPRP": 1}
+
+
+def test_a_pin_among_three_sliders_does_not_turn_and_those_of_pins_alone_do() -> None:
+    assert all(every_joint_moves(chain) for chain in chains(8))
+    ring = [(0, 1), (1, 2), (2, 3), (0, 3)]
+    assert every_joint_moves(Chain.of(4, ring, ring[:2]))
+    assert not every_joint_moves(Chain.of(4, ring, ring[:3]))
+
+
+DRAWN = [*chains(4), *chains(6), *chains(8)]
+FEW = [*DRAWN[:4], DRAWN[5]]
+
+
+@pytest.mark.parametrize("chain", few(DRAWN, FEW, "fourteen more, drawn as the few are"))
+def test_no_bar_crosses_another(chain: Chain) -> None:
+    drawn = layout(chain)
+    assert drawn.crossings == 0
+    apart = [np.hypot(*(a - b)) for a, b in itertools.combinations(drawn.at, 2)]
+    assert min(apart) > 0.25
+
+
+def test_it_is_the_same_every_time() -> None:
+    chain = chains(6)[0]
+    first = layout(chain).at
+    layout.cache_clear()
+    assert np.array_equal(layout(chain).at, first)
