@@ -5,11 +5,7 @@ from __future__ import annotations
 import pytest
 
 from analytic.mechanism.fourbar import FourBar
-from analytic.mechanism.grashof import (
-    four_bar_type,
-    inverted_slider_crank_type,
-    slider_crank_type,
-)
+from analytic.mechanism.grashof import four_bar_type, inverted_slider_crank_type, slider_crank_type
 from analytic.mechanism.grashof_of_scene import grashof_of
 from models.files import load_scene
 
@@ -44,6 +40,9 @@ def test_an_offset_counts() -> None:
     assert not inverted_slider_crank_type(0.1, 0.3, 0.25).driver_turns
     with pytest.raises(ValueError, match="reach the line together"):
         slider_crank_type(0.1, 0.1, 0.3)
+    for crank, ground, offset in ((0.0, 0.3, 0.1), (0.3, 0.0, 0.1), (0.1, 0.1, 0.3)):
+        with pytest.raises(ValueError, match="reach the guide together"):
+            inverted_slider_crank_type(crank, ground, offset)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 
 from analytic.structure.by_driver import StructureByDriver, by_drivers
 from analytic.structure.mobility import analyse
-from models.files import load_scene
+from models.files import load_scene, parse_scene
 from models.scene import Driver
 
 
@@ -47,3 +47,31 @@ def test_groups_by_a_slider_are_those_of_a_scene_that_it_drives() -> None:
         scene, driver=Driver(f"block {name}", scene.driver.law, slider=name), branch={}
     )
     assert [one.links for one in found.groups] == [one.bodies for one in analyse(driven).groups]
+
+
+RING = """
+name = "ring"
+source = "a test"
+[ground]
+points = { A = [0.0, 0.0], D = [0.3, 0.0] }
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1 }
+bar = { bar = ["B", "C"], length_m = 0.25 }
+plate = { points = { C = [0.0, 0.0], E = [0.1, 0.1], K = [0.2, 0.0] } }
+swing = { bar = ["D", "K"], length_m = 0.2 }
+[sliders.E]
+on = "crank"
+direction_deg = 20.0
+[driver]
+link = "crank"
+speed_rad_s = 1.0
+start_deg = 60.0
+"""
+
+
+def test_a_slider_closes_a_ring_of_four_bodies_of_class_four() -> None:
+    scene = parse_scene(RING, "test")
+    found = {one.joint.words: one for one in by_drivers(scene, analyse(scene))}
+    (group,) = found["pin D of ground and swing"].groups
+    assert (group.class_number, group.order) == (4, 2)
+    assert set(group.links) == {"crank", "bar", "plate", "block E"}

@@ -118,6 +118,11 @@ IMPOSSIBLE = [
         "pole is at infinity, along 153.4 deg",
     ),
     (
+        "rocker",
+        f"positions = [{POSE.format(0.1, 0.0, 10.0)}, {POSE.format(0.1, 0.0, 10.0)}]",
+        "positions 1 and 2 coincide",
+    ),
+    (
         "coupler",
         f"positions = [{POSE.format(0.0, 0.0, 1.0)}, {POSE.format(0.0, 0.0, 1.0)}]\n"
         "moving_m = [[0.0, 0.1], [0.1, 0.0]]",
