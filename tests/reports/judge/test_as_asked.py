@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -13,68 +12,69 @@ from analytic.kinematics import solve
 from models.files import load_scene
 from models.friction import ConstantFriction
 from reports.compare.asked import not_asked_for
-from reports.judge.cell import Cell, CellRunner, Checked, examined
+from reports.judge.cell import Cell, CellRunner, examined
 from reports.selftest.fault import integrates
 from sim.engine import Run
 from sim.registry import ENGINES, engine
 from sim.run import run, setup
 from tests.worlds.tiers import few
+from tests.worlds.turns import of_turns
 
-SCENES = few(
-    ("fourbar-lecture-1", "slider-crank-offset", "shaper"),
-    {"fourbar-lecture-1"},
-    "blocks and several loops, which make other models of the same settings",
+EVERY = pytest.mark.parametrize("name", ENGINES)
+SCENES = pytest.mark.parametrize(
+    "scene",
+    few(
+        ("fourbar-lecture-1", "slider-crank-offset", "shaper"),
+        {"fourbar-lecture-1"},
+        "blocks and several loops, which make other models of the same settings",
+    ),
 )
-STEPS = 180
 
 
-def cell(scene: str, name: str, profile: str = "tuned", **more: Any) -> Cell:
-    made = load_scene(scene)
-    dt_s = made.driver.law.period_s / STEPS
-    return Cell(made, name, profile, dt_s, STEPS, **more)
+def cell(scene: str, name: str, **more: Any) -> Cell:
+    return of_turns(scene, name, 180, **{"converge": True, **more})
 
 
-def said(checked: Checked) -> str:
+def said(asked: Cell, *runner: CellRunner) -> str:
     """What the rule says where it fails; empty where it passes."""
+    checked = examined(asked, *runner)[0]
     return next((f.text for f in checked.failures if f.rule == "CC117"), "")
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@EVERY
 @pytest.mark.parametrize("drive", ["prescribed", "servo"])
 @pytest.mark.parametrize("profile", ["tuned", "as-shipped"])
-@pytest.mark.parametrize("scene", SCENES)
+@SCENES
 def test_the_run_that_was_asked_for_is_taken(
-    scene: str, name: str, profile: str, drive: Any
+    scene: str, name: str, profile: str, drive: str
 ) -> None:
-    assert said(examined(cell(scene, name, profile, drive=drive))[0]) == ""
+    assert said(cell(scene, name, profile=profile, drive=drive)) == ""
 
 
-@pytest.mark.parametrize("name", ENGINES)
-@pytest.mark.parametrize("scene", SCENES)
+@EVERY
+@SCENES
 def test_a_run_without_the_settings_of_its_cell_is_refused(scene: str, name: str) -> None:
     def without(*args: Any, settings: Any, **options: Any) -> Run:
         return run(*args, settings=None, **options)
 
     asked = cell(scene, name, settings={"iterations": 77})
-    assert said(examined(asked)[0]) == ""
-    assert "setting iterations: asked for 77, the run has" in said(examined(asked, without)[0])
+    assert said(asked) == ""
+    assert "setting iterations: asked for 77, the run has" in said(asked, without)
 
 
-@pytest.mark.parametrize("name", ENGINES)
-@pytest.mark.parametrize("scene", SCENES)
+@EVERY
+@SCENES
 def test_the_tuned_run_is_none_of_profile_as_shipped(scene: str, name: str) -> None:
     def tuned(one: Any, state: Any, engine: str, _: str, **options: Any) -> Run:
         return run(one, state, engine, "tuned", **options)
 
-    found = said(examined(cell(scene, name, "as-shipped"), tuned)[0])
+    found = said(cell(scene, name, profile="as-shipped"), tuned)
     assert "profile: asked for 'as-shipped', the run has 'tuned'" in found
 
 
 FIELDS: dict[str, Any] = {
-    "scene": "another",
-    "engine": "another",
+    **dict.fromkeys(("scene", "engine", "profile"), "another"),
     "version": "0.0",
-    "profile": "another",
     "drive": "servo",
     "dt_s": 2e-3,
     "steps": 61,
@@ -86,7 +86,7 @@ FIELDS: dict[str, Any] = {
 }
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@EVERY
 @pytest.mark.parametrize("field", FIELDS)
 def test_every_word_of_a_run_is_held_to_the_request(field: str, name: str) -> None:
     scene = load_scene("fourbar-lecture-1")
@@ -96,31 +96,27 @@ def test_every_word_of_a_run_is_held_to_the_request(field: str, name: str) -> No
     held = engine(name).holds(asked.asked, 1e-3, "prescribed")
     done = run(scene, state, name, **options)
     assert not_asked_for(done, asked, held, scene, state) == []
-    changed = replace(done, **{field: FIELDS[field]})
-    texts = not_asked_for(changed, asked, held, scene, state)
+    texts = not_asked_for(replace(done, **{field: FIELDS[field]}), asked, held, scene, state)
     assert texts
     word = "setting" if field in ("asked", "settings") else field
     assert all(text.startswith(word) for text in texts), texts
 
 
 @pytest.mark.parametrize("size", [2e-9, 1e-3])
-@pytest.mark.parametrize("kind", ["links", "points", "sliders"])
-def test_a_body_that_begins_elsewhere_is_named(kind: str, size: float) -> None:
-    asked = cell("slider-crank-offset", "pymunk", converge=False)
-    body, place = {
-        "links": ("rod", "theta"),
-        "points": ("C", "position"),
-        "sliders": ("C", "displacement"),
-    }[kind]
-
+@pytest.mark.parametrize(
+    ("kind", "body", "place"),
+    [("links", "rod", "theta"), ("points", "C", "position"), ("sliders", "C", "displacement")],
+)
+def test_a_body_that_begins_elsewhere_is_named(
+    kind: str, body: str, place: str, size: float
+) -> None:
     def moved(*args: Any, **options: Any) -> Run:
         done = run(*args, **options)
-        assert done.motion is not None
         own = getattr(done.motion, kind)
         off = replace(own[body], **{place: getattr(own[body], place) + size})
         return replace(done, motion=replace(done.motion, **{kind: {**own, body: off}}))
 
-    found = said(examined(asked, moved)[0])
+    found = said(cell("slider-crank-offset", "pymunk", converge=False), moved)
     assert f"start: {kind[:-1]} {body} begins" in found
 
 
@@ -129,37 +125,31 @@ def again(part: int) -> CellRunner:
     words."""
 
     def runner(*args: Any, dt_s: float, steps: int, every: int, **options: Any) -> Run:
-        full, total = dt_s * every, steps // every
-        if every > 1:
-            dt, count = full / part, total * part
-            done = run(*args, dt_s=dt, steps=count, every=part, **options)
-            held = engine(done.engine).holds(done.asked, dt_s, done.drive)
-            settings = {**done.settings, **held}
-            return replace(done, dt_s=dt_s, steps=steps, every=every, settings=settings)
-        return run(*args, dt_s=dt_s, steps=steps, every=every, **options)
+        if every == 1:
+            return run(*args, dt_s=dt_s, steps=steps, every=every, **options)
+        cut = {"dt_s": dt_s * every / part, "steps": steps // every * part, "every": part}
+        done = run(*args, **cut, **options)
+        settings = {**done.settings, **engine(done.engine).holds(done.asked, dt_s, done.drive)}
+        return replace(done, dt_s=dt_s, steps=steps, every=every, settings=settings)
 
     return runner
 
 
 @pytest.mark.parametrize("name", [name for name in ENGINES if integrates(name)])
-@pytest.mark.parametrize("scene", SCENES)
+@SCENES
 @pytest.mark.parametrize("part", [1, 2])
 def test_a_finer_run_is_a_run_of_its_own(scene: str, name: str, part: int) -> None:
-    found = said(examined(cell(scene, name), again(part))[0])
+    found = said(cell(scene, name), again(part))
     assert "finer run: asked for dt" in found
     assert found.count("the places are those of dt") == (2 if part == 1 else 1)
 
 
-def unlike(field: str, value: Any) -> Callable[..., Run]:
-    def runner(*args: Any, **options: Any) -> Run:
-        done = run(*args, **options)
-        return replace(done, **{field: value}) if options["every"] > 1 else done
-
-    return runner
-
-
 def test_the_words_of_a_finer_run_are_held_to_the_request_too() -> None:
-    found = said(examined(cell("shaper", "mujoco"), unlike("version", "3.0"))[0])
+    def other(*args: Any, **options: Any) -> Run:
+        done = run(*args, **options)
+        return replace(done, version="3.0") if options["every"] > 1 else done
+
+    found = said(cell("shaper", "mujoco"), other)
     assert "finer run, dt / 2: version: asked for '" in found
     assert "finer run, dt / 4: version: asked for '" in found
 

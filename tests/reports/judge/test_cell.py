@@ -1,55 +1,59 @@
-"""A cell from run to verdict, alone and in a pool."""
+"""A cell from run to verdict, alone and in a pool; its rows in frames; how often it solves."""
 
 from __future__ import annotations
 
 import math
 import os
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from types import ModuleType
 from typing import Any
 
+import pandas as pd
 import pytest
 
+from analytic import prepared
 from analytic.kinematics import solve
+from benchmarks.verify_overhead import LINKS, chain
 from models.array import Array
 from models.errors import EngineError, ReachError
-from models.files import load_scene
+from models.files import load_scene, parse_scene, shipped
 from models.laws import Accelerating
 from models.motion import Motion
 from models.scene import Scene
 from reports.judge import cell as cells
 from reports.judge.cell import Cell, check, unfinished
+from reports.judge.frames import cell_frame, error_frame
+from reports.judge.rows import ELASTIC_COLUMNS, ERROR_COLUMNS, FORCE_COLUMNS, FREE_COLUMNS
+from reports.judge.tolerance import DEFAULTS, FORCES
+from reports.plan.singular import refuse_singular
 from reports.verify.all_cells import check_all
 from reports.workers.scheduler import FEW
 from sim.engine import Run
 from sim.run import run
 from tests.worlds.tiers import slow
+from tests.worlds.turns import of_turns
 
-STEPS = 360
-
-
-def cell(scene: Scene, engine: str = "mujoco", profile: str = "tuned") -> Cell:
-    return Cell(scene, engine, profile, scene.driver.law.period_s / STEPS, STEPS)
+BOTH = pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
 
 
-@pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
+@BOTH
 def test_a_tuned_fourbar_shrinks_with_second_order(fourbar: Scene, engine: str) -> None:
-    seen = check(cell(fourbar, engine)).convergence
-    assert seen.trend == "shrinks"
+    seen = check(of_turns(fourbar, engine, converge=True)).convergence
+    assert (seen.trend, seen.unit, len(seen.error)) == ("shrinks", "rad", 3)
     assert seen.order == pytest.approx(2.0, abs=0.3)
-    assert seen.unit == "rad"
-    assert len(seen.error) == 3
 
 
-@pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
+@BOTH
 @pytest.mark.parametrize(("speed", "acceleration"), [(10.0, 5.0), (0.0, -20.0), (10.0, -20.0)])
 def test_a_crank_of_steady_acceleration_is_within_tolerance(
     fourbar: Scene, engine: str, speed: float, acceleration: float
 ) -> None:
     """From rest, and where it turns round on its way, too."""
     law = Accelerating(math.pi / 2, speed, acceleration)
-    found = check(cell(replace(fourbar, driver=replace(fourbar.driver, law=law)), engine))
+    scene = replace(fourbar, driver=replace(fourbar.driver, law=law))
+    found = check(of_turns(scene, engine, converge=True))
     assert found.verdict == "within", found.failures
     assert found.convergence.trend == "shrinks"
 
@@ -78,47 +82,32 @@ def test_what_rounding_explains_of_the_crank_it_explains_of_all_links(
     fake = fake_engine.FakeEngine(late)
     monkeypatch.setattr(cells, "engine", lambda _: fake)
     monkeypatch.setattr(cells, "run", lambda one, state, _, *a, **b: run(one, state, fake, *a, **b))
-    seen = check(cell(fourbar)).convergence
+    seen = check(of_turns(fourbar, converge=True)).convergence
     assert min(seen.error) > 1e-11
     assert seen.trend == trend
 
 
 @pytest.mark.parametrize("dt_s", [1e-3, 1e-4])
 def test_mujoco_as_shipped_has_a_floor_and_says_so(fourbar: Scene, dt_s: float) -> None:
-    one = Cell(fourbar, "mujoco", "as-shipped", dt_s, round(0.63 / dt_s))
-    found = check(one)
-    assert found.verdict == "out"
-    rocker = found.errors.worst("angle")
-    assert rocker.maximum > 5e-4
-    assert found.convergence.trend == "does not shrink"
+    found = check(Cell(fourbar, "mujoco", "as-shipped", dt_s, round(0.63 / dt_s)))
+    assert (found.verdict, found.convergence.trend) == ("out", "does not shrink")
+    assert found.errors.worst("angle").maximum > 5e-4
     assert 5e-4 < found.convergence.floor < 1e-3
 
 
 def test_the_tuned_errors_promised_at_a_millisecond_over_ten_turns(fourbar: Scene) -> None:
-    steps = 6284
-    mujoco, pymunk = (
-        check(Cell(fourbar, name, "tuned", 1e-3, steps, converge=False)).errors
-        for name in ("mujoco", "pymunk")
-    )
-    for errors, angle in ((mujoco, 1e-6), (pymunk, 1e-4)):
-        rocker, drive = errors.worst("angle"), errors.worst("drive")
-        assert rocker.maximum < angle
-        assert drive.maximum < 1e-9
-    gap = mujoco.worst("gap")
-    assert gap.maximum < 1e-6
+    for engine, most in (
+        ("mujoco", {"angle": 1e-6, "drive": 1e-9, "gap": 1e-6}),
+        ("pymunk", {"angle": 1e-4, "drive": 1e-9}),
+    ):
+        errors = check(Cell(fourbar, engine, "tuned", 1e-3, 6284, converge=False)).errors
+        assert all(errors.worst(name).maximum < limit for name, limit in most.items()), engine
 
 
 def test_a_tolerance_that_is_too_tight_puts_the_cell_out(fourbar: Scene) -> None:
-    found = check(replace(cell(fourbar), tolerance={"angle": 1e-12}, converge=False))
-    assert found.verdict == "out"
+    found = check(of_turns(fourbar, tolerance={"angle": 1e-12}))
+    assert (found.verdict, found.convergence) == ("out", None)
     assert [f.rule for f in found.failures] == ["CC103"]
-    assert found.convergence is None
-
-
-def test_a_cell_that_has_no_run_is_a_row_with_a_reason(fourbar: Scene) -> None:
-    found = unfinished(cell(fourbar), "crashed", "the engine ended its process")
-    assert found.verdict == "out"
-    assert "the engine ended its process" in found.failures[0].text
 
 
 def test_what_can_not_be_compared_is_a_row_with_a_reason(
@@ -128,28 +117,18 @@ def test_what_can_not_be_compared_is_a_row_with_a_reason(
         raise ReachError("the driver is out of reach")
 
     monkeypatch.setattr(cells, "compare", no_reference)
-    found = check(cell(fourbar))
+    found = check(of_turns(fourbar))
     assert (found.verdict, found.status) == ("out", "crashed")
     assert "the driver is out of reach" in found.failures[0].text
-
-
-def finer_run(change: Callable[[Run], Run]) -> Callable[..., Run]:
-    """As `run`, except that what comes of half the step is changed."""
-
-    def changed(*args: Any, **options: Any) -> Run:
-        done = run(*args, **options)
-        return change(done) if options["every"] == 2 else done
-
-    return changed
 
 
 def fails(_: Run) -> Run:
     raise EngineError("no finer step")
 
 
-def opened(done: Run, gap_m: float) -> Run:
+def opened(done: Run) -> Run:
     """The run with a gap at C that the limit at the full step is too wide for."""
-    return replace(done, gaps={**done.gaps, "C": done.gaps["C"] * 0.0 + gap_m})
+    return replace(done, gaps={**done.gaps, "C": done.gaps["C"] * 0.0 + 2.5e-5})
 
 
 def cut(done: Run) -> Run:
@@ -163,7 +142,7 @@ def cut(done: Run) -> Run:
         (lambda done: replace(done, status="diverged", reason="apart"), "diverged at t = "),
         (lambda done: replace(done, motion=None), "nothing was logged"),
         (lambda done: replace(done, gaps={}), "gap of A nan"),
-        (lambda done: opened(done, 2.5e-5), "gap of C 0.0001, limit 7.6e-05"),
+        (opened, "gap of C 0.0001, limit 7.6e-05"),
         (cut, "50 samples, not the 361"),
     ],
     ids=["raises", "diverged", "logged nothing", "without gaps", "open pin", "short"],
@@ -171,29 +150,37 @@ def cut(done: Run) -> Run:
 def test_a_finer_run_that_does_not_end_well_fails_the_cell(
     fourbar: Scene, monkeypatch: pytest.MonkeyPatch, change: Callable[[Run], Run], words: str
 ) -> None:
-    monkeypatch.setattr(cells, "run", finer_run(change))
-    found = check(cell(fourbar))
+    def changed(*args: Any, **options: Any) -> Run:
+        done = run(*args, **options)
+        return change(done) if options["every"] == 2 else done
+
+    monkeypatch.setattr(cells, "run", changed)
+    found = check(of_turns(fourbar, converge=True))
     assert [f.rule for f in found.failures] == ["CC110"]
     assert words in found.failures[0].text
-    shown = check(replace(cell(fourbar), gated=False))
+    shown = check(replace(found.cell, gated=False))
     assert "CC110" in {f.rule for f in shown.advice}
 
 
 def test_errors_that_are_over_their_limit_at_once_are_not_told_again(fourbar: Scene) -> None:
-    seen = check(cell(fourbar, "pymunk", "as-shipped")).convergence
+    one = of_turns(fourbar, "pymunk", converge=True, profile="as-shipped")
+    seen = check(one).convergence
     assert (seen.trend, seen.over, seen.faults) == ("shrinks", (), ())
+
+
+def deadly_check(cell: Cell) -> object:
+    """As `check`, except that one profile ends its process as a fault in native code does."""
+    if cell.profile == "deadly":
+        os._exit(1)
+    return check(cell)
 
 
 def test_a_cell_that_kills_its_process_in_a_pool_costs_that_cell_alone(
     fourbar: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The others have the same errors as in one process, in the same order."""
-    scenes = [fourbar, load_scene("slotted-lever"), load_scene("tangent")]
-    cells = [
-        replace(cell(scene, engine), converge=False)
-        for scene in scenes
-        for engine in ("mujoco", "pymunk")
-    ]
+    scenes = [fourbar, "slotted-lever", "tangent"]
+    cells = [of_turns(scene, engine) for scene in scenes for engine in ("mujoco", "pymunk")]
     assert len(cells) >= FEW + 2
     cells[2] = replace(cells[2], profile="deadly")
     monkeypatch.setattr("reports.verify.all_cells.advised", deadly_check)
@@ -209,14 +196,134 @@ def test_a_cell_that_kills_its_process_in_a_pool_costs_that_cell_alone(
 def test_a_cell_of_an_engine_that_is_not_ours_is_apart_by_itself(
     fourbar: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    one = replace(cell(fourbar, "penalty", "deadly"), converge=False)
     monkeypatch.setattr("reports.verify.all_cells.advised", deadly_check)
-    (found,) = check_all([one], 2)
+    (found,) = check_all([of_turns(fourbar, "penalty", profile="deadly")], 2)
     assert found.reason == "the engine ended its process (exit code 1)"
 
 
-def deadly_check(cell: Cell) -> object:
-    """As `check`, except that one profile ends its process as a fault in native code does."""
-    if cell.profile == "deadly":
-        os._exit(1)
-    return check(cell)
+LIMITED = {"CC102", "CC103", "CC104", "CC105", "CC106", "CC107", "CC108", "CC113", "CC114"}
+
+
+@BOTH
+@pytest.mark.parametrize("name", ["fourbar-lecture-1", "slider-crank-excel-210", "whitworth"])
+def test_an_error_takes_the_same_share_of_its_limit_at_every_step(name: str, engine: str) -> None:
+    shares = []
+    for steps in (180, 1440):
+        found = {f.rule: f for f in check(of_turns(name, engine, steps)).findings}
+        assert all(found[rule].level == "pass" for rule in found.keys() & LIMITED), found
+        shares.append(
+            {
+                n: f.number / f.limit
+                for n, f in found.items()
+                if n in LIMITED and f.number and f.limit
+            }
+        )
+        assert max(shares[-1].values()) < 0.6
+    if engine == "pymunk":  # second order throughout, so the share shows that the budget is too
+        for rule in ("CC103", "CC105", "CC113"):
+            assert shares[1][rule] == pytest.approx(shares[0][rule], rel=0.4)
+
+
+@BOTH
+@pytest.mark.parametrize("name", list(shipped()))
+def test_every_shipped_scene_is_within_tolerance_at_ninety_steps_a_turn(
+    name: str, engine: str
+) -> None:
+    found = check(of_turns(name, engine, 90, turns=2))
+    assert found.verdict == "within", found.failures
+
+
+def test_half_a_permille_of_a_links_length_is_more_than_the_budget_of_its_angles() -> None:
+    assert check(of_turns("fourbar-lecture-1", "pymunk", 720)).limits["angle"].number < 5e-4 / 2
+
+
+@pytest.fixture(scope="module")
+def frame(slider_crank: Scene) -> pd.DataFrame:
+    cell = of_turns(slider_crank, "pymunk", converge=True)
+    return cell_frame([check(cell), unfinished(cell, "crashed", "gone")])
+
+
+def test_a_failure_is_a_row_with_its_reason_and_the_same_columns(frame: pd.DataFrame) -> None:
+    assert frame["status"].tolist() == ["ok", "crashed"]
+    assert frame["reason"].tolist() == ["", "gone"]
+    assert frame["verdict"].tolist() == ["within", "out"]
+    assert pd.isna(frame["angle_error_rad"][1])
+    assert frame["failed_rules"].tolist() == ["", "CC101"]
+
+
+def test_every_error_column_carries_its_unit_and_is_empty_where_nothing_is_reported(
+    frame: pd.DataFrame,
+) -> None:
+    units = ("_rad", "_m", "_rad_s", "_m_s", "_rad_s2", "_m_s2", "_n", "_n_m", "_j", "_kg_m2_s")
+    names = {name for name, *_ in ERROR_COLUMNS}
+    assert all(name.endswith(units) for name in names)
+    assert names - FORCE_COLUMNS - FREE_COLUMNS - ELASTIC_COLUMNS == names & set(frame.columns)
+    pure = {f"{name.replace('-', '_')}_pure" for name in DEFAULTS if name not in FORCES}
+    assert pure <= set(frame.columns)
+    assert pd.isna(frame["angular_acceleration_error_rad_s2"][0])
+    for name in ("displacement_error_m", "slider_speed_error_m_s", "pin_gap_m", "drive_error_rad"):
+        assert frame[name][0] >= 0.0
+
+
+def test_the_long_frame_has_one_row_per_quantity_body_source_and_kind(slider_crank: Scene) -> None:
+    long = error_frame([check(of_turns(slider_crank, converge=True))])
+    key = ["scene", "engine", "profile", "dt_s", "quantity", "body_kind", "body", "source", "kind"]
+    assert not long.duplicated(key).any()
+    gated = long[long["kind"] == "total"]
+    assert (gated["maximum_pure"] <= gated["limit_pure"]).all()
+    assert long.loc[long["kind"] != "total", "limit_pure"].isna().all()
+
+
+FULL = 721
+"""Samples of a whole log; the state at the start, the same for all cells, is a solution of one."""
+
+
+@pytest.fixture
+def worked(monkeypatch: pytest.MonkeyPatch) -> Counter[object]:
+    """Preparations, as "prepared", and solutions by their number of samples."""
+    counts: Counter[object] = Counter()
+    analyse, motion = prepared.analyse, prepared.Prepared.motion
+
+    def analysed(scene: Scene) -> object:
+        counts["prepared"] += 1
+        return analyse(scene)
+
+    def moved(ready: object, names: object, time_s: Array, *args: object, **bound: bool) -> Motion:
+        counts[len(time_s)] += 1
+        return motion(ready, names, time_s, *args, **bound)
+
+    monkeypatch.setattr(prepared, "analyse", analysed)
+    monkeypatch.setattr(prepared.Prepared, "motion", moved)
+    return counts
+
+
+@pytest.mark.parametrize(
+    ("reads", "prepared", "solved"),
+    [
+        (["mujoco"], 1, 2),
+        (["pymunk"], 1, 3),
+        (["pymunk mujoco"], 1, 4),
+        (["pymunk", "pymunk"], 2, 6),
+    ],
+    ids=["one cell", "velocities of other instants", "a scene shared", "a scene read again"],
+)
+def test_a_scene_is_prepared_once_and_solved_once_for_each_set_of_instants(
+    worked: Counter[object], reads: list[str], prepared: int, solved: int
+) -> None:
+    """For the log, for the logged crank, and for velocities that belong to other instants; two more
+    would be one for each finer run."""
+    for engines in reads:
+        scene = load_scene("fourbar-lecture-1")
+        for engine in engines.split():
+            done = check(of_turns(scene, engine, FULL - 1, converge=True))
+            assert not done.convergence.faults
+    assert worked == {"prepared": prepared, 1: prepared, FULL: solved}
+
+
+def test_a_long_chain_is_looked_over_in_one_preparation(worked: Counter[object]) -> None:
+    """Its singular positions are looked for in all dyads at once: a look and five zooms."""
+    scene = parse_scene(chain(), "chain")
+    assert len(scene.links) == LINKS - 1
+    refuse_singular(scene, scene.driver.law.period_s)
+    assert worked.pop("prepared") == 1
+    assert worked.total() == 6
