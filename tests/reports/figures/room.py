@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
+
+from reports.figures.style import styled
 
 
 def boxes(figure: Figure) -> list[tuple[str, Bbox]]:
@@ -31,9 +33,12 @@ def _undrawn(axes: Axes) -> Iterator[Text]:
                 yield from (tick.label1, tick.label2)
 
 
-def has_room(figure: Figure | None) -> None:
+def has_room(draw: Callable[..., Figure | None], *arguments: object) -> None:
     """Every word on the sheet, and none on another."""
-    found, page = boxes(figure), figure.bbox
+    with styled():
+        figure = draw(*arguments)
+        assert figure is not None
+        found, page = boxes(figure), figure.bbox
     assert len(found) > 5
     for text, box in found:
         inside = box.x0 >= -1 and box.y0 >= -1 and box.x1 <= page.x1 + 1 and box.y1 <= page.y1 + 1

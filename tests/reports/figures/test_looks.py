@@ -1,4 +1,4 @@
-"""Nothing in a figure stands over something else, or over the edge."""
+"""Figures of a store: nothing over something else, and curves told apart without colour."""
 
 from __future__ import annotations
 
@@ -7,13 +7,19 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.transforms import Bbox
 
 from models.files import find_scene, load_scene, read_text
 from reports.figures.all_figures import FIGURES
+from reports.figures.error_parts import LOOKS
+from reports.figures.marks import COLOURS, marks
 from reports.figures.mechanism import draw
 from reports.figures.style import cut, styled, width_in
+from reports.results.lines import lines
+from reports.results.looks import label
 from reports.results.overview import Report
 from reports.store.manifest import Manifest
 from reports.store.reader import read_store
@@ -31,6 +37,7 @@ QUICK = {
     *((name, None) for name in DRIVEN),
 }
 LET_GO = [name for name, drawing in FIGURES.items() if "let go" in drawing.drives]
+LETTERED = ("scotch-yoke", "sixbar-stephenson", "shaper", "tangent")
 OTHER = "what differs between figures is that one is of a scene, of all, or of what was let go"
 
 
@@ -45,35 +52,23 @@ def figure_of(report: Report, name: str, scene: str | None) -> Figure | None:
 def test_words_keep_off_each_other_and_off_the_edge(
     report: Report, shown: tuple[str, str | None]
 ) -> None:
-    with styled():
-        figure = figure_of(report, *shown)
-        if shown in EMPTY:
-            assert figure is None
-        else:
-            has_room(figure)
+    if shown in EMPTY:
+        assert figure_of(report, *shown) is None
+    else:
+        has_room(figure_of, report, *shown)
 
 
 @pytest.mark.parametrize("name", few(LET_GO, {"let-go", "phase"}, OTHER))
 def test_words_of_what_was_let_go_keep_off_each_other(free_store: Path, name: str) -> None:
-    with styled():
-        has_room(figure_of(Report(read_store(free_store)), name, SCENE))
+    has_room(figure_of, Report(read_store(free_store)), name, SCENE)
 
 
-@pytest.mark.parametrize(
-    "scene",
-    few(
-        ["scotch-yoke", "sixbar-stephenson", "shaper", "tangent"],
-        {"shaper", "sixbar-stephenson"},
-        OTHER,
-    ),
-)
+@pytest.mark.parametrize("scene", few(LETTERED, {"shaper", "sixbar-stephenson"}, OTHER))
 def test_letters_and_names_of_a_drawing_find_room(scene: str) -> None:
     made = stored([cell(scene, "tuned", 90, 1e-3, 1.0)])
     made = replace(made, manifest=Manifest({scene: read_text(find_scene(scene))}))
     with styled():
-        figure = draw(Report(made), scene)
-        assert figure is not None
-        found = boxes(figure)
+        found = boxes(draw(Report(made), scene))
     names = {text for text, _ in found}
     for link in load_scene(scene).links.values():
         assert {link.name, *link.points} <= names
@@ -89,3 +84,47 @@ def test_a_name_that_is_too_long_loses_its_middle() -> None:
     assert short.endswith("iterations=20")
     assert "…" in short
     assert cut("short", 1.5) == "short"
+
+
+def brightness(colour: str) -> float:
+    red, green, blue = to_rgb(colour)
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue
+
+
+@pytest.mark.parametrize("number", [1, 4, 13, 30])
+def test_no_two_variants_share_marker_and_dashes(number: int) -> None:
+    named = itertools.product(("mujoco", "pymunk", "third"), range(number))
+    rows = [cell("a", f"v{i}", 90, 1e-3, 1.0, engine=engine) for engine, i in named]
+    found = marks(lines(stored(rows)))
+    assert len(found) == 3 * number
+    assert len({(mark.marker, mark.dashes) for mark in found.values()}) == 3 * number
+    for mark in found.values():
+        Line2D([], [], **mark.style)  # matplotlib knows the marker and takes the dashes
+
+
+def test_engines_differ_in_filling_and_in_dashes(report: Report) -> None:
+    found = marks(report.lines)
+    for of in (lambda mark: mark.filled, lambda mark: mark.dashes):
+        mujoco = {of(mark) for (engine, *_), mark in found.items() if engine == "mujoco"}
+        pymunk = {of(mark) for (engine, *_), mark in found.items() if engine == "pymunk"}
+        assert len(mujoco) == len(pymunk) == 1
+        assert mujoco != pymunk
+
+
+def test_variants_of_an_engine_are_a_scale_of_brightness_that_prints() -> None:
+    for hue in COLOURS:
+        bright = [brightness(colour) for colour in hue]
+        assert all(b - a > 0.08 for a, b in itertools.pairwise(bright))
+        assert bright[-1] < 0.72  # on white paper
+
+
+def test_the_parts_of_an_error_differ_in_dashes_or_are_much_brighter() -> None:
+    dashes = [look.get("dashes") for _, look in LOOKS.values()]
+    assert len(set(dashes) - {None}) == len(LOOKS) - 2
+    total, rest = LOOKS["total"][1], LOOKS["discretisation"][1]
+    assert brightness(total["color"]) - brightness(rest["color"]) > 0.5
+    assert total["linewidth"] > 2.0
+
+
+def test_a_drive_that_is_not_the_usual_one_is_named() -> None:
+    assert label(("mujoco", "tuned", "servo")) != label(("mujoco", "tuned", "prescribed"))
