@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, ClassVar, cast
+from typing import Any, ClassVar, NamedTuple, cast
 
 import numpy as np
 
@@ -36,12 +36,27 @@ from sim.settings import SettingError
 from tests.worlds.fake.engine import FakeEngine
 
 
+class Asked(NamedTuple):
+    """What an engine is asked to open."""
+
+    scene: Scene
+    state: State
+    settings: Settings
+    dt_s: float
+    drive: Drive
+
+
+Opens = Callable[[Asked], Asked]
+Fault = Callable[[Engine], Any]
+
+
 @dataclass
 class Meddled:
     """A session that is handed on but for what a fault says, each with the session first."""
 
     session: Session
-    facts_: Callable[[Facts], Facts] = lambda facts: facts
+    asked: Asked
+    facts_: Callable[[Asked, Facts], Facts] = lambda asked, facts: facts
     record_: Callable[[Meddled, Log, int], Log] = lambda self, log, every: log
     read_: Callable[[Meddled, Poses], Poses] = lambda self, poses: poses
     step_: Callable[[Meddled, int], int] = lambda self, steps: steps
@@ -50,7 +65,7 @@ class Meddled:
     last: ClassVar[Meddled | None] = None
 
     def facts(self) -> Facts:
-        return self.facts_(self.session.facts())
+        return self.facts_(self.asked, self.session.facts())
 
     def step(self, steps: int) -> None:
         self.session.step(self.step_(self, steps))
@@ -65,18 +80,18 @@ class Meddled:
         return self.read_(self, self.session.read())
 
 
-def meddled(sound: Engine, **faults: Any) -> Engine:
-    """An engine whose sessions have faults: see `Meddled`."""
+def meddled(sound: Engine, opens: Opens = lambda asked: asked, **faults: Any) -> Engine:
+    """An engine that opens something else than was asked for, or whose sessions have faults."""
 
-    def opened(*asked: Any) -> Meddled:
-        return Meddled(sound.open(*asked), **faults)
+    def opened(*given: Any) -> Meddled:
+        asked = Asked(*given)
+        return Meddled(sound.open(*opens(asked)), asked, **faults)
 
     return replace(sound, open=opened)
 
 
-def opening(sound: Engine, change: Callable[..., tuple[Any, ...]]) -> Engine:
-    """An engine that opens something else than was asked for."""
-    return replace(sound, open=lambda *asked: sound.open(*change(*asked)))
+def meddling(opens: Opens = lambda asked: asked, **faults: Any) -> Fault:
+    return lambda sound: meddled(sound, opens, **faults)
 
 
 def of_log(change: Callable[[Poses], Poses], least: int = 0) -> Callable[..., Log]:
@@ -88,28 +103,29 @@ def of_log(change: Callable[[Poses], Poses], least: int = 0) -> Callable[..., Lo
     return record
 
 
+def of_bodies(change: Callable[[BodyPose], BodyPose], least: int = 0) -> Callable[..., Log]:
+    return of_log(lambda poses: poses.changed(change), least)
+
+
+def _own(sound: Engine) -> Settings:
+    return {name: each.value for name, each in sound.profiles["tuned"].settings.items()}
+
+
 def _without_reason(sound: Engine) -> Engine:
     tuned = sound.profiles["tuned"]
     settings = {name: Setting(each.value, "") for name, each in tuned.settings.items()}
     return replace(sound, profiles={**sound.profiles, "tuned": replace(tuned, settings=settings)})
 
 
-def _without_as_shipped(sound: Engine) -> Engine:
-    return replace(sound, profiles={"tuned": sound.profiles["tuned"]})
-
-
 def _careless(sound: Engine) -> Engine:
     """It takes every setting, and holds its own in place of a wrong one."""
+    own = _own(sound)
 
-    def healed(
-        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-    ) -> tuple[Any, ...]:
-        own = {name: each.value for name, each in sound.profiles["tuned"].settings.items()}
-        wrong = {n for n, v in settings.items() if v != v or v == "no-such-choice"}
-        healthy = {n: own[n] if n in wrong else v for n, v in settings.items()}
-        return scene, state, healthy, dt_s, drive
+    def healed(asked: Asked) -> Asked:
+        wrong = {n for n, v in asked.settings.items() if v != v or v == "no-such-choice"}
+        return asked._replace(settings={**asked.settings, **{name: own[name] for name in wrong}})
 
-    return replace(opening(sound, healed), check=lambda settings: None)
+    return replace(meddled(sound, healed), check=lambda settings: None)
 
 
 def _boundless(sound: Engine) -> Engine:
@@ -119,42 +135,43 @@ def _boundless(sound: Engine) -> Engine:
         if any(value != value or value == "no-such-choice" for value in settings.values()):
             raise SettingError("no number")
 
-    def healed(
-        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-    ) -> tuple[Any, ...]:
-        checked(settings)
+    def healed(asked: Asked) -> Asked:
+        checked(asked.settings)
         own = {"iterations": 1, "error_bias": 1.0, "damping": 1.0}
-        return scene, state, {**settings, **own}, dt_s, drive
+        return asked._replace(settings={**asked.settings, **own})
 
-    return replace(opening(sound, healed), check=checked)
+    return replace(meddled(sound, healed), check=checked)
+
+
+def _told_settings(asked: Asked, facts: Facts) -> Facts:
+    """They are said to be what was asked for."""
+    return replace(facts, settings={**facts.settings, **asked.settings})
 
 
 def _deaf(sound: Engine) -> Engine:
     """It runs as it always does, and says that it has what was asked for."""
-    own = {name: each.value for name, each in sound.profiles["tuned"].settings.items()}
 
-    def opened(
-        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-    ) -> Session:
-        sound.check(settings)
-        session = sound.open(scene, state, own, dt_s, drive)
-        return Meddled(session, facts_=lambda f: replace(f, settings={**f.settings, **settings}))
+    def deaf(asked: Asked) -> Asked:
+        sound.check(asked.settings)
+        return asked._replace(settings=_own(sound))
 
-    return replace(sound, open=opened)
+    return meddled(sound, deaf, facts_=_told_settings)
 
 
-def _another_setting(facts: Facts) -> Facts:
+def _another_setting(_: Asked, facts: Facts) -> Facts:
     return replace(facts, settings={**facts.settings, "iterations": 7})
 
 
-def _heavier(facts: Facts) -> Facts:
+def _heavier(_: Asked, facts: Facts) -> Facts:
     return replace(facts, mass_kg={name: 1.01 * mass for name, mass in facts.mass_kg.items()})
 
 
-def _from_zero(
-    scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-) -> tuple[Any, ...]:
-    return scene, replace(state, time_s=0.0), settings, dt_s, drive
+def _no_lag(_: Asked, facts: Facts) -> Facts:
+    return replace(facts, start=replace(facts.start, lag_s=0.0))
+
+
+def _from_zero(asked: Asked) -> Asked:
+    return asked._replace(state=replace(asked.state, time_s=0.0))
 
 
 def _thin_count(_: Meddled, log: Log, every: int) -> Log:
@@ -190,15 +207,12 @@ def _shared(self: Meddled, log: Log, every: int) -> Log:
 NOISE = np.random.default_rng(1)
 
 
-def _noisy(poses: Poses) -> Poses:
-    def shaken(body: BodyPose) -> BodyPose:
-        return replace(body, omega=body.omega + 1e-14 * NOISE.random(body.omega.shape))
-
-    return poses.changed(shaken)
+def _noisy(body: BodyPose) -> BodyPose:
+    return replace(body, omega=body.omega + 1e-14 * NOISE.random(body.omega.shape))
 
 
-def _wrapped(poses: Poses) -> Poses:
-    return poses.changed(lambda body: replace(body, theta=np.remainder(body.theta, 2 * np.pi)))
+def _wrapped(body: BodyPose) -> BodyPose:
+    return replace(body, theta=np.remainder(body.theta, 2 * np.pi))
 
 
 def _prints(self: Meddled, steps: int) -> int:
@@ -211,123 +225,83 @@ def _litters(self: Meddled, poses: Poses) -> Poses:
     return poses
 
 
-def _late_rates(poses: Poses) -> Poses:
-    def late(body: BodyPose) -> BodyPose:
-        omega = np.concatenate([body.omega[:1], body.omega[:-1]])
-        return replace(body, omega=omega)
-
-    return poses.changed(late)
+def _late(series: Array) -> Array:
+    return np.concatenate([series[:1], series[:-1]])
 
 
-def _slow_one(change: float) -> Callable[[Poses], Poses]:
+def _late_rates(body: BodyPose) -> BodyPose:
+    return replace(body, omega=_late(body.omega))
+
+
+def _turned(poses: Poses, name: str, **changes: Array) -> Poses:
+    return replace(poses, bodies={**poses.bodies, name: replace(poses.bodies[name], **changes)})
+
+
+def _slow_one(poses: Poses) -> Poses:
     """The speed of the body that turns least, times a number."""
-
-    def changed(poses: Poses) -> Poses:
-        slow = min(poses.bodies, key=lambda name: float(np.abs(poses.bodies[name].omega).max()))
-        body = poses.bodies[slow]
-        turned = {slow: replace(body, omega=change * body.omega)}
-        return replace(poses, bodies={**poses.bodies, **turned})
-
-    return changed
+    slow = min(poses.bodies, key=lambda name: float(np.abs(poses.bodies[name].omega).max()))
+    return _turned(poses, slow, omega=1.08 * poses.bodies[slow].omega)
 
 
-def _zero_accelerations(poses: Poses) -> Poses:
-    return poses.changed(
-        lambda body: replace(
-            body,
-            alpha=np.zeros_like(body.alpha),
-            origin_acceleration=np.zeros_like(body.origin_acceleration),
-        )
-    )
+def _zero_accelerations(body: BodyPose) -> BodyPose:
+    return replace(body, alpha=0.0 * body.omega, origin_acceleration=0.0 * body.velocity)
 
 
-def _late_accelerations(poses: Poses) -> Poses:
-    return poses.changed(
-        lambda body: replace(body, alpha=np.concatenate([body.alpha[:1], body.alpha[:-1]]))
-    )
-
-
-def _a_little_fast(
-    scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-) -> tuple[Any, ...]:
-    law: Any = scene.driver.law
+def _a_little_fast(asked: Asked) -> Asked:
+    scene, law = asked.scene, cast(Any, asked.scene.driver.law)
     if hasattr(law, "speed_rad_s"):
         law = replace(law, speed_rad_s=law.speed_rad_s * (1.0 + 1e-9))
-    driver = replace(scene.driver, law=law)
-    return replace(scene, driver=driver), state, settings, dt_s, drive
+    return asked._replace(scene=replace(scene, driver=replace(scene.driver, law=law)))
 
 
-def _pulled(share_x: float, share_y: float) -> Callable[[Engine], Engine]:
+def _pulled(share_x: float, share_y: float) -> Fault:
     """Free, it has a share of gravity, and says that it has all."""
 
-    def changed(sound: Engine) -> Engine:
-        def opened(
-            scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-        ) -> Session:
-            if drive != "free":
-                return sound.open(scene, state, settings, dt_s, drive)
-            x, y = scene.gravity_m_s2
-            other = replace(scene, gravity_m_s2=(share_x * x, share_y * y))
-            session = sound.open(other, state, settings, dt_s, drive)
-            return Meddled(session, facts_=lambda f: replace(f, gravity_m_s2=scene.gravity_m_s2))
+    def pulled(asked: Asked) -> Asked:
+        x, y = asked.scene.gravity_m_s2
+        other = replace(asked.scene, gravity_m_s2=(share_x * x, share_y * y))
+        return asked._replace(scene=other) if asked.drive == "free" else asked
 
-        return replace(sound, open=opened)
-
-    return changed
+    return meddling(
+        pulled, facts_=lambda asked, facts: replace(facts, gravity_m_s2=asked.scene.gravity_m_s2)
+    )
 
 
-def _slowed(
-    scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-) -> tuple[Any, ...]:
-    """Free, it loses speed."""
-    lossy = {**settings, "damping": 1e-9} if drive == "free" else settings
-    return scene, state, lossy, dt_s, drive
+def _damped(damping: float) -> Opens:
+    """Free, it loses all of its speed but this share in a second."""
+
+    def damped(asked: Asked) -> Asked:
+        lossy = {**asked.settings, "damping": damping}
+        return asked._replace(settings=lossy) if asked.drive == "free" else asked
+
+    return damped
 
 
 def _in_seconds(sound: Engine) -> Engine:
     """A loss in a second, and not said."""
-    lossy = {"error_bias": 0.5}
 
-    def opened(
-        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-    ) -> Session:
-        session = sound.open(scene, state, {**settings, **lossy}, dt_s, drive)
-        return Meddled(
-            session, facts_=lambda f: replace(f, settings={**f.settings, **dict(settings)})
-        )
+    def lossy(asked: Asked) -> Asked:
+        return asked._replace(settings={**asked.settings, "error_bias": 0.5})
 
-    return replace(sound, open=opened, in_seconds=lambda settings: ())
+    wrong = meddled(sound, lossy, facts_=_told_settings)
+    return replace(wrong, in_seconds=lambda settings: ())
 
 
-def _at_home(sound: Engine) -> Engine:
+def _at_home(self: Meddled, log: Log, every: int) -> Log:
     """It is off by a milliradian wherever the ground lies far from the origin."""
-
-    def opened(
-        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-    ) -> Session:
-        session = sound.open(scene, state, settings, dt_s, drive)
-        if max(abs(x) for x, _ in scene.ground.values()) < 2.0:
-            return session
-        name = next(n for n in reversed(list(scene.links)) if n != scene.driver.link)
-
-        def off(poses: Poses) -> Poses:
-            body = poses.bodies[name]
-            off = np.minimum(np.arange(float(body.theta.size)), 50.0) * 2e-4
-            wrong = replace(body, theta=body.theta + off)
-            return replace(poses, bodies={**poses.bodies, name: wrong})
-
-        return Meddled(session, record_=of_log(off))
-
-    return replace(sound, open=opened)
+    scene = self.asked.scene
+    if max(abs(x) for x, _ in scene.ground.values()) < 2.0:
+        return log
+    name = next(n for n in reversed(list(scene.links)) if n != scene.driver.link)
+    theta = log.poses.bodies[name].theta
+    off = np.minimum(np.arange(float(theta.size)), 50.0) * 2e-4
+    return replace(log, poses=_turned(log.poses, name, theta=theta + off))
 
 
-def _blunt(sound: Engine) -> Engine:
-    def refused(*asked: Any) -> tuple[Any, ...]:
-        if asked[-1] == "servo":
-            raise KeyError("motor")
-        return asked
-
-    return opening(sound, refused)
+def _blunt(asked: Asked) -> Asked:
+    if asked.drive == "servo":
+        raise KeyError("motor")
+    return asked
 
 
 class _Integrated(FakeEngine):
@@ -337,40 +311,28 @@ class _Integrated(FakeEngine):
         return "integrated"
 
 
-def _exact(_: Engine) -> Any:
-    return _Integrated(drives=("prescribed", "servo"))
+def of_exudyn(opens: Opens = lambda asked: asked, **faults: Any) -> Fault:
+    return lambda _: meddled(engine("exudyn"), opens, **faults)
 
 
-def of_forces(change: Callable[[Forces], Forces]) -> Callable[[Engine], Engine]:
+def of_forces(change: Callable[[Forces], Forces]) -> Fault:
     """An engine that reports forces, with a change of them."""
-
-    def meddle(_: Engine) -> Engine:
-        def changed(_: Meddled, log: Log) -> Log:
-            assert log.forces is not None
-            return replace(log, forces=change(log.forces))
-
-        return meddled(engine("exudyn"), forces_=changed)
-
-    return meddle
+    return of_exudyn(forces_=lambda _, log: replace(log, forces=change(log.forces)))
 
 
-def _last_pin(change: Callable[[Array], Array]) -> Callable[[Forces], Forces]:
-    """The forces of one pin changed."""
+def _last_pin(change: Callable[[Array, Array], tuple[Array, Array]]) -> Fault:
+    """The forces of one pin on its first body and its second changed."""
 
     def changed(forces: Forces) -> Forces:
-        point = list(forces.pins)[-1]
-        by_body = {body: change(force) for body, force in forces.pins[point].items()}
-        return replace(forces, pins={**forces.pins, point: by_body})
+        point, by_body = list(forces.pins.items())[-1]
+        wrong = dict(zip(by_body, change(*by_body.values()), strict=True))
+        return replace(forces, pins={**forces.pins, point: wrong})
 
-    return changed
+    return of_forces(changed)
 
 
-def _one_sided(forces: Forces) -> Forces:
-    """What a pin exerts on its second body is told of the first as well."""
-    point, by_body = list(forces.pins.items())[-1]
-    first, second = by_body
-    doubled = {first: by_body[second], second: by_body[second]}
-    return replace(forces, pins={**forces.pins, point: doubled})
+def _in_frame(force: Array) -> Array:
+    return force @ np.array([[0.8, 0.6], [-0.6, 0.8]])
 
 
 def _gap(forces: Forces) -> Forces:
@@ -381,78 +343,73 @@ def _gap(forces: Forces) -> Forces:
 
 def _a_step_late(forces: Forces) -> Forces:
     """The forces of the step before, as if an impulse were of the wrong end of its step."""
-    times, late = (
-        forces.time_s,
-        forces.each_series(lambda each: np.concatenate([each[:1], each[:-1]])),
-    )
-    return replace(late, time_s=times)
+    return replace(forces.each_series(_late), time_s=forces.time_s)
 
 
-def _shaken(_: Engine) -> Engine:
+def _half_a_step_late(forces: Forces) -> Forces:
+    half_s = 0.5 * (forces.time_s[1] - forces.time_s[0])
+    return replace(forces, time_s=forces.time_s - half_s)
+
+
+def _shaken(_: Meddled, log: Log) -> Log:
     """To read forces it steps once more, from which it does not come back."""
-
-    def changed(self: Meddled, log: Log) -> Log:
-        return replace(log, poses=of_log(_late_rates)(self, log, 1).poses)
-
-    return meddled(engine("exudyn"), forces_=changed)
+    return replace(log, poses=log.poses.changed(_late_rates))
 
 
-def of_scene(change: Callable[[Scene], Scene]) -> Callable[[Engine], Engine]:
-    """An engine that has another scene, without saying so."""
-
-    def meddle(_: Engine) -> Engine:
-        return opening(engine("exudyn"), lambda scene, *asked: (change(scene), *asked))
-
-    return meddle
+def _with_scene(change: Callable[[Scene], Scene]) -> Opens:
+    """It has another scene, without saying so."""
+    return lambda asked: asked._replace(scene=change(asked.scene))
 
 
-def _each_load(**changes: Callable[[Load], Any]) -> Callable[[Scene], Scene]:
-    """The loads of a scene changed."""
+def _without_loads(scene: Scene) -> Scene:
+    return replace(scene, loads={})
+
+
+def of_loads(change: Callable[[Load], Load]) -> Fault:
+    """An engine that has other loads."""
 
     def changed(scene: Scene) -> Scene:
-        loads = {
-            name: replace(load, **{what: change(load) for what, change in changes.items()})
-            for name, load in scene.loads.items()
-        }
-        return replace(scene, loads=loads)
+        return replace(scene, loads={name: change(load) for name, load in scene.loads.items()})
 
-    return changed
+    return of_exudyn(_with_scene(changed))
 
 
-def _late_load(load: Load) -> Any:
+def _late_load(load: Load) -> Load:
     """A load as it was a step before."""
     wave = load.characteristic
     if not isinstance(wave, Sine):
-        return wave
-    return replace(wave, phase_rad=wave.phase_rad - 2 * 2 * np.pi / 800)
+        return load
+    late = replace(wave, phase_rad=wave.phase_rad - 2 * 2 * np.pi / 800)
+    return replace(load, characteristic=late)
+
+
+def _deaf_load(load: Load) -> Load:
+    """A load over a speed as it is at a speed of 1."""
+    if load.over not in ("omega", "speed"):
+        return load
+    at_one = Constant(load.magnitude(np.ones(1))[0])
+    return replace(load, over="time", slider=None, characteristic=at_one)
 
 
 def _rubbing_less(scene: Scene) -> Scene:
     """Friction that is a tenth too small."""
-    friction = {
-        name: replace(one, size=0.9 * one.size)
-        for name, one in scene.friction.items()
-        if isinstance(one, ConstantFriction)
-    }
+    rubbing = {n: one for n, one in scene.friction.items() if isinstance(one, ConstantFriction)}
+    friction = {name: replace(one, size=0.9 * one.size) for name, one in rubbing.items()}
     return replace(scene, friction=friction)
 
 
-def of_springs(change: Callable[[Spring], Spring | None]) -> Callable[[Engine], Engine]:
+def of_springs(change: Callable[[Spring], Spring | None]) -> Fault:
     """An engine that has other springs, or none, and says that it has those of the scene."""
 
-    def meddle(_: Engine) -> Engine:
-        sound = engine("exudyn")
+    def changed(scene: Scene) -> Scene:
+        own = {name: change(spring) for name, spring in scene.springs.items()}
+        return replace(scene, springs={name: one for name, one in own.items() if one is not None})
 
-        def opened(scene: Scene, *asked: Any) -> Session:
-            own = {name: change(spring) for name, spring in scene.springs.items()}
-            springs = {name: spring for name, spring in own.items() if spring is not None}
-            session = sound.open(replace(scene, springs=springs), *asked)
-            told = {n: (s.rate, s.damping, s.free) for n, s in scene.springs.items()}
-            return Meddled(session, facts_=lambda facts: replace(facts, springs=told))
+    def told(asked: Asked, facts: Facts) -> Facts:
+        springs = asked.scene.springs.items()
+        return replace(facts, springs={n: (s.rate, s.damping, s.free) for n, s in springs})
 
-        return replace(sound, open=opened)
-
-    return meddle
+    return of_exudyn(_with_scene(changed), facts_=told)
 
 
 def _elsewhere(spring: Spring) -> Spring:
@@ -462,264 +419,125 @@ def _elsewhere(spring: Spring) -> Spring:
     return replace(spring, points=("A", spring.points[1]))
 
 
-def _deaf_load(scene: Scene) -> Scene:
-    """Loads over a speed as they are at a speed of 1."""
-    loads = {
-        name: load
-        if load.over not in ("omega", "speed")
-        else replace(
-            load, over="time", slider=None, characteristic=Constant(load.magnitude(np.ones(1))[0])
-        )
-        for name, load in scene.loads.items()
-    }
-    return replace(scene, loads=loads)
-
-
-def _leaking(
-    scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-) -> tuple[Any, ...]:
-    """Free, it loses half its speed in a second."""
-    lossy = {**settings, "damping": 0.5} if drive == "free" else settings
-    return scene, state, lossy, dt_s, drive
-
-
 def _weightless_loads(_: Engine) -> Engine:
     """It reports no forces, says that it takes loads, and leaves them out."""
-    own = engine("pymunk")
-    plain = opening(own, lambda scene, *asked: (replace(scene, loads={}), *asked))
+    plain = meddled(engine("pymunk"), _with_scene(_without_loads))
     return replace(plain, applies_loads=True, forces_of="nothing", applies_constant_friction=False)
 
 
-FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
+FAULTS: Mapping[str, tuple[str, str, Fault, set[str]]] = {
     # name: clause, words, fault; other clauses that can not but break too
     "no reason": ("EC11", "iterations has no reason", _without_reason, set()),
-    "one profile": ("EC11", "there is no profile as-shipped", _without_as_shipped, set()),
+    "one profile": (
+        "EC11", "there is no profile as-shipped",
+        lambda e: replace(e, profiles={"tuned": e.profiles["tuned"]}), set()),
     "other version": (
-        "EC12",
-        "version() gives '2.0'",
-        lambda e: replace(e, version=lambda: "2.0"),
-        set(),
-    ),
+        "EC12", "version() gives '2.0'", lambda e: replace(e, version=lambda: "2.0"), set()),
     "takes everything": ("EC13", "error_bias = nan is taken", _careless, set()),
     "boundless": ("EC13", "error_bias = -inf is taken", _boundless, {"EC14", "EC52", "EC54"}),
     "takes every count": (
-        "EC13",
-        "iterations takes each of 0, -1, 0.5",
-        _boundless,
-        {"EC14", "EC52", "EC54"},
-    ),
+        "EC13", "iterations takes each of 0, -1, 0.5", _boundless, {"EC14", "EC52", "EC54"}),
     "deaf": ("EC14", "differ in iterations, error_bias", _deaf, {"EC53", "EC54"}),
     "other setting held": (
-        "EC14",
-        "iterations is asked to be 150, held 7",
-        lambda e: meddled(e, facts_=_another_setting),
-        set(),
-    ),
-    "heavier": ("EC21", "has mass_kg", lambda e: meddled(e, facts_=_heavier), set()),
-    "from zero": ("EC22", "the samples are at", lambda e: opening(e, _from_zero), set()),
+        "EC14", "iterations is asked to be 150, held 7", meddling(facts_=_another_setting), set()),
+    "heavier": ("EC21", "has mass_kg", meddling(facts_=_heavier), set()),
+    "from zero": ("EC22", "the samples are at", meddling(_from_zero), set()),
     "one step more": (
-        "EC31",
-        "after 60 steps step and record differ by",
-        lambda e: meddled(e, step_=lambda self, steps: steps + 1),
-        set(),
-    ),
+        "EC31", "after 60 steps step and record differ by",
+        meddling(step_=lambda self, steps: steps + 1), set()),
     "counts samples": (
-        "EC32",
-        "record(40, 8) says 5 steps done",
-        lambda e: meddled(e, record_=_thin_count),
-        set(),
-    ),
-    "restarts": (
-        "EC33",
-        "the second begins at 0 s",
-        lambda e: meddled(e, record_=_restarts),
-        set(),
-    ),
+        "EC32", "record(40, 8) says 5 steps done", meddling(record_=_thin_count), set()),
+    "restarts": ("EC33", "the second begins at 0 s", meddling(record_=_restarts), set()),
     "lends its memory": (
-        "EC34",
-        "what read gave changes",
-        lambda e: meddled(e, read_=_lent, step_=_overwritten),
-        set(),
-    ),
-    "shared state": ("EC35", "it differs by", lambda e: meddled(e, record_=_shared), set()),
-    "noise": (
-        "EC36",
-        "100 steps twice differ by",
-        lambda e: meddled(e, record_=of_log(_noisy)),
-        set(),
-    ),
+        "EC34", "what read gave changes", meddling(read_=_lent, step_=_overwritten), set()),
+    "shared state": ("EC35", "it differs by", meddling(record_=_shared), set()),
+    "noise": ("EC36", "100 steps twice differ by", meddling(record_=of_bodies(_noisy)), set()),
     "wrapped": (
-        "EC37",
-        "jumps by",
-        lambda e: meddled(e, record_=of_log(_wrapped, 1000)),
-        {"EC41", "EC51", "EC52", "EC53"},
-    ),
-    "talks": (
-        "EC38",
-        "writes to the terminal: 'stepping'",
-        lambda e: meddled(e, step_=_prints),
-        set(),
-    ),
+        "EC37", "jumps by", meddling(record_=of_bodies(_wrapped, 1000)),
+        {"EC41", "EC51", "EC52", "EC53"}),
+    "talks": ("EC38", "writes to the terminal: 'stepping'", meddling(step_=_prints), set()),
     "leaves files": (
-        "EC38",
-        "leaves files in the working folder: ENGINE_LOG.TXT",
-        lambda e: meddled(e, read_=_litters),
-        set(),
-    ),
+        "EC38", "leaves files in the working folder: ENGINE_LOG.TXT", meddling(read_=_litters),
+        set()),
     "velocities late": (
-        "EC41",
-        "is that of -0.50 steps, and velocity_shift says +0.50",
-        lambda e: meddled(e, record_=of_log(_late_rates, 700)),
-        set(),
-    ),
+        "EC41", "is that of -0.50 steps, and velocity_shift says +0.50",
+        meddling(record_=of_bodies(_late_rates, 700)), set()),
     "slow one is off": (
-        "EC41",
-        "is not that of its places",
-        lambda e: meddled(e, record_=of_log(_slow_one(1.08), 700)),
-        {"EC93"},
-    ),
-    "lag unsaid": (
-        "EC41",
-        "Poses.lag_s is 0 steps",
-        lambda e: meddled(e, facts_=lambda f: replace(f, start=replace(f.start, lag_s=0.0))),
-        set(),
-    ),
+        "EC41", "is not that of its places", meddling(record_=of_log(_slow_one, 700)), {"EC93"}),
+    "lag unsaid": ("EC41", "Poses.lag_s is 0 steps", meddling(facts_=_no_lag), set()),
     "zero accelerations": (
-        "EC42",
-        "are not all NaN",
-        lambda e: meddled(e, record_=of_log(_zero_accelerations)),
-        {"EC41"},
-    ),
-    "a little fast": ("EC51", "the crank is off by", lambda e: opening(e, _a_little_fast), set()),
+        "EC42", "are not all NaN", meddling(record_=of_bodies(_zero_accelerations)), {"EC41"}),
+    "a little fast": ("EC51", "the crank is off by", meddling(_a_little_fast), set()),
     "third order": (
-        "EC52",
-        "shrink as dt^2.0, and order is 3",
-        lambda e: replace(e, order=3),
-        set(),
-    ),
-    "handed back": ("EC53", "placing is integrated with order 2", _exact, set()),
+        "EC52", "shrink as dt^2.0, and order is 3", lambda e: replace(e, order=3), set()),
+    "handed back": (
+        "EC53", "placing is integrated with order 2",
+        lambda _: _Integrated(drives=("prescribed", "servo")), set()),
     "in seconds": ("EC54", "a thousandth as fast", _in_seconds, {"EC52", "EC53"}),
     "weightless": ("EC55", "free, gravity along y moves", _pulled(0.0, 0.0), {"EC93"}),
     "nearly weightless": ("EC55", "free, gravity along y moves", _pulled(0.01, 0.01), {"EC93"}),
     "too heavy": ("EC55", "free, gravity along y moves", _pulled(10.0, 10.0), {"EC93"}),
     "pulled down alone": ("EC55", "free, gravity along x moves", _pulled(0.0, 1.0), {"EC93"}),
     "slowed": (
-        "EC55",
-        "without gravity, the centres of mass move",
-        lambda e: opening(e, _slowed),
-        {"EC93", "EC94"},
-    ),
-    "at home": ("EC61", "moved by (3, -2) m", _at_home, set()),
-    "another motion": ("EC81", "logs another motion", _shaken, set()),
-    "one-sided": ("EC82", "the forces of pin C add up to", of_forces(_one_sided), {"EC83"}),
+        "EC55", "without gravity, the centres of mass move", meddling(_damped(1e-9)),
+        {"EC93", "EC94"}),
+    "at home": ("EC61", "moved by (3, -2) m", meddling(record_=_at_home), set()),
+    "blunt": ("EC71", "open raised KeyError: 'motor'", meddling(_blunt), set()),
+    "another motion": ("EC81", "logs another motion", of_exudyn(forces_=_shaken), set()),
+    "one-sided": (
+        "EC82", "the forces of pin C add up to", _last_pin(lambda one, two: (two, two)), {"EC83"}),
     "a gap": ("EC82", "the driving torque is not finite at sample 7", of_forces(_gap), set()),
     "none after all": (
-        "EC82",
-        "all forces are NaN",
-        of_forces(lambda forces: forces.each_series(lambda each: np.full_like(each, np.nan))),
-        {"EC85", "EC86"},
-    ),
+        "EC82", "all forces are NaN", of_forces(lambda f: f.each_series(lambda x: x * np.nan)),
+        {"EC85", "EC86"}),
     "no pins": (
-        "EC82",
-        "pins are {}",
-        of_forces(lambda forces: replace(forces, pins={})),
-        {"EC83", "EC84"},
-    ),
+        "EC82", "pins are {}", of_forces(lambda f: replace(f, pins={})), {"EC83", "EC84"}),
     "torque's sign": (
-        "EC83",
-        "crank: a moment of",
-        of_forces(lambda forces: replace(forces, torque=-forces.torque)),
-        {"EC85", "EC86"},
-    ),
+        "EC83", "crank: a moment of", of_forces(lambda f: replace(f, torque=-f.torque)),
+        {"EC85", "EC86"}),
     "a pin's sign": (
-        "EC83",
-        "coupler: ",
-        of_forces(_last_pin(lambda force: -force)),
-        {"EC84", "EC85", "EC86"},
-    ),
+        "EC83", "coupler: ", _last_pin(lambda one, two: (-one, -two)), {"EC84", "EC85", "EC86"}),
     "a body's frame": (
-        "EC83",
-        "rocker: ",
-        of_forces(_last_pin(lambda force: force @ np.array([[0.8, 0.6], [-0.6, 0.8]]))),
-        {"EC84", "EC85", "EC86"},
-    ),
+        "EC83", "rocker: ", _last_pin(lambda one, two: (_in_frame(one), _in_frame(two))),
+        {"EC84", "EC85", "EC86"}),
     "a step late": ("EC84", "is that of +1.00 steps", of_forces(_a_step_late), {"EC85"}),
     "half a step late": (
-        "EC84",
-        "is that of -0.50 steps",
-        of_forces(
-            lambda forces: replace(
-                forces, time_s=forces.time_s - 0.5 * (forces.time_s[1] - forces.time_s[0])
-            )
-        ),
-        {"EC85"},
-    ),
+        "EC84", "is that of -0.50 steps", of_forces(_half_a_step_late), {"EC85"}),
     "without loads": (
-        "EC85",
-        "a force over time in the ground's frame on rocker",
-        of_scene(lambda scene: replace(scene, loads={})),
-        {"EC94"},
-    ),
+        "EC85", "a force over time in the ground's frame on rocker",
+        of_exudyn(_with_scene(_without_loads)), {"EC94"}),
     "load's frame": (
-        "EC85",
-        "a constant force in the body's frame on rocker",
-        of_scene(_each_load(frame=lambda _: "ground")),
-        set(),
-    ),
-    "load late": (
-        "EC85",
-        "steps after its time",
-        of_scene(_each_load(characteristic=_late_load)),
-        set(),
-    ),
+        "EC85", "a constant force in the body's frame on rocker",
+        of_loads(lambda load: replace(load, frame="ground")), set()),
+    "load late": ("EC85", "steps after its time", of_loads(_late_load), set()),
     "loads not felt": ("EC85", "free, loads like its weight", _weightless_loads, {"EC94"}),
-    "rubs less": ("EC86", "friction in C", of_scene(_rubbing_less), set()),
+    "rubs less": ("EC86", "friction in C", of_exudyn(_with_scene(_rubbing_less)), set()),
     "springs unsaid": (
-        "EC91",
-        "a spring in a pin: the engine does not hold rod: springs.pin is not there",
-        lambda _: meddled(engine("exudyn"), facts_=lambda f: replace(f, springs={})),
-        set(),
-    ),
+        "EC91", "a spring in a pin: the engine does not hold rod: springs.pin is not there",
+        of_exudyn(facts_=lambda _, facts: replace(facts, springs={})), set()),
     "without springs": (
-        "EC92",
-        "a spring between two points: the body does not swing",
-        of_springs(lambda spring: None),
-        set(),
-    ),
+        "EC92", "a spring between two points: the body does not swing",
+        of_springs(lambda spring: None), set()),
     "slack at nothing": (
-        "EC92",
-        "a spring between two points: the body swings about 1.712 rad, not 0.7",
-        of_springs(lambda spring: replace(spring, free=0.0)),
-        set(),
-    ),
+        "EC92", "a spring between two points: the body swings about 1.712 rad, not 0.7",
+        of_springs(lambda spring: replace(spring, free=0.0)), set()),
     "damped twice": (
-        "EC92",
-        "a spring in a pin: the body dies away by 1 1/s, not 0.5",
-        of_springs(lambda spring: replace(spring, damping=2.0 * spring.damping)),
-        set(),
-    ),
+        "EC92", "a spring in a pin: the body dies away by 1 1/s, not 0.5",
+        of_springs(lambda spring: replace(spring, damping=2.0 * spring.damping)), set()),
     "fastened elsewhere": (
-        "EC92",
-        "a spring between a point and a slider: the body swings about",
-        of_springs(_elsewhere),
-        set(),
-    ),
+        "EC92", "a spring between a point and a slider: the body swings about",
+        of_springs(_elsewhere), set()),
     "leaking": (
-        "EC93",
-        "of the energy that goes back and forth is gained or lost",
-        lambda e: opening(e, _leaking),
-        {"EC94"},
-    ),
+        "EC93", "of the energy that goes back and forth is gained or lost",
+        meddling(_damped(0.5)), {"EC94"}),
     "deaf to its speed": (
-        "EC94",
-        "a torque over the angular velocity of its link: after",
-        of_scene(_deaf_load),
-        set(),
-    ),
-    "blunt": ("EC71", "open raised KeyError: 'motor'", _blunt, set()),
-}
+        "EC94", "a torque over the angular velocity of its link: after", of_loads(_deaf_load),
+        set()),
+}  # fmt: skip
 
 
 def late_accelerations(sound: Engine) -> Engine:
     """Of an engine that reports them, those of links a step late."""
-    return meddled(sound, record_=of_log(_late_accelerations, 700))
+    return meddled(
+        sound, record_=of_bodies(lambda body: replace(body, alpha=_late(body.alpha)), 700)
+    )
