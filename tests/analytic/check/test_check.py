@@ -1,26 +1,31 @@
-"""The closed form against the second opinion: two computations, one mechanism."""
+"""The closed form against the second opinion, and what falls freely against its closed form."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 
-import analytic
 from analytic import kinematics
+from analytic.check import newton
 from analytic.check.constraints import Constraints
+from analytic.check.free import centres
 from analytic.check.newton import Guess
 from analytic.dyads.parts import MovingLine
-from analytic.dyads.plane import EPS, Real, Vec
+from analytic.dyads.plane import EPS
+from analytic.free.window_chain import ChainMotion
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
 from models.motion import Motion
-from models.scene import Scene
+from models.poses import centre_of, frames
+from models.scene import Same, Scene
+from models.window_chain import Chain
+from reports.compare.beside import truth_of
 from tests.analytic.chain import coordinates
 from tests.analytic.imported import reached
 from tests.analytic.test_bounds import SIX
@@ -35,12 +40,12 @@ def rough_guess(scene: Scene, motion: Motion) -> Guess:
     system, unit = Constraints(scene), 0.01 * scene.longest_m
     q = coordinates(scene, motion, 0)
     rounded = [round(c / u) * u for c, u in zip(q, (unit, unit, 0.01) * (len(q) // 3), strict=True)]
-    return Guess({body: (*rounded[at : at + 3],) for body, at in system.at.items()})  # type: ignore[misc]
+    return Guess({body: (*rounded[at : at + 3],) for body, at in system.at.items()})
 
 
-def both(scene: Scene, time_s: Array, guess: Guess | None = None) -> tuple[Motion, Motion]:
+def both(scene: Scene, time_s: Array) -> tuple[Motion, Motion]:
     closed = kinematics.solve(scene, time_s)
-    return closed, analytic.check.newton.solve(scene, time_s, guess or rough_guess(scene, closed))
+    return closed, newton.solve(scene, time_s, rough_guess(scene, closed))
 
 
 def newton_rounding(scene: Scene, motion: Motion) -> tuple[Array, Array, Array]:
@@ -59,18 +64,15 @@ def newton_rounding(scene: Scene, motion: Motion) -> tuple[Array, Array, Array]:
         jacobian /= np.abs(jacobian).max(axis=1, keepdims=True)
         s = 1.0 + float(np.linalg.norm(np.linalg.inv(jacobian), np.inf))
         size = 1.0 + float(np.abs(q / columns).max())
-        speed = max(float(np.abs(m.omega[i])) for m in motion.links.values())
-        speed = max([speed, *(_fast(p.velocity[i]) / unit for p in motion.points.values())])
-        gain = max(float(np.abs(m.alpha[i])) for m in motion.links.values())
-        gain = max([gain, *(_fast(p.acceleration[i]) / unit for p in motion.points.values())])
+        links, points = motion.links.values(), motion.points.values()
+        speed = max(abs(m.omega[i]) for m in links)
+        speed = max([speed, *(math.hypot(*p.velocity[i]) / unit for p in points)])
+        gain = max(abs(m.alpha[i]) for m in links)
+        gain = max([gain, *(math.hypot(*p.acceleration[i]) / unit for p in points)])
         position[i] = ROUNDINGS * EPS * s * size
         rate[i] = position[i] * s * speed
         second[i] = position[i] * s * (gain + s * speed**2)
     return position, rate, second
-
-
-def _fast(vector: Array) -> float:
-    return math.hypot(float(vector[0]), float(vector[1]))
 
 
 def _apart(value: Array, other: Array, *, turning: bool = False) -> Array:
@@ -80,43 +82,36 @@ def _apart(value: Array, other: Array, *, turning: bool = False) -> Array:
     return np.abs(apart) if apart.ndim == 1 else np.hypot(apart[:, 0], apart[:, 1])
 
 
-def disagreement(scene: Scene, closed: Motion, newton: Motion) -> float:
+def disagreement(scene: Scene, closed: Motion, second: Motion) -> float:
     """The largest difference of the two, over what the bound and Newton's rounding allow."""
     allowed, worst = newton_rounding(scene, closed), 0.0
-    kinds: tuple[tuple[Mapping[str, object], ...], ...] = (
-        (closed.links, newton.links, closed.bound.links),
-        (closed.points, newton.points, closed.bound.points),
-        (closed.sliders, newton.sliders, closed.bound.sliders),
-    )
-    for kind, (ours, others, bounds) in enumerate(kinds):
+    for kind in ("links", "points", "sliders"):
+        ours, others, bounds = (getattr(one, kind) for one in (closed, second, closed.bound))
         assert ours.keys() == others.keys() == bounds.keys()
-        unit = 1.0 if kind == 0 else scene.longest_m
+        unit = 1.0 if kind == "links" else scene.longest_m
         for name in ours:
             levels = zip(*(vars(m[name]).values() for m in (ours, others, bounds)), strict=True)
             for level, (value, other, bound) in enumerate(levels):
-                apart = _apart(value, other, turning=kind == 0 and level == 0)
+                apart = _apart(value, other, turning=(kind, level) == ("links", 0))
                 assert np.isfinite(apart).all()
                 worst = max(worst, float(np.max(apart / (bound + unit * allowed[level]))))
     return worst
 
 
+ALL_OVER = "shapes of the same dyads, all over the turn"
+
+
 @pytest.mark.parametrize(
     ("name", "samples"),
-    [
-        *((name, 11) for name in SIX),
-        *(
-            slowly(name, 73, reason="shapes of the same dyads, all over the turn")
-            for name in shipped()
-        ),
-    ],
+    [*((name, 11) for name in SIX), *(slowly(name, 73, reason=ALL_OVER) for name in shipped())],
 )
 def test_closed_form_and_newton_agree_over_a_period(name: str, samples: int) -> None:
     scene = load_scene(name)
-    closed, newton = both(scene, swing_times(scene, samples))
-    assert disagreement(scene, closed, newton) <= 1.0
+    closed, second = both(scene, swing_times(scene, samples))
+    assert disagreement(scene, closed, second) <= 1.0
     if {group.kind for group in analyse(scene).groups} == {"RPP"}:
         return  # linear in its coordinates: on some processors Newton's step ends on the same bits
-    same = [np.array_equal(a, b) for a, b in zip(_numbers(closed), _numbers(newton), strict=True)]
+    same = [np.array_equal(a, b) for a, b in zip(_numbers(closed), _numbers(second), strict=True)]
     assert not all(same), "bit for bit the same: is it the same computation?"
 
 
@@ -130,19 +125,16 @@ def _hold_to_newton(designed: Designed) -> None:
     """From a guess of two decimals, over a swing: same mechanism, same assembly, same motion."""
     scene = designed.scene
     closed = kinematics.solve(scene, swing_times(scene, 9))
-    rough = {
-        body: (round(x, 2), round(y, 2), round(a, 2)) for body, (x, y, a) in designed.frames.items()
-    }
-    newton = analytic.check.newton.solve(scene, closed.time_s, Guess(rough))
-    assert disagreement(scene, closed, newton) <= 1.0
+    rough = {body: tuple(round(c, 2) for c in frame) for body, frame in designed.frames.items()}
+    assert disagreement(scene, closed, newton.solve(scene, closed.time_s, Guess(rough))) <= 1.0
+
+
+ROLES = "every role of a link, a block and a guide"
 
 
 @pytest.mark.parametrize(
     ("form", "count"),
-    [
-        *((form, 2) for form in OF_EACH_KIND),
-        *(slowly(form, 4, reason="every role of a link, a block and a guide") for form in FORMS),
-    ],
+    [*((form, 2) for form in OF_EACH_KIND), *(slowly(form, 4, reason=ROLES) for form in FORMS)],
 )
 def test_every_form_of_dyad_agrees_with_newton(form: str, count: int) -> None:
     @examples(count)
@@ -172,39 +164,58 @@ def test_forms_cover_every_kind_and_role() -> None:
 
 
 def test_neither_computation_imports_the_other() -> None:
-    closed, newton = (reached(f"analytic.{m}") for m in ("kinematics", "check.newton"))
+    closed, second = (reached(f"analytic.{m}") for m in ("kinematics", "check.newton"))
     assert {f"analytic.dyads.{kind}" for kind in ("rrr", "rrp", "rpr", "prp", "rpp")} <= closed
     assert "analytic.check.newton" not in closed
-    assert {"analytic.check.constraints", "analytic.multibody.assembly"} <= newton
-    assert not closed & newton
+    assert {"analytic.check.constraints", "analytic.multibody.assembly"} <= second
+    assert not closed & second
 
 
-def test_fault_planted_in_the_closed_form_makes_them_disagree(
-    monkeypatch: pytest.MonkeyPatch,
+CORIOLIS, GAMMA = MovingLine.acceleration, Constraints.gamma
+
+
+@pytest.mark.parametrize(
+    ("owner", "method", "wrong", "name", "least"),
+    [
+        (MovingLine, "acceleration", lambda line, s, v: CORIOLIS(line, s, -v), "tangent", 1e6),
+        (
+            Constraints,
+            "gamma",
+            lambda s, q, v, a: GAMMA(s, q, 1.000001 * v, a),
+            "slotted-lever",
+            1e3,
+        ),
+    ],
+    ids=["in the closed form", "in Newton"],
+)
+def test_a_planted_fault_makes_them_disagree(
+    owner: type, method: str, wrong: object, name: str, least: float, monkeypatch
 ) -> None:
-    right = MovingLine.acceleration
-
-    def wrong(line: MovingLine, s: Real, speed: Real) -> Vec:
-        return right(line, s, -speed)  # Coriolis with the wrong sign
-
-    scene = load_scene("tangent")
-    monkeypatch.setattr(MovingLine, "acceleration", wrong)
-    assert disagreement(scene, *both(scene, swing_times(scene, 9))) > 1e6
-
-
-def test_fault_planted_in_newton_makes_them_disagree(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = Constraints.gamma
-
-    def wrong(system: Constraints, q: Array, rates: Array, alpha: float) -> Array:
-        return right(system, q, rates * (1.0 + 1e-6), alpha)
-
-    scene = load_scene("slotted-lever")
-    monkeypatch.setattr(Constraints, "gamma", wrong)
-    assert disagreement(scene, *both(scene, swing_times(scene, 9))) > 1e3
+    scene = load_scene(name)
+    monkeypatch.setattr(owner, method, wrong)
+    assert disagreement(scene, *both(scene, swing_times(scene, 9))) > least
 
 
 def test_newton_says_when_a_guess_leads_nowhere() -> None:
     scene = load_scene("fourbar-lecture-1")
     nowhere = Guess(dict.fromkeys(scene.links, (0.0, 0.0, 0.0)))
     with pytest.raises(CrankcheckError, match=r"fourbar-lecture-1: .*deg"):
-        analytic.check.newton.solve(scene, np.zeros(1), nowhere)
+        newton.solve(scene, np.zeros(1), nowhere)
+
+
+@pytest.mark.parametrize("chain", [Chain(1), Chain(3, 0.5, 2.0, 3.0, -0.7)])
+def test_a_chain_of_windows_falls_as_its_closed_form(chain: Chain) -> None:
+    free, scene = ChainMotion(chain), chain.scene()
+    duration_s = 0.1 * free.period_s
+    motion = free.motion(np.array([0.0, duration_s]))
+    placed = frames(scene, motion.state(1))
+    for name, place in centres(scene, motion.state(0), duration_s, 40).items():
+        wanted = placed[name].at(centre_of(scene, name))
+        assert place == pytest.approx(wanted, abs=1e-5 * chain.length_m)
+
+
+def test_what_has_no_mass_is_said() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    links = {n: replace(one, mass_kg=0.0, inertia_kg_m2=0.0) for n, one in scene.links.items()}
+    with pytest.raises(CrankcheckError, match="moves nothing that has a mass"):
+        centres(replace(scene, links=links), truth_of(Same(scene)).start, 1e-3, 1)
