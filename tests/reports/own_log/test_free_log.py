@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import pandas as pd
 import pytest
 
 import crankcheck
@@ -18,10 +17,6 @@ from models.scene import Scene
 from reports.compare.free.kept_motion import kept_motion
 from reports.face.simulation import Simulation
 from reports.judge.cell import Cell, check
-from reports.logs.columns import columns_of
-from reports.logs.meanings import understood
-from reports.own_log.judged import JudgedLog, LogRequest, judge_log
-from reports.own_log.log_limits import EVERY
 from reports.own_log.table import footer, no_cause_text
 from reports.page.log_page import log_page
 from tests.worlds.tiers import slowly
@@ -46,17 +41,14 @@ def angles(motion: Motion, *names: str) -> dict[str, object]:
 def judged(
     columns: Mapping[str, object],
     scene: Scene | str = SWING,
-    every: float | None = 1e-3,
+    target: float | None = 1e-3,
     time_s: object = TIME_S,
     **asked: object,
-) -> JudgedLog:
-    scene = load_scene(scene) if isinstance(scene, str) else scene
-    log = understood(columns_of(pd.DataFrame({"t": time_s, **columns})), scene)
-    told = {"target": {} if every is None else {EVERY: every}, **asked}
-    return judge_log(log, LogRequest(**told))  # type: ignore[arg-type]
+) -> crankcheck.LogVerdict:
+    return crankcheck.judge(scene, {"t": time_s, **columns}, target=target, **asked)  # type: ignore[call-overload, no-any-return]
 
 
-def rules(one: JudgedLog) -> list[str]:
+def rules(one: crankcheck.LogVerdict) -> list[str]:
     return [finding.rule for finding in one.failures]
 
 
@@ -91,18 +83,18 @@ def test_a_run_itself_may_be_judged_and_compared() -> None:
     done = ran(SWING, "mujoco", 0.3)
     verdict = crankcheck.judge(SWING, done)
     assert verdict.verdict == "within"
-    worst = crankcheck.compare(SWING, done).worst("phase")
-    assert worst == verdict.errors.worst("phase")
+    assert crankcheck.compare(SWING, done).worst("phase") == verdict.errors.worst("phase")
+    found = crankcheck.judge(SWING, done.frame(), step_s=done.dt_s, target={"phase": 1e-12})
+    assert "CC127" in rules(found)
 
 
 def test_a_driven_scene_may_be_let_go_and_judged() -> None:
-    done = crankcheck.run("slider-crank-central", drive="free", duration_s=0.2)
-    assert crankcheck.judge("slider-crank-central", done).verdict == "within"
-    log = crankcheck.judge("slider-crank-central", done.frame(), step_s=done.dt_s, free=True)
+    name = "slider-crank-central"
+    done = crankcheck.run(name, drive="free", duration_s=0.2)
+    assert crankcheck.judge(name, done).verdict == "within"
+    log = crankcheck.judge(name, done.frame(), step_s=done.dt_s, free=True)
     assert log.verdict == "within"
-    assert log.errors.worst("phase") == crankcheck.compare("slider-crank-central", done).worst(
-        "phase"
-    )
+    assert log.errors.worst("phase") == crankcheck.compare(name, done).worst("phase")
 
 
 def test_a_linkage_that_is_open_is_told_from_a_phase_that_runs_away() -> None:
@@ -127,13 +119,9 @@ def test_geometry_is_that_of_the_readings_where_the_phase_has_run_away() -> None
     late = kept_motion(load_scene(SWING), 0.4).at(TIME_S * 0.98)
     turned = {name: link.theta for name, link in late.links.items()}
     one = judged(
-        {
-            "crank_rad": turned["crank"],
-            "C.x_m": late.points["C"].position[:, 0],
-            "coupler_rel_crank_rad": turned["coupler"] - turned["crank"],
-        },
-        every=0.3,
-    )
+        {"crank_rad": turned["crank"], "C.x_m": late.points["C"].position[:, 0],
+         "coupler_rel_crank_rad": turned["coupler"] - turned["crank"]}, target=0.3,
+    )  # fmt: skip
     rows = {row.body: row.maximum for row in one.errors.rows if row.quantity == "geometry"}
     assert set(rows) >= {"crank", "C"}
     assert max(rows.values()) < 1e-12
@@ -171,9 +159,9 @@ def test_rows_of_which_the_truth_is_not_known_are_left_out_and_counted() -> None
     [
         (TIME_S - 0.2, {}, "begin at t = -0.2 s, and fourbar-swing is let go at t = 0"),
         (TIME_S * 1e4, {}, "look at the unit of its times"),
-        (TIME_S, {"drive": "fitted"}, "--drive fitted: fourbar-swing is let go"),
-        (TIME_S, {"drive": "logged"}, "--drive logged: fourbar-swing is let go"),
-        (TIME_S, {"every": None}, "no limit for angle: no step of a log is known"),
+        (TIME_S, {"drive": "fitted"}, "drive fitted: fourbar-swing is let go"),
+        (TIME_S, {"drive": "logged"}, "drive logged: fourbar-swing is let go"),
+        (TIME_S, {"target": None}, "no limit for angle: no step of a log is known"),
     ],
 )
 def test_what_can_not_be_judged_is_told(
@@ -184,8 +172,7 @@ def test_what_can_not_be_judged_is_told(
 
 
 def test_its_page_is_written() -> None:
-    one = judged(angles(truth(), "crank", "rocker"))
-    page = log_page(one, {"made": "2026-01-02"})
+    page = log_page(judged(angles(truth(), "crank", "rocker")), {"made": "2026-01-02"})
     assert "geometry of rocker" in page
     assert "free motion of fourbar-swing" in page
 
@@ -193,15 +180,7 @@ def test_its_page_is_written() -> None:
 def test_readings_half_a_step_before_the_start_are_read() -> None:
     """As of leapfrog, whose velocities are half a step behind its places."""
     early = TIME_S - 1e-3
-    motion = kept_motion(load_scene(SWING), 0.4).at(TIME_S)
-    columns = angles(motion, "crank")
-    assert judged(columns, time_s=early, step_s=2e-3, every=0.1).errors is not None
-
-
-def test_limits_of_free_motion_are_given_from_python_as_well() -> None:
-    done = ran(SWING, "mujoco", 0.3)
-    found = crankcheck.judge(SWING, done.frame(), step_s=done.dt_s, target={"phase": 1e-12})
-    assert "CC127" in [finding.rule for finding in found.failures]
+    assert judged(angles(truth(), "crank"), time_s=early, step_s=2e-3, target=0.1).errors
 
 
 @pytest.mark.parametrize(("scene", "limit"), [(SWING, "drive"), ("fourbar-lecture-1", "phase")])
