@@ -8,11 +8,12 @@ import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from reports.store.manifest import MOST_BYTES
+from reports.store.manifest import MANIFEST, MOST_BYTES
 from reports.store.part import write_part
 from tests.worlds.tiers import few
 
@@ -40,30 +41,55 @@ def first(folder: Path, table: str) -> Path:
     return min((folder / table).glob(f"{table}-*"))
 
 
+def _at(folder: Path, relative: str) -> Path:
+    """A path in a store; ``*`` stands for the first part of a table."""
+    table, _, name = relative.partition("/")
+    return first(folder, table) if name == "*" else folder / relative
+
+
+def spoiled(relative: str, change: Callable[[bytes], bytes]) -> Change:
+    """Change the bytes of a file."""
+    return lambda f: _at(f, relative).write_bytes(change(_at(f, relative).read_bytes()))
+
+
 def cut(table: str) -> Change:
-    return lambda folder: _write(first(folder, table), first(folder, table).read_bytes()[:-700])
+    return spoiled(f"{table}/*", lambda raw: raw[:-700])
 
 
-def content(table: str, raw: bytes) -> Change:
-    return lambda folder: _write(first(folder, table), raw)
+def flipped(raw: bytes) -> bytes:
+    at = len(raw) // 3
+    return raw[:at] + bytes([raw[at] ^ 4]) + raw[at + 1 :]
 
 
-def _write(path: Path, raw: bytes) -> None:
-    path.write_bytes(raw)
+def rewritten(raw: bytes) -> bytes:
+    buffer = pa.BufferOutputStream()
+    pq.read_table(pa.BufferReader(raw)).to_pandas().to_parquet(buffer)
+    return bytes(buffer.getvalue())
+
+
+def manifest(change: Callable[[dict[str, Any]], object]) -> Change:
+    """Change what the manifest says, with what it says of itself as it was."""
+
+    def changed(raw: bytes) -> bytes:
+        said = json.loads(raw)
+        change(said)
+        return json.dumps(said).encode()
+
+    return spoiled(MANIFEST, changed)
+
+
+def renamed(said: dict[str, Any]) -> None:
+    said["scenes"] = {name: f"{text}\n# changed" for name, text in said["scenes"].items()}
+
+
+def reformat(number: int) -> Change:
+    """As another version of crankcheck would lay it out."""
+    return manifest(lambda said: said.update(format=number))
 
 
 def gone(*tables: str) -> Change:
     """Remove the first part from some tables."""
     return lambda folder: [first(folder, table).unlink() for table in tables]
-
-
-def without(table: str) -> Change:
-    return lambda folder: shutil.rmtree(folder / table)
-
-
-def rewritten(folder: Path) -> None:
-    path = first(folder, "cells")
-    pq.ParquetFile(path).read().to_pandas().to_parquet(path)
 
 
 def swapped(folder: Path) -> None:
@@ -89,24 +115,11 @@ def of_another_store(folder: Path) -> None:
     write_part(folder / "cells", "cells", rows, LATER)
 
 
-def in_another_folder(folder: Path) -> None:
-    path = first(folder, "timings")
-    shutil.copy(path, folder / "cells" / path.name)
-
-
-def flipped(folder: Path) -> None:
-    path = first(folder, "cells")
-    raw = bytearray(path.read_bytes())
-    raw[len(raw) // 3] ^= 4
-    path.write_bytes(raw)
-
-
 def in_place(relative: str, make: Change) -> Change:
-    """Put something else where a file is; ``*`` stands for the first part."""
+    """Put something else where a file or folder is."""
 
     def change(folder: Path) -> None:
-        table, _, name = relative.partition("/")
-        path = first(folder, table) if name == "*" else folder / relative
+        path = _at(folder, relative)
         if path.is_dir():
             shutil.rmtree(path)
         else:
@@ -116,93 +129,66 @@ def in_place(relative: str, make: Change) -> Change:
     return change
 
 
+def text(path: Path) -> None:
+    path.write_text("x")
+
+
 def huge(path: Path) -> None:
     """A byte more than is read, which takes no room."""
-    with path.open("wb") as file:
-        file.truncate(MOST_BYTES + 1)
+    path.touch()
+    os.truncate(path, MOST_BYTES + 1)
 
 
 def loop(path: Path) -> None:
     path.symlink_to(path.name)
 
 
-def manifest(change: Callable[[dict[str, object]], object]) -> Change:
-    """Change what the manifest says, with what it says of itself as it was."""
-
-    def apply(folder: Path) -> None:
-        path = folder / "manifest.json"
-        said = json.loads(path.read_text())
-        change(said)
-        path.write_text(json.dumps(said))
-
-    return apply
-
-
-def cut_manifest(folder: Path) -> None:
-    path = folder / "manifest.json"
-    path.write_text(path.read_text()[:500])
-
-
-def reformat(number: int) -> Callable[[dict[str, object]], object]:
-    """As another version of crankcheck would lay it out."""
-    return lambda said: said.update(format=number)
-
-
-def renamed(said: dict[str, object]) -> None:
-    said["scenes"] = {name: str(text) + "\n# changed" for name, text in said["scenes"].items()}
-
-
-def all_cells(folder: Path) -> None:
-    for path in (folder / "cells").iterdir():
-        path.write_bytes(b"")
-
-
+PART = "cells/*"
+CUT = "cut short; 2 cells missing"
+OTHER_SUM = "its checksum differs; 2 cells missing"
 CASES = {
-    "cut": Case(cut("cells"), "cut short; 2 cells missing", 2, gate=2),
-    "empty": Case(content("cells", b""), "cut short; 2 cells missing", 2, gate=2),
-    "text": Case(content("cells", b"dear diary"), "cut short; 2 cells missing", 2, gate=2),
-    "flipped": Case(flipped, "its checksum differs; 2 cells missing", 2, gate=2),
-    "rewritten": Case(rewritten, "its checksum differs; 2 cells missing", 2, gate=2),
-    "swapped": Case(swapped, "its checksum differs; 2 cells missing", 0, gate=2),
+    "cut": Case(cut("cells"), CUT, 2, gate=2),
+    "empty": Case(spoiled(PART, lambda _: b""), CUT, 2, gate=2),
+    "text": Case(spoiled(PART, lambda _: b"dear diary"), CUT, 2, gate=2),
+    "flipped": Case(spoiled(PART, flipped), OTHER_SUM, 2, gate=2),
+    "rewritten": Case(spoiled(PART, rewritten), OTHER_SUM, 2, gate=2),
+    "swapped": Case(swapped, OTHER_SUM, 0, gate=2),
     "twice": Case(twice, "rows that another part has too"),
     "cut timings": Case(cut("timings"), "cut short; its times are lost"),
-    "timings file": Case(
-        in_place("timings", lambda path: path.write_text("x")), "in place of a folder; all times"
-    ),
+    "timings file": Case(in_place("timings", text), "in place of a folder; all times"),
     "whole part": Case(gone("cells", "timings"), "not all that its sweeps asked for", 2, gate=2),
     "other store": Case(of_another_store, "no sweep in manifest.json asked for", cure="nothing"),
-    "other folder": Case(in_another_folder, "parquet: not of the store", cure="nothing"),
-    "cut manifest": Case(cut_manifest, "manifest.json: not JSON", 0, gate=2),
-    "no manifest": Case(in_place("manifest.json", lambda _: None), "json: not there", 0, gate=2),
+    "other folder": Case(
+        lambda f: shutil.copy(first(f, "timings"), f / "cells"),
+        "parquet: not of the store",
+        cure="nothing",
+    ),
+    "cut manifest": Case(
+        spoiled(MANIFEST, lambda raw: raw[:500]), "manifest.json: not JSON", 0, gate=2
+    ),
+    "no manifest": Case(lambda f: (f / MANIFEST).unlink(), "json: not there", 0, gate=2),
     "other manifest": Case(manifest(renamed), "manifest.json: not as it was written", 0, gate=2),
     "plain manifest": Case(manifest(lambda said: said.pop("seal")), "checksum differs", 0, gate=2),
-    "listed": Case(in_place("manifest.json", lambda p: p.write_text("[]")), "a list", 0, gate=2),
-    "newer": Case(manifest(reformat(9)), "format 9, written by crankcheck", 0, "anew", gate=2),
-    "older": Case(manifest(reformat(1)), "format 1, written by crankcheck", 0, "anew", gate=2),
-    "notes": Case(lambda f: (f / "notes.txt").write_text("x"), "notes.txt: not of", cure="nothing"),
-    "finder": Case(
-        lambda f: (f / "cells" / ".DS_Store").write_text("x"), "cells/.DS_Store: n", cure="nothing"
-    ),
-    "folder": Case(in_place("cells/*", Path.mkdir), "parquet: a folder; 2 cells", 2, gate=2),
-    "manifest folder": Case(
-        in_place("manifest.json", Path.mkdir), "manifest.json: a folder", 0, gate=2
-    ),
-    "pipe": Case(in_place("cells/*", os.mkfifo), "a pipe, no plain file; 2 cells", 2, gate=2),
-    "manifest pipe": Case(in_place("manifest.json", os.mkfifo), "json: a pipe", 0, gate=2),
+    "listed": Case(spoiled(MANIFEST, lambda _: b"[]"), "a list", 0, gate=2),
+    "newer": Case(reformat(9), "format 9, written by crankcheck", 0, "anew", gate=2),
+    "older": Case(reformat(1), "format 1, written by crankcheck", 0, "anew", gate=2),
+    "notes": Case(lambda f: text(f / "notes.txt"), "notes.txt: not of", cure="nothing"),
+    "finder": Case(lambda f: text(f / "cells/.DS_Store"), "cells/.DS_Store: n", cure="nothing"),
+    "folder": Case(in_place(PART, Path.mkdir), "parquet: a folder; 2 cells", 2, gate=2),
+    "manifest folder": Case(in_place(MANIFEST, Path.mkdir), "manifest.json: a folder", 0, gate=2),
+    "pipe": Case(in_place(PART, os.mkfifo), "a pipe, no plain file; 2 cells", 2, gate=2),
+    "manifest pipe": Case(in_place(MANIFEST, os.mkfifo), "json: a pipe", 0, gate=2),
     "manifest too large": Case(
-        in_place("manifest.json", huge),
-        f"{MOST_BYTES + 1} bytes; at most {MOST_BYTES} are",
-        0,
-        gate=2,
+        in_place(MANIFEST, huge), f"{MOST_BYTES + 1} bytes; at most {MOST_BYTES} are", 0, gate=2
     ),
-    "loop": Case(in_place("cells/*", loop), "Too many levels of symbolic links", 2, gate=2),
-    "manifest loop": Case(in_place("manifest.json", loop), "Too many levels", 0, gate=2),
+    "loop": Case(in_place(PART, loop), "Too many levels of symbolic links", 2, gate=2),
+    "manifest loop": Case(in_place(MANIFEST, loop), "Too many levels", 0, gate=2),
     "timings loop": Case(in_place("timings", loop), "timings: can not be read: Too many levels"),
-    "all cells": Case(all_cells, "cut short; 2 cells missing", 0, gate=2),
-    "cells file": Case(
-        in_place("cells", lambda path: path.write_text("x")), "cells: a file in place of", 0, gate=2
+    "all cells": Case(lambda f: [p.write_bytes(b"") for p in f.glob("cells/*")], CUT, 0, gate=2),
+    "cells file": Case(in_place("cells", text), "cells: a file in place of", 0, gate=2),
+    "cells folder": Case(
+        lambda f: shutil.rmtree(f / "cells"), "cells: not there; 4 cells missing", 0, gate=2
     ),
-    "cells folder": Case(without("cells"), "cells: not there; 4 cells missing", 0, gate=2),
 }
 QUICK = {
     *("cut", "swapped", "twice", "cut timings", "whole part", "other store"),

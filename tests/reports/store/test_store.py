@@ -40,29 +40,26 @@ def filled(folder: Path, outcome: MeasuredCell, *keys: str) -> None:
 
 
 def test_the_last_run_says_what_cells_are_called(tmp_path: Path, outcome: MeasuredCell) -> None:
-    folder = tmp_path / "s"
-    with Writer(folder, Manifest({}, ({"lines": {"l1": ["old", "tuned", False]}},))) as writer:
+    with Writer(tmp_path, Manifest({}, ({"lines": {"l1": ["old", "tuned", False]}},))) as writer:
         for key, line in (("k1", "l1"), ("k2", "l2")):
             row = {**names(key), "line": line, "variant": "old", **outcome.row}
             writer.cell(row, outcome.errors, {})
-    with Writer(folder, Manifest({}, ({"lines": {"l2": ["mid", "tuned", False]}},))):
-        pass
-    with Writer(folder, Manifest({}, ({"lines": {"l1": ["new", "as-shipped", True]}},))):
-        pass
-    cells = read_store(folder).cells
-    assert list(cells.key) == ["k2", "k1"]  # what was asked for last stands last
-    assert list(cells.variant) == ["mid", "new"]
-    assert list(cells.profile) == ["tuned", "as-shipped"]
-    assert list(cells.gated) == [False, True]
+    for lines in ({"l2": ["mid", "tuned", False]}, {"l1": ["new", "as-shipped", True]}):
+        with Writer(tmp_path, Manifest({}, ({"lines": lines},))):
+            pass
+    cells = read_store(tmp_path).cells[["key", "variant", "profile", "gated"]]
+    assert cells.to_numpy().tolist() == [  # what was asked for last stands last
+        ["k2", "mid", "tuned", False],
+        ["k1", "new", "as-shipped", True],
+    ]
 
 
 def test_cells_are_forgotten_part_by_part(tmp_path: Path, outcome: MeasuredCell) -> None:
-    folder = tmp_path / "s"
-    filled(folder, outcome, "k1", "k2")
-    filled(folder, outcome, "k3")
-    with Writer(folder, Manifest()) as writer:
+    filled(tmp_path, outcome, "k1", "k2")
+    filled(tmp_path, outcome, "k3")
+    with Writer(tmp_path, Manifest()) as writer:
         writer.forget({"k1", "k3", "k9"})
-    found = read_store(folder)
+    found = read_store(tmp_path)
     assert list(found.cells.key) == ["k2"]
     assert set(found.errors.key) == {"k2"}
     assert found.trace("k1") == {}
@@ -70,8 +67,8 @@ def test_cells_are_forgotten_part_by_part(tmp_path: Path, outcome: MeasuredCell)
 
 
 def test_what_is_written_is_read_again(tmp_path: Path, outcome: MeasuredCell) -> None:
-    filled(tmp_path / "s", outcome, "k1", "k2")
-    found = read_store(tmp_path / "s")
+    filled(tmp_path, outcome, "k1", "k2")
+    found = read_store(tmp_path)
     assert list(found.cells.key) == ["k1", "k2"]
     assert found.cells.place_pure[0] == outcome.row["place_pure"]
     assert json.loads(found.cells.asked[0]) == {"a": 1}
@@ -83,26 +80,21 @@ def test_what_is_written_is_read_again(tmp_path: Path, outcome: MeasuredCell) ->
     for series, values in outcome.trace.items():
         np.testing.assert_array_equal(trace[series], values)
     assert found.trace("k3") == {}
-    assert stored_keys(tmp_path / "s", "cells") == {"k1", "k2"}
-    assert stored_keys(tmp_path / "s", "timings") == set()
-    assert stored_costs(tmp_path / "s") == dict.fromkeys(
-        ("k1", "k2"), outcome.row["logged_us_per_step"]
-    )
+    assert stored_keys(tmp_path, "cells") == {"k1", "k2"}
+    assert stored_keys(tmp_path, "timings") == set()
+    us = outcome.row["logged_us_per_step"]
+    assert stored_costs(tmp_path) == {"k1": us, "k2": us}
+    said = {name for row in outcome.errors for name in row}
+    assert said - outcome.row.keys() == {*NESTED["errors"]}
 
 
 def test_a_second_run_adds_and_replaces_nothing(tmp_path: Path, outcome: MeasuredCell) -> None:
-    folder = tmp_path / "s"
-    filled(folder, outcome, "k1")
-    first = {path: path.read_bytes() for path in folder.glob("*/*.parquet")}
-    filled(folder, outcome, "k2")
+    filled(tmp_path, outcome, "k1")
+    first = {path: path.read_bytes() for path in tmp_path.glob("*/*.parquet")}
+    filled(tmp_path, outcome, "k2")
     assert {path: path.read_bytes() for path in first} == first
-    assert list(read_store(folder).cells.key) == ["k1", "k2"]
-    assert [run["command"] for run in read_manifest(folder).runs] == [["k1"], ["k2"]]
-
-
-def test_a_cell_keeps_all_that_is_said_of_its_errors(outcome: MeasuredCell) -> None:
-    of_the_cell = outcome.row.keys()
-    assert {name for row in outcome.errors for name in row} - of_the_cell == {*NESTED["errors"]}
+    assert list(read_store(tmp_path).cells.key) == ["k1", "k2"]
+    assert [run["command"] for run in read_manifest(tmp_path).runs] == [["k1"], ["k2"]]
 
 
 def test_types_of_columns_do_not_depend_on_what_is_missing() -> None:
@@ -113,20 +105,18 @@ def test_types_of_columns_do_not_depend_on_what_is_missing() -> None:
 
 
 def test_all_parts_have_one_schema(tmp_path: Path, outcome: MeasuredCell) -> None:
-    folder = tmp_path / "s"
-    filled(folder, outcome, "k1")
+    filled(tmp_path, outcome, "k1")
     lost = dict.fromkeys(outcome.row) | {"status": "crashed"}
-    with Writer(folder, Manifest()) as writer:
+    with Writer(tmp_path, Manifest()) as writer:
         writer.cell({**names("k2"), **lost}, (), {})
-    schemas = [pq.read_schema(path) for path in (folder / "cells").glob("*.parquet")]
-    assert len(schemas) == 2
-    assert schemas[0] == schemas[1]
+    first, second = [pq.read_schema(path) for path in tmp_path.glob("cells/*.parquet")]
+    assert first == second
 
 
 def test_trajectories_are_kept_beside_the_rows(tmp_path: Path, outcome: MeasuredCell) -> None:
-    with Writer(tmp_path / "s", Manifest()) as writer:
+    with Writer(tmp_path, Manifest()) as writer:
         writer.trajectory("k1", outcome.run)
-    found = pq.read_table(tmp_path / "s" / "trajectories" / "k1.parquet").to_pandas()
+    found = pq.read_table(tmp_path / "trajectories" / "k1.parquet").to_pandas()
     np.testing.assert_array_equal(found.time_s, outcome.run.motion.time_s)
     np.testing.assert_array_equal(found.rocker_theta_rad, outcome.run.motion.links["rocker"].theta)
     np.testing.assert_array_equal(found.C_gap_m, outcome.run.gaps["C"])
@@ -134,32 +124,24 @@ def test_trajectories_are_kept_beside_the_rows(tmp_path: Path, outcome: Measured
 
 def test_a_changed_scene_of_the_same_name_is_refused(tmp_path: Path, outcome: MeasuredCell) -> None:
     name = str(outcome.row["scene"])
-    with Writer(tmp_path / "s", Manifest({name: TEXT})) as writer:
+    with Writer(tmp_path, Manifest({name: TEXT})) as writer:
         row = {**names("k1"), "scene_digest": digest(TEXT), **outcome.row}
         writer.cell(row, outcome.errors, outcome.trace)
     with pytest.raises(CrankcheckError, match=f"another scene called {name}"):
-        Writer(tmp_path / "s", Manifest({name: TEXT.replace("1.0", "2.0")}))
-    Writer(tmp_path / "s", Manifest({name: "# the same\n" + TEXT})).__exit__(None, None, None)
+        Writer(tmp_path, Manifest({name: TEXT.replace("1.0", "2.0")}))
+    Writer(tmp_path, Manifest({name: "# the same\n" + TEXT})).__exit__(None, None, None)
 
 
-def test_a_folder_with_something_else_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "thesis.txt").write_text("years of work")
-    with pytest.raises(CrankcheckError, match=r"holds thesis\.txt and no manifest"):
-        Writer(tmp_path, Manifest())
-    assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
-
-
-def test_a_file_in_place_of_the_folder_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "file"
-    path.write_text("x")
-    with pytest.raises(CrankcheckError, match="is a file; name a folder"):
-        Writer(path, Manifest())
-
-
-def test_no_store_and_an_empty_store(tmp_path: Path) -> None:
-    with pytest.raises(CrankcheckError, match="no store of a sweep there"):
-        read_store(tmp_path)
+def test_what_is_no_store_or_an_empty_one_is_refused(tmp_path: Path) -> None:
     with Writer(tmp_path / "s", Manifest()):
         pass
     with pytest.raises(CrankcheckError, match="a store without cells"):
         read_store(tmp_path / "s")
+    path = tmp_path / "home" / "thesis.txt"
+    path.parent.mkdir()
+    path.write_text("years of work")
+    with pytest.raises(CrankcheckError, match="is a file; name a folder"):
+        Writer(path, Manifest())
+    with pytest.raises(CrankcheckError, match=r"holds thesis\.txt and no manifest"):
+        Writer(path.parent, Manifest())
+    assert [*path.parent.iterdir()] == [path]

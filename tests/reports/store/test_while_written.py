@@ -1,24 +1,26 @@
-"""A store that is read while a sweep writes to it."""
+"""A store that is read while a sweep writes to it, or that one left half written."""
 
 from __future__ import annotations
 
 import shutil
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import pyarrow as pa
 import pytest
 from filelock import FileLock
 
-from models.errors import CrankcheckError
-from reports.cli.changes import DiffRequest
-from reports.cli.commands import diff, report
-from reports.store import lock
+from reports.cli.commands import report
+from reports.store import lock, mending, part
 from reports.store.damage import BUSY
-from reports.store.part import Part, open_part
+from reports.store.examine import examine
+from reports.store.part import Part, open_part, write_part
 from reports.store.reader import read_store
-from tests.reports.store.damages import cut, gone
-from tests.reports.store.test_damage import ended, paper
+from reports.store.writer import Writer
+from tests.reports.store.damages import LATER, cut, first, gone
+from tests.reports.store.test_damage import differ, paper, refusal, same
+from tests.worlds.tiers import few
 
 
 @pytest.fixture
@@ -33,12 +35,12 @@ def test_cells_that_a_sweep_is_to_write_yet_are_no_damage(
 ) -> None:
     gone("cells", "timings")(store)
     assert report.run_report(store, None, "md", paper()) == 0
-    told = capsys.readouterr().err.splitlines()
-    assert told == [f"crankcheck: {store}: {BUSY}; 2 cells can be read, 2 missing"]
+    told = f"crankcheck: {store}: {BUSY}; 2 cells can be read, 2 missing\n"
+    assert capsys.readouterr().err == told
     assert held.is_locked
     held.release()
-    assert "what mends it" in "".join(read_store(store).notice)
-    assert BUSY not in "".join(read_store(store).notice)
+    notice = "".join(read_store(store).notice)
+    assert ("what mends it" in notice, BUSY in notice) == (True, False)
 
 
 def test_a_comparison_with_a_running_sweep_waits_for_its_cells(
@@ -46,21 +48,15 @@ def test_a_comparison_with_a_running_sweep_waits_for_its_cells(
 ) -> None:
     gone("cells")(store)
     for old, new in ((store, whole), (whole, store)):
-        code, message = ended(diff.run_diff, DiffRequest(old, new), paper())
-        assert code == 2
-        assert "2 cells of" in message
-        assert f"{BUSY}; 2 cells missing" in message
-        assert "let its sweep end first" in message
-    assert ended(diff.run_diff, DiffRequest(store, store), paper()) == (0, "")
-
-
-def test_what_is_damaged_is_told_while_a_sweep_writes_too(store: Path, held: FileLock) -> None:
-    gone("cells")(store)
-    cut("timings")(store)
-    lines = read_store(store).notice
-    assert BUSY in lines[0]
-    assert "cut short; its times are lost" in "\n".join(lines)
-    assert "what mends it" in "\n".join(lines)
+        message = refusal(differ, old, new)
+        for words in ("2 cells of", f"{BUSY}; 2 cells missing", "let its sweep end first"):
+            assert words in message
+    assert differ(store, store) == 0
+    cut("timings")(store)  # and what is damaged is told too
+    head, *lines = read_store(store).notice
+    assert BUSY in head
+    assert "cut short; its times are lost" in "".join(lines)
+    assert "what mends it" in "".join(lines)
 
 
 def test_a_part_that_a_sweep_replaces_meanwhile_is_read_where_it_is_now(
@@ -81,17 +77,13 @@ def test_a_part_that_a_sweep_replaces_meanwhile_is_read_where_it_is_now(
     assert [each.what for each in found.damage] == [BUSY]
 
 
-def test_a_sweep_without_a_cell_yet_is_said_to_run(store: Path, held: FileLock) -> None:
-    shutil.rmtree(store / "cells")
-    (store / "cells").mkdir()
-    with pytest.raises(CrankcheckError, match=f"{BUSY}; 0 cells can be read, 4 missing"):
-        read_store(store)
-
-
-def test_a_whole_store_is_read_without_a_word_while_a_sweep_writes(
+def test_a_whole_store_is_read_without_a_word_and_one_without_a_cell_is_said_to_be_written(
     store: Path, held: FileLock
 ) -> None:
     assert read_store(store).notice == []
+    shutil.rmtree(store / "cells")
+    (store / "cells").mkdir()
+    assert f"{BUSY}; 0 cells can be read, 4 missing" in refusal(read_store, store)
 
 
 def test_a_sweep_that_begins_or_ends_meanwhile_is_seen(
@@ -136,3 +128,67 @@ def test_a_reader_takes_the_lock_from_no_sweep_that_starts(
         assert not reader.is_locked
         assert lock.is_written(store)
     assert not lock.is_written(store)
+
+
+class KilledError(Exception):
+    """In place of a signal."""
+
+
+def repeat_one_cell(folder: Path) -> None:
+    """Write one of MuJoCo's two cells, and its times, once more in a later part."""
+    key = open_part(first(folder, "cells")).keys[0]
+    for table in ("cells", "timings"):
+        whole = open_part(first(folder, table))
+        rows = whole.file.read().filter(pa.array([k == key for k in whole.keys]))
+        write_part(folder / table, table, rows, LATER)
+
+
+def killed_at(step: int, monkeypatch: pytest.MonkeyPatch, *calls: tuple[object, str]) -> None:
+    """Let some functions be called ``step`` times in all, and no more."""
+    left = [None] * step
+
+    def counted(call: Callable[..., object]) -> Callable[..., object]:
+        def until(*arguments: object, **options: object) -> object:
+            if not left:
+                raise KilledError
+            left.pop()
+            return call(*arguments, **options)
+
+        return until
+
+    for where, name in calls:
+        monkeypatch.setattr(where, name, counted(getattr(where, name)))
+
+
+@pytest.mark.parametrize("step", few(range(4), {1, 2}, "before the first and after the last"))
+def test_mending_that_is_killed_loses_no_cell(
+    step: int, store: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    repeat_one_cell(store)
+    killed_at(step, monkeypatch, (part, "write"), (mending, "_set_aside"))
+    with pytest.raises(KilledError):
+        mending.mend(store, examine(store))
+    monkeypatch.undo()
+    same(read_store(store), read_store(whole))  # with all errors and traces
+    mending.mend(store, examine(store))
+    assert examine(store).damage == ()
+    same(read_store(store), read_store(whole))
+
+
+@pytest.mark.parametrize("step", range(2))
+def test_a_sweep_killed_while_it_takes_out_a_cell_loses_no_other(
+    step: int, store: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wanted = read_store(whole)
+    key = wanted.cells.key[0]
+    with Writer(store, wanted.manifest) as writer:
+        killed_at(step, monkeypatch, (part, "write"), (Path, "unlink"))
+        with pytest.raises(KilledError):
+            writer.forget({key})
+        monkeypatch.undo()
+    same(read_store(store), wanted)
+    with Writer(store, wanted.manifest) as writer:
+        writer.forget({key})
+    found = read_store(store)
+    assert set(found.cells.key) == set(wanted.cells.key) - {key}
+    assert "rows that another part has too" not in "".join(found.notice)
