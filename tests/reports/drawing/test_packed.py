@@ -12,16 +12,9 @@ import numpy as np
 import pytest
 
 from reports.drawing.packed import LEVELS, embedded, packed, policy, singles, size_of
-from reports.output.numbers import (
-    DIGITS,
-    NONE,
-    count,
-    duration,
-    error_text,
-    finite,
-    listed,
-    readable,
-)
+from reports.output import numbers
+from reports.output.numbers import DIGITS, NONE, count, finite, listed
+from tests.reports.drawing.test_moving import unpacked
 
 HOSTILE = "</script><script>alert(1)</script><!--\u2028\u2029&'\""
 
@@ -43,11 +36,9 @@ def test_numbers_are_thinned_and_what_is_no_number_is_null() -> None:
 def test_packed_samples_come_back_to_a_part_of_their_row(scale: float) -> None:
     rows = np.vstack([np.sin(np.linspace(0, 7, 91)), np.linspace(-1e-6, 1e-7, 91)]) * scale
     found = packed(rows)
-    whole = np.frombuffer(base64.b64decode(str(found["base64"])), "<i2").reshape(2, 91)
-    back = whole * np.asarray(found["scales"])[:, None]
     largest = np.max(np.abs(rows), axis=1, keepdims=True)
     room = largest / LEVELS if scale > 1e-300 else np.full_like(largest, scale)
-    assert np.all(np.abs(back - rows) <= room)
+    assert np.all(np.abs(unpacked(found) - rows) <= room)
     assert found["samples"] == 91
 
 
@@ -83,40 +74,23 @@ def test_the_policy_lets_the_own_scripts_run_and_nothing_else() -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "text"),
+    ("way", "value", "text"),
     [
-        (0.0, "0"), (0.001, "0.001"), (0.01234, "0.0123"), (-3.016, "-3.02"), (345.6, "346"),
-        (12345.6, "12346"), (1e-4, "1e-4"), (1.2e-4, "1.2e-4"), (-4.567e-9, "-4.57e-9"),
-        (1e5, "1e5"), (math.inf, "inf"), (math.nan, "nan"),
+        *[("readable", value, text) for value, text in {
+            0.0: "0", 0.001: "0.001", 0.01234: "0.0123", -3.016: "-3.02", 345.6: "346",
+            12345.6: "12346", 1e-4: "1e-4", 1.2e-4: "1.2e-4", -4.567e-9: "-4.57e-9", 1e5: "1e5",
+            math.inf: "inf", math.nan: "nan"}.items()],
+        *[("error_text", value, text) for value, text in {
+            2.66e-4: "2.7e-4", 0.0: "0", math.nan: NONE, None: NONE, 1.0: "1.0e0"}.items()],
+        *[("duration", value, text) for value, text in {
+            1.4e-3: "1.40 ms", 14.06e-3: "14.1 ms", 0.99996e-3: "1.00 ms", 4.84e-4: "484 µs",
+            12.0: "12.0 s", 3e-9: "3.00 ns", None: NONE, math.inf: NONE}.items()],
     ],
 )  # fmt: skip
-def test_numbers_are_told_without_an_exponent_where_they_need_none(value: float, text: str) -> None:
-    assert readable(value) == text
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [(2.66e-4, "2.7e-4"), (0.0, "0"), (math.nan, NONE), (None, NONE), (1.0, "1.0e0")],
-)
-def test_errors_are_told_in_two_digits(value: float | None, text: str) -> None:
-    assert error_text(value) == text
-
-
-@pytest.mark.parametrize(
-    ("seconds", "text"),
-    [
-        (1.4e-3, "1.40 ms"),
-        (14.06e-3, "14.1 ms"),
-        (0.99996e-3, "1.00 ms"),
-        (4.84e-4, "484 µs"),
-        (12.0, "12.0 s"),
-        (3e-9, "3.00 ns"),
-        (None, NONE),
-        (math.inf, NONE),
-    ],
-)
-def test_times_are_told_in_three_digits(seconds: float | None, text: str) -> None:
-    assert duration(seconds) == text
+def test_numbers_have_no_needless_exponent_errors_two_digits_and_times_three(
+    way: str, value: float | None, text: str
+) -> None:
+    assert getattr(numbers, way)(value) == text
 
 
 def test_things_are_counted_and_listed() -> None:
