@@ -1,9 +1,15 @@
-"""The same mechanism sped up; the rest is in `analytic.check.moved_scene`."""
+"""The same mechanism sped up, or otherwise changed so that what it does is known by that."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
+import numpy as np
+
+from analytic.check import moved_scene
+from models.array import Array
 from models.friction import ConstantFriction, Friction
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.loads import Load, Stroke
@@ -70,3 +76,35 @@ def sped_up(scene: Scene, factor: float) -> Scene:
         friction={name: rubbing(old) for name, old in scene.friction.items()},
         springs={name: spring(old) for name, old in scene.springs.items()},
     )
+
+
+@dataclass(frozen=True)
+class Change:
+    """What is done to a scene, and how its motion is other by that: the plane is mirrored in the
+    x-axis, grows, is turned and shifted; all goes ``fast`` times as fast."""
+
+    of: Callable[[Scene], Scene]
+    turn_rad: float = 0.0
+    shift_m: tuple[float, float] = (0.0, 0.0)
+    grow: float = 1.0
+    fast: float = 1.0
+    side: float = 1.0
+
+    def turned(self, vectors: Array) -> Array:
+        """Vectors (T, 2) in the changed plane, as long as they were."""
+        c, s = math.cos(self.turn_rad), math.sin(self.turn_rad)
+        x, y = vectors[:, 0], self.side * vectors[:, 1]
+        return np.stack([c * x - s * y, s * x + c * y], axis=1)
+
+
+MOVES: dict[str, Change] = {
+    "turned": Change(lambda s: moved_scene.rotated(s, 0.7), turn_rad=0.7),
+    "moved": Change(lambda s: moved_scene.moved(s, (3.0, -2.0)), shift_m=(3.0, -2.0)),
+    "mirrored": Change(moved_scene.mirrored, side=-1.0),
+    "larger": Change(lambda s: moved_scene.scaled(s, 10.0), grow=10.0),
+    "smaller": Change(lambda s: moved_scene.scaled(s, 0.1), grow=0.1),
+}
+
+
+def faster(factor: float) -> Change:
+    return Change(lambda s: sped_up(s, factor), fast=factor)

@@ -7,15 +7,13 @@ or on both.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from analytic.check import moved_scene
 from analytic.forces import kinetostatics
-from models.array import Array
 from models.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.files import load_scene, shipped
 from models.forces import Forces
@@ -24,62 +22,13 @@ from models.scene import Scene
 from models.tabulated import Tabulated
 from tests.analytic.forces.beside import apart, turn, unlocked
 from tests.worlds.loading import loaded
-from tests.worlds.other_way import sped_up
+from tests.worlds.other_way import MOVES, Change, faster, sped_up
 from tests.worlds.sprung import sprung
 from tests.worlds.tiers import slowly
 
 CLOSE = 1e-11
-
-
-@dataclass(frozen=True)
-class Change:
-    """A change of scenes, and what it does: the plane is mirrored in the x-axis, turned, and grows;
-    all goes ``fast`` times as fast."""
-
-    of: Callable[[Scene], Scene]
-    turn_rad: float = 0.0
-    grow: float = 1.0
-    fast: float = 1.0
-    flip: bool = False
-
-    def expected(self, old: Forces) -> Forces:
-        """The forces of the changed scene, from those of the scene."""
-        force, hand = self.grow**2 * self.fast**2, -1.0 if self.flip else 1.0
-        c, s = np.cos(self.turn_rad), np.sin(self.turn_rad)
-
-        def carried(series: Array) -> Array:
-            if series.ndim == 1:
-                return series
-            x, y = series[:, 0], hand * series[:, 1]
-            return force * np.stack([c * x - s * y, s * x + c * y], axis=1)
-
-        turned = old.each_series(carried)
-        sliders = {
-            name: replace(
-                one, normal=hand * force * one.normal, moment=hand * self.grow * force * one.moment
-            )
-            for name, one in old.sliders.items()
-        }
-        couple = hand * self.grow * force
-        friction = {
-            joint: (force if joint in sliders else couple) * one
-            for joint, one in old.friction.items()
-        }
-        return replace(turned, sliders=sliders, torque=couple * old.torque, friction=friction)
-
-
-CHANGES = {
-    "turned": Change(lambda s: moved_scene.rotated(s, 0.7), turn_rad=0.7),
-    "moved": Change(lambda s: moved_scene.moved(s, (3.0, -2.0))),
-    "mirrored": Change(moved_scene.mirrored, flip=True),
-    "larger": Change(lambda s: moved_scene.scaled(s, 10.0), grow=10.0),
-    "smaller": Change(lambda s: moved_scene.scaled(s, 0.1), grow=0.1),
-    "faster": Change(lambda s: sped_up(s, 50.0), fast=50.0),
-    "the other way": Change(lambda s: sped_up(s, -1.0), fast=-1.0),
-}
+CHANGES = MOVES | {"faster": faster(50.0), "the other way": faster(-1.0)}
 LOADED = ("shaper", "sixbar-watt", "tangent", "whitworth", "scotch-yoke")
-
-
 WITH_LOADS = [
     (name, change)
     for name in shipped("forces")
@@ -115,7 +64,20 @@ def test_forces_of_springs_go_with_the_scene(name: str, change: str, seeds: rang
 def _goes_with(scene: Scene, change: Change) -> None:
     time_s = unlocked(scene, turn(scene))
     found = kinetostatics.forces(change.of(scene), time_s / change.fast)
-    assert apart(change.expected(kinetostatics.forces(scene, time_s)), found) <= CLOSE
+    assert apart(_expected(kinetostatics.forces(scene, time_s), change), found) <= CLOSE
+
+
+def _expected(old: Forces, by: Change) -> Forces:
+    """The forces of the changed scene, from those of the scene."""
+    force = by.grow**2 * by.fast**2
+    couple = by.side * by.grow * force
+    turned = old.each_series(lambda each: each if each.ndim == 1 else force * by.turned(each))
+    sliders = {
+        name: replace(one, normal=by.side * force * one.normal, moment=couple * one.moment)
+        for name, one in old.sliders.items()
+    }
+    friction = {n: (force if n in sliders else couple) * one for n, one in old.friction.items()}
+    return replace(turned, sliders=sliders, torque=couple * old.torque, friction=friction)
 
 
 CHARACTERISTICS = (

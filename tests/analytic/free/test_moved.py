@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 import pytest
 
-from analytic.check import moved_scene
 from analytic.free.free_motion import FreeMotion
 from analytic.free.release import release
-from models.array import Array
 from models.files import load_scene, parse_scene
 from models.scene import Scene
 from tests.worlds.let_go import EVERYTHING
-from tests.worlds.other_way import sped_up
+from tests.worlds.other_way import MOVES, faster
 from tests.worlds.tiers import slowly
 
 SAMPLES = 25
@@ -32,26 +28,7 @@ SCENES: dict[str, tuple[Scene, float, float]] = {
 """Let go for a short and for a longer time [s]."""
 
 
-@dataclass(frozen=True)
-class Change:
-    """What is done to a scene, and how its motion is other by that."""
-
-    scene: Callable[[Scene], Scene]
-    turn_rad: float = 0.0
-    shift_m: tuple[float, float] = (0.0, 0.0)
-    grow: float = 1.0
-    fast: float = 1.0
-    side: float = 1.0
-
-
-CHANGES: dict[str, Change] = {
-    "turned": Change(lambda s: moved_scene.rotated(s, 0.7), turn_rad=0.7),
-    "moved": Change(lambda s: moved_scene.moved(s, (3.0, -2.0)), shift_m=(3.0, -2.0)),
-    "mirrored": Change(moved_scene.mirrored, side=-1.0),
-    "larger": Change(lambda s: moved_scene.scaled(s, 10.0), grow=10.0),
-    "smaller": Change(lambda s: moved_scene.scaled(s, 0.1), grow=0.1),
-    "faster": Change(lambda s: sped_up(s, 5.0), fast=5.0),
-}
+CHANGES = MOVES | {"faster": faster(5.0)}
 
 
 @cache
@@ -79,7 +56,7 @@ def test_the_free_motion_of_the_moved_scene_is_the_moved_motion(
     name: str, change: str, until_s: float
 ) -> None:
     scene, by = SCENES[name][0], CHANGES[change]
-    own, other = let_go(name, until_s), release(by.scene(scene), until_s / by.fast)
+    own, other = let_go(name, until_s), release(by.of(scene), until_s / by.fast)
     time_s = np.linspace(0.0, until_s, SAMPLES)
     old, new = own.at(time_s, bound=False), other.at(time_s / by.fast, bound=False)
     off = ALLOWED * own.sensitivity(time_s)
@@ -90,7 +67,7 @@ def test_the_free_motion_of_the_moved_scene_is_the_moved_motion(
         assert np.all(np.abs(apart - math.tau * np.round(apart[0] / math.tau)) <= off)
         assert np.all(np.abs(now.omega / by.fast - by.side * was.omega) <= 10.0 * fastest * off)
     for point, place in old.points.items():
-        wanted = _placed(place.position, by)
+        wanted = by.grow * by.turned(place.position) + by.shift_m
         assert np.all(
             np.hypot(*(new.points[point].position - wanted).T)
             <= off * (by.grow * scene.longest_m + np.hypot(*by.shift_m))
@@ -100,10 +77,3 @@ def test_the_free_motion_of_the_moved_scene_is_the_moved_motion(
     largest = float(np.max(energy.kinetic))
     assert np.all(np.abs(again.kinetic / gain - energy.kinetic) <= 10.0 * largest * off)
     assert np.all(np.abs(again.work / gain - energy.work) <= 10.0 * largest * off)
-
-
-def _placed(places: Array, by: Change) -> Array:
-    """Places (T, 2) of the scene where they are in the changed one."""
-    c, s = math.cos(by.turn_rad), math.sin(by.turn_rad)
-    x, y = by.grow * places[:, 0], by.grow * by.side * places[:, 1]
-    return np.stack([c * x - s * y + by.shift_m[0], s * x + c * y + by.shift_m[1]], axis=1)
