@@ -111,12 +111,15 @@ def test_a_terminal_of_ascii_shows_an_escape(ended: dict[str, End]) -> None:
     assert r"\u0110\u1ed9ng" in output
 
 
+LONG = "division " * 50
+
+
 @pytest.fixture
 def broken(monkeypatch: pytest.MonkeyPatch) -> None:
     """A command with a fault of its own."""
 
     def fault(*_: object) -> object:
-        raise ZeroDivisionError("division\nby zero")
+        raise ZeroDivisionError(f"{LONG}\nby zero")
 
     monkeypatch.setattr("reports.cli.commands.listing.scenes", fault)
     monkeypatch.setenv("CRANKCHECK_TRACEBACK", "")
@@ -127,7 +130,8 @@ def test_a_fault_of_crankcheck_is_no_verdict_and_asks_to_be_reported() -> None:
     result = crank("scenes")
     assert result.exit_code == 70
     (line,) = result.stderr.splitlines()
-    assert line.startswith("crankcheck: internal error: ZeroDivisionError: division; please report")
+    told = f"crankcheck: internal error: ZeroDivisionError: {LONG[:300]}; please report"
+    assert line.startswith(told)
     assert "--traceback" in line
 
 

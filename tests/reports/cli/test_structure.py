@@ -97,6 +97,7 @@ def test_the_exit_code_tells_a_defect(positions: tuple[str, str], code: int, wor
 def test_the_branch_of_what_has_no_circuits_is_told_with_its_ends() -> None:
     told = crank("rotatability", "slider-crank-by-piston")
     assert told.exit_code == 0
+    assert told.output.startswith("slider-crank-by-piston: the branch that it is on alone\n")
     assert "slider C ends at 0.2 m: crank and rod in line" in told.output
     told = crank("rotatability", "triad-platform", "--json")
     assert json.loads(told.output)["ends"] == []

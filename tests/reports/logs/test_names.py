@@ -55,6 +55,7 @@ SLIDER_CRANK = SceneNames(load_scene("slider-crank-central"))
         ("C_x_mm on coupler", "C", "x", "mm"),
         ("rocker.rotation.z", "rocker", "angle", "rad"),
         ("rocker.angular_velocity.z", "rocker", "angular velocity", "rad/s"),
+        ("rocker.angle.velocity.z", "rocker", "angular velocity", "rad/s"),
         ("rocker angular displacement [deg]", "rocker", "angle", "deg"),
         ("/model/rocker.theta", "rocker", "angle", "rad"),
         ("rocker angle/deg", "rocker", "angle", "deg"),

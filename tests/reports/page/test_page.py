@@ -57,8 +57,9 @@ def test_hostile_text_is_shown_and_not_read(evil_page: Path) -> None:
 
 
 def test_a_store_of_one_scene_one_engine_and_no_times_has_a_page(tiny_page: Path) -> None:
-    outline = Outline(tiny_page.read_text(encoding="utf-8"))
-    assert outline.sections() == STORED
+    text = tiny_page.read_text(encoding="utf-8")
+    assert Outline(text).sections() == STORED
+    assert "Over all scenes" not in text
 
 
 def test_a_store_in_which_everything_failed_has_a_page(small: Stored) -> None:

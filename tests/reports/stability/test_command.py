@@ -31,9 +31,10 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> tuple[Result, Path]:
 
 
 def test_the_matrix_is_printed_with_critical_values(stored: tuple[Result, Path]) -> None:
-    result, _ = stored
+    result, folder = stored
     assert result.exit_code == 0, result.output
     told = flat(result.stdout)
+    assert told.endswith(f"{folder}: stability.json, stability.csv, stability.html")
     assert "mujoco tuned" in told
     assert "holds down to" in told
     assert "crankcheck stability CASE --engine ENGINE --profile PROFILE --at VALUE" in told
