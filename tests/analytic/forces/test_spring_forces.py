@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import random
 from dataclasses import replace
 
 import numpy as np
@@ -11,85 +10,13 @@ import pytest
 
 from analytic.check import multipliers
 from analytic.forces import kinetostatics
-from analytic.forces.reduced_machine import reduced_machine
 from analytic.forces.springs import spring_lengths
 from analytic.kinematics import chunks, solve, solve_driven
-from models.files import load_scene, shipped
-from models.laws import Accelerating, ConstantSpeed
+from models.files import load_scene
+from models.laws import ConstantSpeed
 from models.scene import GROUND, Driver
 from models.springs import LineSpring, PinSpring, SlideSpring
-from tests.analytic.forces.beside import AGREED, apart, out_of_balance, turn, unlocked
-from tests.analytic.forces.test_force_bounds import beside
-from tests.worlds.loading import loaded_mechanism
-from tests.worlds.sprung import sprung
-from tests.worlds.tiers import slowly
-
-
-@pytest.mark.parametrize(
-    "seeds", [range(1), slowly(range(1, 6), reason="springs at random")], ids=len
-)
-@pytest.mark.parametrize("name", [*shipped(), *shipped("forces")])
-def test_three_computations_agree_with_springs(name: str, seeds: range) -> None:
-    for seed in seeds:
-        scene = sprung(load_scene(name), random.Random(seed))
-        time_s = unlocked(scene, turn(scene))
-        found = kinetostatics.forces(scene, time_s)
-        assert apart(found, multipliers.forces(scene, solve(scene, time_s))) <= AGREED
-        assert out_of_balance(scene, time_s, found) <= AGREED
-        plain = kinetostatics.forces(replace(scene, springs={}), time_s)
-        assert apart(found, plain) > 1e3 * AGREED
-
-
-@pytest.mark.parametrize("count", [16, slowly(200, reason="random mechanisms")])
-def test_random_mechanisms_with_springs_agree(count: int) -> None:
-    """Springs on moving guides and on blocks among them."""
-    for number in range(0, count, 2):
-        scene = sprung(loaded_mechanism(number)[0], random.Random(number))
-        time_s = np.linspace(0.01, 1.0, 5) * scene.driver.law.period_s
-        found = kinetostatics.forces(scene, time_s)
-        assert apart(found, multipliers.forces(scene, solve(scene, time_s))) <= AGREED, number
-        assert out_of_balance(scene, time_s, found) <= AGREED, number
-
-
-@pytest.mark.parametrize("count", [8, slowly(100, reason="random mechanisms")])
-def test_bounds_hold_with_springs(count: int) -> None:
-    """Half of them near a dead point."""
-    loose = []
-    for number in range(count):
-        plain, near = loaded_mechanism(number)
-        scene = sprung(plain, random.Random(number))
-        time_s = 0.0 if near else random.Random(number).uniform(-1.0, 1.0)
-        rows = beside(scene, np.array([time_s * scene.driver.law.period_s]))
-        assert not [row for row in rows if not row.error <= row.bound], number
-        loose += [row.bound / row.error for row in rows if row.error > 0.0 and row.bound < np.inf]
-    assert np.median(loose) < 4000.0
-
-
-@pytest.mark.parametrize(("rate", "damping"), [(1e7, 0.0), (1.0, 1e7)])
-def test_bounds_hold_where_a_stiff_spring_is_all_but_slack(rate: float, damping: float) -> None:
-    """After thousands of swings: then what its length, or its speed, may be wrong by is all of the
-    error."""
-    for number in range(0, 12, 2):
-        scene = sprung(loaded_mechanism(number)[0], random.Random(number))
-        time_s = np.array([3.1e4 * scene.driver.law.period_s])
-        _, chunk = next(iter(chunks(scene, time_s, bound=False)))
-        for spring, q, speed in spring_lengths(scene, chunk, counted=True):
-            free = float(q[0]) + damping / rate * float(speed[0])
-            slack = replace(spring, rate=rate, damping=damping, free=free)
-            rows = beside(replace(scene, springs={spring.name: slack}), time_s)
-            assert not [row for row in rows if not row.error <= row.bound], (number, spring)
-
-
-def test_the_reduced_torque_has_the_springs_in_it() -> None:
-    """torque = I alpha + I' omega^2 / 2 - M, under a driver that speeds up."""
-    scene = sprung(load_scene("shaper"), random.Random(1))
-    law = Accelerating(0.4, 0.5, 1.0)
-    scene = replace(scene, driver=Driver(scene.driver.link, law))
-    time_s = np.linspace(0.01, 0.9, 7)
-    machine, (_, omega, alpha) = reduced_machine(scene, time_s), law.at(time_s)
-    torque = machine.inertia * alpha + 0.5 * machine.slope * omega**2 - machine.torque
-    found = kinetostatics.forces(scene, time_s).torque
-    assert torque == pytest.approx(found, abs=1e-11 * np.abs(found).max())
+from tests.analytic.forces.beside import AGREED, apart
 
 
 def test_a_slider_crank_with_springs_by_hand() -> None:
