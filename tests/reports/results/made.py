@@ -23,28 +23,19 @@ def cell(scene: str, variant: str, steps: float, error: float, us: float, **othe
     asked = other.pop("asked", {"name": variant})
     line = f"{scene} {engine} {variant} {version} {json.dumps(asked)} {other.get('drive', '')}"
     return {
-        "key": f"{line} {steps:g}",
-        "line": line,
-        "scene": scene,
-        "engine": engine,
-        "variant": variant,
-        "version": version,
-        "profile": "tuned",
-        "drive": "prescribed",
-        "asked": json.dumps(asked),
-        "dt_s": PERIOD_S / steps,
-        "steps_per_turn": float(steps),
-        "status": "ok",
-        "place_pure": error,
-        "drive_pure": 0.0,
-        "us_per_step": us,
-        "us_per_step_median": 1.1 * us,
-        "us_per_step_a": us,
-        "us_per_step_b": us,
-        "s_per_turn": 1e-6 * us * steps,
-        "processor": "abacus",
-        "made": "2026-01-01",
-    } | other
+        "key": f"{line} {steps:g}", "line": line, "scene": scene, "engine": engine,
+        "variant": variant, "version": version, "profile": "tuned", "drive": "prescribed",
+        "asked": json.dumps(asked), "dt_s": PERIOD_S / steps, "steps_per_turn": float(steps),
+        "status": "ok", "place_pure": error, "drive_pure": 0.0,
+        "us_per_step": us, "us_per_step_median": 1.1 * us, "us_per_step_a": us, "us_per_step_b": us,
+        "s_per_turn": 1e-6 * us * steps, "processor": "abacus", "made": "2026-01-01",
+    } | other  # fmt: skip
+
+
+def table(text: str, **other: object) -> list[Row]:
+    """Cells with their scene, variant, steps, error and cost, a comma between two."""
+    words = map(str.split, text.split(","))
+    return [cell(scene, name, *map(float, numbers), **other) for scene, name, *numbers in words]
 
 
 def untimed(row: Row) -> Row:

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from io import StringIO
 
 import pandas as pd
 import pytest
 from rich.console import Console
 
+from models.files import load_scene
+from reports.judge.cell import Cell
 from reports.results.candidates import candidates
 from reports.results.cost import costs_of, equal, noise, reached, time_to
 from reports.results.lines import Line, lines
 from reports.results.pareto import front, front_over_all, performance_profile
 from reports.results.recommend import recommendations
 from reports.results.table import noise_line, recommendation_table
-from tests.reports.results.made import Row, cell, stored, untimed
+from reports.sweep.measured import timed
+from tests.reports.results.made import Row, cell, stored, table, untimed
 
 STEPS = (90, 180, 360, 720)
 
@@ -51,41 +55,25 @@ def test_noise_is_that_of_the_machine_whose_times_are_compared() -> None:
 
 
 def test_equal_is_a_difference_within_the_noise_whichever_comes_first() -> None:
-    assert equal(1.0, 1.04, 0.05)
-    assert equal(1.04, 1.0, 0.05)
-    assert not equal(1.0, 1.06, 0.05)
-    assert equal(1.0, 1.0, math.nan)
+    cases = (1.0, 1.04, 0.05), (1.04, 1.0, 0.05), (1.0, 1.06, 0.05), (1.0, 1.0, math.nan)
+    assert [equal(*each) for each in cases] == [True, True, False, True]
     assert not equal(1.0, 1.01, math.nan)
 
 
-def test_the_time_to_a_target_is_taken_along_the_fit() -> None:
+def test_the_time_to_a_target_is_taken_along_the_fit_and_not_extrapolated() -> None:
     """1e-4 at 90 * sqrt(10) steps a turn of 2 us each."""
-    line = line_of(second_order("a", "x", 1e-3, 2.0))
-    assert time_to(line, 1e-4) == pytest.approx(2e-6 * 90 * math.sqrt(10), rel=1e-3)
-    found = reached(line, 1e-4)
-    assert found.steps_per_turn == pytest.approx(90 * math.sqrt(10), rel=1e-3)
-
-
-def test_nothing_is_extrapolated_to_either_side() -> None:
-    line = line_of(second_order("a", "x", 1e-3, 2.0))
-    assert time_to(line, 1e-6) is None  # 1.6e-5 at the finest step
-    assert reached(line, 1e-6) is None
-    at_most = reached(line, 1e-2)  # 1e-3 at the coarsest
-    assert at_most.steps_per_turn == pytest.approx(90)
-    assert time_to(line, 1e-2) == pytest.approx(2e-6 * 90)
-
-
-def test_a_line_that_was_not_timed_reaches_a_target_in_no_time_that_is_known() -> None:
-    line = line_of([untimed(row) for row in second_order("a", "x", 1e-3, 2.0)])
-    assert reached(line, 1e-4) is not None
-    assert time_to(line, 1e-4) is None
-
-
-def test_a_step_at_which_a_run_failed_is_not_the_coarsest() -> None:
     rows = second_order("a", "x", 1e-3, 2.0)
-    line = line_of([rows[0] | {"status": "diverged"}, *rows[1:]])
-    found = reached(line, 1e-2)
-    assert found.steps_per_turn == pytest.approx(180)
+    line = line_of(rows)
+    # 1e-3 at the coarsest step, 1.6e-5 at the finest
+    for target, steps, rel in ((1e-4, 90 * math.sqrt(10), 1e-3), (1e-2, 90, 1e-6)):
+        assert time_to(line, target) == pytest.approx(2e-6 * steps, rel=rel)
+        assert reached(line, target).steps_per_turn == pytest.approx(steps, rel=rel)
+    assert (time_to(line, 1e-6), reached(line, 1e-6)) == (None, None)
+    failed = line_of([rows[0] | {"status": "diverged"}, *rows[1:]])
+    assert reached(failed, 1e-2).steps_per_turn == pytest.approx(180)
+    unknown = line_of([untimed(row) for row in rows])
+    assert reached(unknown, 1e-4) is not None
+    assert time_to(unknown, 1e-4) is None
 
 
 def test_costs_are_means_over_scenes_of_the_least_and_the_median_repeat() -> None:
@@ -112,45 +100,31 @@ def test_costs_say_on_how_many_scenes_they_were_timed() -> None:
 
 
 def test_the_front_is_what_nothing_beats_in_both() -> None:
-    rows = [
-        cell("a", "x", 90, 1e-2, 1.0),
-        cell("a", "x", 180, 1e-3, 1.0),
-        cell("a", "beaten", 180, 2e-3, 1.5),
-        cell("a", "exact", 90, 1e-5, 9.0),
-        cell("a", "twin", 90, 1e-5, 9.5),
-        cell("a", "wrong", 90, 1e-9, 0.1, status="diverged"),
-        untimed(cell("a", "untimed", 90, 1e-9, 0.1)),
-        cell("a", "nan", 90, math.nan, 0.1),
-    ]
+    rows = table(
+        "a x 90 1e-2 1, a x 180 1e-3 1, a beaten 180 2e-3 1.5, a exact 90 1e-5 9,"
+        "a twin 90 1e-5 9.5, a nan 90 nan 0.1"
+    )
+    rows.append(cell("a", "wrong", 90, 1e-9, 0.1, status="diverged"))
+    rows.append(untimed(cell("a", "untimed", 90, 1e-9, 0.1)))
     cells = stored(rows).cells
-    keys = front(cells)
-    chosen = cells.set_index("key").loc[keys]
-    assert list(zip(chosen["variant"], chosen["steps_per_turn"], strict=True)) == [
-        ("exact", 90),
-        ("x", 180),
-        ("x", 90),
-    ]
+    chosen = cells.set_index("key").loc[front(cells)]
+    found = list(zip(chosen["variant"], chosen["steps_per_turn"], strict=True))
+    assert found == [("exact", 90), ("x", 180), ("x", 90)]
 
 
 def test_within_the_noise_a_saving_is_none() -> None:
-    cells = stored([cell("a", "x", 90, 1e-3, 1.0), cell("a", "y", 90, 1e-4, 1.02)]).cells
+    cells = stored(table("a x 90 1e-3 1, a y 90 1e-4 1.02")).cells
     variants = cells.set_index("key")["variant"]
-    assert [variants[key] for key in front(cells)] == ["y", "x"]
-    assert [variants[key] for key in front(cells, 0.05)] == ["y"]
-    assert [variants[key] for key in front(cells, math.nan)] == ["y", "x"]
+    for noises, chosen in (((), ["y", "x"]), ((0.05,), ["y"]), ((math.nan,), ["y", "x"])):
+        assert [variants[key] for key in front(cells, *noises)] == chosen
 
 
 def test_over_all_scenes_an_error_is_the_worst_and_a_failure_bars() -> None:
-    rows = [
-        cell("a", "x", 90, 1e-3, 1.0),
-        cell("b", "x", 90, 1e-1, 1.0),
-        cell("a", "y", 90, 1e-2, 1.5),
-        cell("b", "y", 90, 1e-2, 1.5),
-        cell("a", "z", 90, 1e-9, 0.1),
-        cell("b", "z", 90, 1e-9, 0.1, status="diverged"),
-        cell("a", "late", 90, 2e-1, 2.0),
-        cell("b", "late", 90, 1e-9, 2.0),
-    ]
+    rows = table(
+        "a x 90 1e-3 1, b x 90 1e-1 1, a y 90 1e-2 1.5, b y 90 1e-2 1.5, a z 90 1e-9 0.1,"
+        "a late 90 2e-1 2, b late 90 1e-9 2"
+    )
+    rows.append(cell("b", "z", 90, 1e-9, 0.1, status="diverged"))
     found = front_over_all(candidates(lines(stored(rows))))
     assert [(one.variant, one.worst_error) for one in found] == [("y", 1e-2), ("x", 1e-1)]
 
@@ -181,17 +155,13 @@ def test_a_performance_profile_calls_times_within_the_noise_equal() -> None:
     assert share(performance_profile(every, 1e-4, 0.05), "y", 1.0) == 1.0
 
 
-def printed(what: object, width: int) -> str:
-    console = Console(file=StringIO(), width=width)
-    console.print(what)
-    return console.file.getvalue()
-
-
 @pytest.mark.parametrize("width", [60, 80, 120])
 def test_the_table_fits_and_says_what_there_is_not(width: int) -> None:
     rows = second_order("a", "name [of] some length", 1e-3, 2.0)
     store = stored([*rows, cell("a", "name [of] some length", 1440, 9.0, 2.0, status="diverged")])
-    text = printed(recommendation_table(recommendations(store), width), width)
+    console = Console(file=StringIO(), width=width)
+    console.print(recommendation_table(recommendations(store), width))
+    text = console.file.getvalue()
     assert max(map(len, text.splitlines())) <= width
     flat = " ".join(text.split())
     assert "not at 1440 steps a turn: a diverged" in flat
@@ -207,3 +177,13 @@ def test_the_noise_line_tells_share_number_and_machines() -> None:
     assert "Noise of costs on abacus: 95% of 3 A/A pairs differ by less than 2.0%" in text
     assert "Times of loom are not compared" in text
     assert noise_line(stored([untimed(rows[0])])).startswith("No cell was timed")
+
+
+def test_what_is_let_go_is_measured_over_a_second_however_long_it_lasts() -> None:
+    swing, pulse, pendulum = (
+        Cell(load_scene(name), "mujoco", "tuned", 1e-3, 500, drive="free")
+        for name in ("fourbar-swing", "fourbar-pulse", "double-pendulum")
+    )
+    assert swing.steps_per_turn == pulse.steps_per_turn == pytest.approx(1000.0)
+    assert replace(swing, steps=250).turns == pytest.approx(0.25)
+    assert min(timed(pendulum, 10.0)) > 0.0, "of several freedoms"

@@ -8,7 +8,7 @@ import pytest
 
 from reports.results.lines import lines
 from reports.results.one_processor import left_out, machine
-from tests.reports.results.made import PERIOD_S, Row, cell, stored, untimed
+from tests.reports.results.made import PERIOD_S, cell, stored, table, untimed
 
 STUDY = {
     "scenes": ["b", "a"],
@@ -39,35 +39,21 @@ def test_a_line_of_another_quantity_is_that_of_its_column() -> None:
 
 def test_a_crank_that_rounds_hides_what_is_behind_it() -> None:
     """Errors of the size that the crank's own rounding explains follow no order."""
-    rows = [cell("a", "x", n, 4e-10, 1.0, drive_pure=1e-10) for n in (90, 180, 360, 720)]
-    (line,) = lines(stored(rows))
-    assert line.fit.kind == "at rounding"
-    (lagging,) = lines(stored(row | {"drive_pure": 1e-5} for row in rows))
-    assert lagging.fit.kind == "floor"
+    for drive, kind in ((1e-10, "at rounding"), (1e-5, "floor")):
+        rows = [cell("a", "x", n, 4e-10, 1.0, drive_pure=drive) for n in (90, 180, 360, 720)]
+        (line,) = lines(stored(rows))
+        assert line.fit.kind == kind
 
 
-def test_the_newest_version_stands_however_it_is_spelled() -> None:
-    rows = [cell("a", "x", 90, 1e-3, 1.0, version=v) for v in ("4.0.0", "4.0.10", "4.0.9")]
-    assert [line.version for line in lines(stored(rows))] == ["4.0.10"]
-
-
-def test_each_scene_has_the_newest_line_of_its_own() -> None:
-    rows = [
-        cell("a", "x", 90, 1e-3, 1.0, version="4.0.0"),
-        cell("a", "x", 90, 1e-3, 1.0, version="4.0.1"),
-        cell("b", "x", 90, 1e-3, 1.0, version="4.0.0"),
-    ]
-    assert {line.scene: line.version for line in lines(stored(rows))} == {
-        "a": "4.0.1",
-        "b": "4.0.0",
-    }
+def test_the_newest_version_stands_however_it_is_spelled_on_each_scene_by_itself() -> None:
+    made = ("a", "4.0.0"), ("a", "4.0.10"), ("a", "4.0.9"), ("b", "4.0.0")
+    rows = [cell(scene, "x", 90, 1e-3, 1.0, version=version) for scene, version in made]
+    found = [(line.scene, line.version) for line in lines(stored(rows))]
+    assert found == [("a", "4.0.10"), ("b", "4.0.0")]
 
 
 def test_of_two_lines_of_one_version_the_later_stands() -> None:
-    rows = [
-        cell("a", "x", 90, 1e-3, 1.0, asked={"iterations": 9}),
-        cell("a", "x", 90, 1e-3, 1.0, asked={"iterations": 3}),
-    ]
+    rows = [cell("a", "x", 90, 1e-3, 1.0, asked={"iterations": n}) for n in (9, 3)]
     assert [line.settings for line in lines(stored(rows))] == [{"iterations": 3}]
 
 
@@ -80,24 +66,17 @@ def test_lines_come_in_the_order_of_the_study() -> None:
     ]
     found = lines(stored(rows, scenes=("b", "a"), runs=({"study": STUDY}, {"study": {"old": 1}})))
     assert [line.scene for line in found] == ["b"] * 4 + ["a"] * 4 + ["c"] * 4
-    assert [(line.engine, line.variant) for line in found[:4]] == [
-        ("pymunk", "tuned"),
-        *reversed(names),
-        ("pymunk", "other"),
-    ]
-
-
-def two_machines() -> list[Row]:
-    return [
-        cell("a", "x", 90, 1e-3, 1.0, processor="abacus", made="2026-01-01"),
-        cell("a", "x", 180, 1e-3, 2.0, processor="loom", made="2026-02-01"),
-        untimed(cell("a", "x", 360, 1e-3, 9.0)),
-        cell("a", "x", 720, 1e-3, 4.0, processor="abacus", made="2026-01-09"),
-    ]
+    in_order = [("pymunk", "tuned"), *reversed(names), ("pymunk", "other")]
+    assert [(line.engine, line.variant) for line in found[:4]] == in_order
 
 
 def test_times_of_two_machines_are_never_compared() -> None:
-    store = stored(two_machines())
+    store = stored([
+        *table("a x 90 1e-3 1", processor="abacus", made="2026-01-01"),
+        *table("a x 180 1e-3 2", processor="loom", made="2026-02-01"),
+        *map(untimed, table("a x 360 1e-3 9")),
+        *table("a x 720 1e-3 4", processor="abacus", made="2026-01-09"),
+    ])  # fmt: skip
     assert machine(store.cells) == "loom"
     assert left_out(store.cells) == ("abacus",)
     (line,) = lines(store)
@@ -107,10 +86,9 @@ def test_times_of_two_machines_are_never_compared() -> None:
 
 
 def test_a_store_that_was_never_timed_has_lines_all_the_same() -> None:
-    row = cell("a", "x", 90, 1e-3, 1.0)
+    row = cell("a", "x", 90, 1e-3, math.nan)
     times = ("processor", "made", "s_per_turn", "us_per_step_a", "us_per_step_b")
-    bare = {name: value for name, value in row.items() if name not in times}
-    store = stored([bare | {"us_per_step": math.nan}])
+    store = stored([{name: value for name, value in row.items() if name not in times}])
     assert machine(store.cells) is None
     assert left_out(store.cells) == ()
     (line,) = lines(store)

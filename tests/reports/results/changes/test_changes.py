@@ -38,31 +38,23 @@ def made(content: dict[tuple[str, float], tuple[str, dict[str, float]]]) -> Stor
     )
 
 
-NUMBERS = [30, slowly(100, reason="rare pairs: cells that one run has alone, errors without end")]
+MORE = slowly(100, reason="rare pairs: cells that one run has alone, errors without end")
 
 
-@pytest.mark.parametrize("number", NUMBERS)
-def test_a_run_against_itself_is_all_equal(number: int) -> None:
-    settings(max_examples=number, deadline=None)(given(runs)(against_itself))()
-
-
-def against_itself(content: dict[object, object]) -> None:
-    found = made(content)  # type: ignore[arg-type]
-    diff = compare(found, found)
-    assert len(diff.those("equal")) == len(diff.pairs) == len(found.cells)
-    assert diff.missing == diff.added == diff.other_scene == ()
-    assert diff.code(strict=True) == 0
-
-
-@pytest.mark.parametrize("number", NUMBERS)
-def test_old_and_new_exchanged_exchange_better_and_worse(number: int) -> None:
+@pytest.mark.parametrize("number", [30, MORE])
+def test_old_and_new_exchanged_exchange_better_and_worse_and_alike_are_equal(number: int) -> None:
     drawn = given(runs, runs, st.floats(1.0, 10.0))
     settings(max_examples=number, deadline=None)(drawn(exchanged))()
 
 
 def exchanged(one: dict[object, object], two: dict[object, object], factor: float) -> None:
-    there = compare(made(one), made(two), factor)  # type: ignore[arg-type]
-    back = compare(made(two), made(one), factor)  # type: ignore[arg-type]
+    old, new = made(one), made(two)  # type: ignore[arg-type]
+    for run in (old, new):
+        same = compare(run, run)
+        assert len(same.those("equal")) == len(same.pairs) == len(run.cells)
+        assert same.missing == same.added == same.other_scene == ()
+        assert same.code(strict=True) == 0
+    there, back = compare(old, new, factor), compare(new, old, factor)
     assert [c.name for c in there.missing] == [c.name for c in back.added]
     found = {pair.name: pair for pair in back.pairs}
     assert found.keys() == {pair.name for pair in there.pairs}
@@ -108,19 +100,14 @@ def test_noise_of_the_size_of_rounding_is_no_alarm(
 
 def test_the_floor_follows_how_often_a_quantity_was_differenced() -> None:
     assert floor("angle", 90) == floor("angle", 9000) == pytest.approx(1e-11)
-    assert floor("velocity-differenced", 7200) == pytest.approx(
-        10 * floor("velocity-differenced", 720)
-    )
-    assert floor("acceleration-differenced", 7200) == pytest.approx(
-        100 * floor("acceleration-differenced", 720)
-    )
+    for quantity, times in (("velocity-differenced", 10), ("acceleration-differenced", 100)):
+        assert floor(quantity, 7200) == pytest.approx(times * floor(quantity, 720))
 
 
 def test_an_error_that_is_no_number_any_more_is_worse(cell: Make, run: Group) -> None:
     number, none = run(cell(angle=1e-3, gap=1e-3)), run(cell(angle=math.inf, gap=1e-3))
     (pair,) = compare(number, none).pairs
-    assert pair.word == "worse"
-    assert pair.worst.quantity == "angle"
+    assert (pair.word, pair.worst.quantity) == ("worse", "angle")
     assert compare(none, number).those("better")
     assert compare(none, none).those("equal")
 
@@ -150,9 +137,8 @@ def test_the_worst_quantity_and_the_worst_cell_are_told_first(cell: Make, run: G
         cell("c", status="locked"),
     )
     worse = compare(old, new).those("worse")
-    assert [pair.name.scene for pair in worse] == ["c", "b", "a"]
-    told = [pair.worst.quantity if pair.worst else "" for pair in worse]
-    assert told == ["", "angle", "gap"]
+    told = [(pair.name.scene, pair.worst.quantity if pair.worst else "") for pair in worse]
+    assert told == [("c", ""), ("b", "angle"), ("a", "gap")]
 
 
 def test_missing_cells_count_only_when_one_is_strict(cell: Make, run: Group) -> None:
@@ -195,11 +181,8 @@ def test_a_factor_below_1_is_refused(factor: float, cell: Make, run: Group) -> N
 def test_settings_that_the_engine_held_otherwise_are_told() -> None:
     name = CellName("a", "mujoco", "stiff", "prescribed", 720.0, 2.0)
     was, now = (
-        StoredRun(
-            "x",
-            {name: StoredCell(name, "1", "ok", "", {"angle": 1.0}, {"cone": 0, "solver": value})},
-        )
-        for value in ("PGS", "Newton")
+        StoredRun("x", {name: StoredCell(name, "1", "ok", "", {"angle": 1.0}, {"cone": 0} | held)})
+        for held in ({"solver": "PGS"}, {"solver": "Newton"})
     )
     found = other_settings(compare(was, now).pairs)
     assert found == {("mujoco", "stiff"): {"solver": 'solver "PGS" -> "Newton"'}}
@@ -207,16 +190,13 @@ def test_settings_that_the_engine_held_otherwise_are_told() -> None:
 
 
 def test_a_ratio_is_of_the_numbers_as_they_stand() -> None:
-    assert ErrorChange("angle", 2e-3, 3e-3, 1e-11).ratio == pytest.approx(1.5)
-    assert ErrorChange("angle", 0.0, 3e-3, 1e-11).ratio == math.inf
-    assert ErrorChange("angle", 0.0, 0.0, 1e-11).ratio == 1.0
-
-
-def test_what_is_compared_of_free_motion_alone_is_compared_with_an_earlier_run() -> None:
-    assert {"phase", "geometry", "energy", "momentum"} <= set(COMPARED)
+    ratios = [ErrorChange("angle", old, new, 1e-11).ratio for old, new in
+              ((2e-3, 3e-3), (0.0, 3e-3), (0.0, 0.0))]  # fmt: skip
+    assert ratios == [pytest.approx(1.5), math.inf, 1.0]
 
 
 def test_a_cell_of_free_motion_is_named_by_its_steps_and_not_by_turns() -> None:
+    assert {"phase", "geometry", "energy", "momentum"} <= set(COMPARED)
     free = CellName("swing", "pymunk", "tuned", "free", 1250.0, 0.1)
     assert free.label == "swing, pymunk tuned, drive free, 1250 steps a second for 0.1 s"
     assert steps_told([free, replace(free, steps_per_turn=2000.0)]) == "1250, 2000 steps a second"

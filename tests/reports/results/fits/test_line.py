@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reports.judge.three_steps import AT_ROUNDING
-from reports.results.fits.line import FitKind, LineFit, fit_line
+from reports.results.fits.line import FitKind, fit_line
 from tests.worlds.strategies import examples
 from tests.worlds.tiers import few, slow, slowly
 
@@ -30,8 +31,7 @@ def scattered(errors: np.ndarray, scatter: float, rng: np.random.Generator) -> n
 @pytest.mark.parametrize("order", [0.8, 1.0, 1.5, 2.0, 4.0])
 def test_a_power_of_the_step_has_its_order_and_no_floor(order: float, number: int) -> None:
     found = fit_line(STEPS[:number], line(order)[:number], rounding=0.0)
-    assert found.kind == "order"
-    assert found.order == pytest.approx(order)
+    assert (found.kind, found.order) == ("order", pytest.approx(order))
     assert found.curve.coefficient == pytest.approx(10.0)
     assert found.order_error < 0.1
     assert all(found.used)
@@ -46,8 +46,7 @@ def test_a_floor_under_a_power_of_the_step_is_found(order: float, share: float) 
     """``share``: the floor over what still falls with the step at the finest."""
     floor = share * line(order)[-1]
     found = fit_line(STEPS, line(order, floor), rounding=0.0)
-    assert found.kind == "floor"
-    assert found.floor == pytest.approx(floor, rel=1e-3)
+    assert (found.kind, found.floor) == ("floor", pytest.approx(floor, rel=1e-3))
     assert found.order == pytest.approx(order, abs=0.01)
     assert found.curve.coefficient == pytest.approx(10.0, rel=0.05)
     assert found.floor_error < 0.2 * floor
@@ -63,8 +62,7 @@ def test_a_floor_that_has_only_just_come_up_is_not_claimed_and_not_excluded() ->
 
 def test_an_error_that_no_step_changes_is_a_floor_of_no_order() -> None:
     found = fit_line(STEPS, [7.5e-4] * 6)
-    assert found.kind == "floor"
-    assert found.floor == pytest.approx(7.5e-4)
+    assert (found.kind, found.floor) == ("floor", pytest.approx(7.5e-4))
     assert found.floor_error < 0.05 * 7.5e-4
     assert math.isnan(found.order)
 
@@ -75,30 +73,10 @@ def test_an_error_that_comes_up_to_its_floor_is_a_floor() -> None:
     assert found.curve.coefficient < 0.0
 
 
-@pytest.mark.parametrize("number", [1, 2])
-def test_a_floor_needs_three_steps(number: int) -> None:
-    found = fit_line(STEPS[:number], [1e-3] * number)
-    assert found.kind == "too few"
-    assert not any(found.used)
-    assert math.isnan(found.floor)
-
-
-def test_three_runs_at_two_steps_are_two_steps() -> None:
-    assert fit_line([1e-2, 5e-3, 5e-3], [1e-3, 1e-3, 1e-3]).kind == "too few"
-
-
 def test_three_points_leave_more_doubt_than_six() -> None:
     rng = np.random.default_rng(3)
     errors = scattered(line(2.0), 0.05, rng)
     assert fit_line(STEPS[:3], errors[:3]).order_error > 2.0 * fit_line(STEPS, errors).order_error
-
-
-def test_an_error_that_leaves_its_order_at_the_finest_step_is_not_of_that_order() -> None:
-    errors = line(2.0)
-    errors[-1] *= 2.0
-    found = fit_line(STEPS, errors)
-    assert (found.kind, found.curve) == ("irregular", None)
-    assert not any(found.used)
 
 
 def test_an_error_that_grows_with_finer_steps_is_said_to_grow() -> None:
@@ -107,20 +85,31 @@ def test_an_error_that_grows_with_finer_steps_is_said_to_grow() -> None:
     assert math.isnan(found.floor_below)
 
 
-def test_errors_that_jump_about_follow_nothing() -> None:
-    assert fit_line(STEPS, [1e-3, 1e-5, 1e-3, 1e-5, 1e-3, 1e-5]).kind == "irregular"
+WITHOUT: dict[str, tuple[FitKind, Sequence[float]]] = {
+    "one step": ("too few", [1e-3]),
+    "two steps": ("too few", [1e-3] * 2),
+    "leaves its order at the finest": ("irregular", [*line(2.0)[:-1], 2.0 * line(2.0)[-1]]),
+    "jumps about": ("irregular", [1e-3, 1e-5, 1e-3, 1e-5, 1e-3, 1e-5]),
+    "jumps about one level in 3 steps": ("irregular", [1e-3, 5e-4, 9e-4]),
+    "in 4 steps": ("irregular", [1.06e-3, 5.7e-4, 3.8e-4, 7.1e-4]),
+    "in 5 steps": ("irregular", [9.6e-4, 1.07e-3, 6.9e-4, 5.4e-4, 9.1e-4]),
+    "rounding": ("at rounding", [3e-13, 4e-13, 0.0, 8e-12, 6e-12, 9e-13]),
+    "nothing": ("at rounding", [0.0] * 6),
+    "soon rounding": ("at rounding", [1e-6, 1e-9, 4e-12, 5e-12, 5e-12, 6e-12]),
+}
 
 
-@pytest.mark.parametrize(
-    "errors",
-    [
-        [1e-3, 5e-4, 9e-4],
-        [1.06e-3, 5.7e-4, 3.8e-4, 7.1e-4],
-        [9.6e-4, 1.07e-3, 6.9e-4, 5.4e-4, 9.1e-4],
-    ],
-)
-def test_errors_that_jump_about_one_level_are_no_floor(errors: list[float]) -> None:
-    assert fit_line(STEPS[: len(errors)], errors).kind == "irregular"
+@pytest.mark.parametrize("name", WITHOUT)
+def test_what_has_neither_an_order_nor_a_floor_says_why(name: str) -> None:
+    kind, errors = WITHOUT[name]
+    found = fit_line(STEPS[: len(errors)], errors)
+    assert (found.kind, found.curve) == (kind, None)
+    assert not any(found.used)
+    assert math.isnan(found.floor)
+
+
+def test_three_runs_at_two_steps_are_two_steps() -> None:
+    assert fit_line([1e-2, 5e-3, 5e-3], [1e-3, 1e-3, 1e-3]).kind == "too few"
 
 
 def test_points_at_rounding_are_left_out() -> None:
@@ -136,12 +125,6 @@ def test_a_floor_just_above_rounding_is_taken_for_rounding() -> None:
     assert (found.kind, found.order) == ("order", pytest.approx(4.0, abs=0.1))
 
 
-def test_errors_that_are_all_at_rounding_have_no_order() -> None:
-    assert fit_line(STEPS, [3e-13, 4e-13, 0.0, 8e-12, 6e-12, 9e-13]).kind == "at rounding"
-    assert fit_line(STEPS, [0.0] * 6).kind == "at rounding"
-    assert fit_line(STEPS, [1e-6, 1e-9, 4e-12, 5e-12, 5e-12, 6e-12]).kind == "at rounding"
-
-
 def test_what_a_drive_explains_is_left_out_as_rounding() -> None:
     errors = line(2.0, 5e-9)
     assert fit_line(STEPS[2:], line(2.0, 5e-4)[2:]).kind == "floor"
@@ -154,12 +137,12 @@ def test_runs_that_did_not_end_well_are_left_out_with_all_coarser_ones() -> None
     assert found.used == (False, False, True, True, True, True)
     assert (found.stable_from_s, found.fails_from_s) == (STEPS[2], STEPS[1])
     assert (found.kind, found.failed) == ("order", "diverged")
-
-
-@pytest.mark.parametrize("bad", [math.nan, math.inf])
-def test_an_error_that_is_no_number_diverged(bad: float) -> None:
-    found = fit_line(STEPS, [bad, *line(2.0)[1:]])
-    assert (found.kind, found.failed, found.stable_from_s) == ("order", "diverged", STEPS[1])
+    for bad in (math.nan, math.inf):
+        found = fit_line(STEPS, [bad, *line(2.0)[1:]])
+        assert (found.kind, found.failed, found.stable_from_s) == ("order", "diverged", STEPS[1])
+    found = fit_line(STEPS, line(2.0), statuses=["ok"] * 5 + ["diverged"])
+    assert found.kind == "diverges"
+    assert math.isnan(found.stable_from_s)
 
 
 @pytest.mark.parametrize("status", ["timeout", "unsupported"])
@@ -170,27 +153,13 @@ def test_a_run_without_end_says_nothing_about_the_step(status: str) -> None:
     assert fit_line(STEPS, [math.nan] * 6, statuses=[status] * 6).kind == "not run"
 
 
-def test_a_line_whose_finest_run_diverges_diverges() -> None:
-    found = fit_line(STEPS, line(2.0), statuses=["ok"] * 5 + ["diverged"])
-    assert found.kind == "diverges"
-    assert math.isnan(found.stable_from_s)
-
-
-@pytest.mark.parametrize(
-    ("dts", "errors", "statuses"),
-    [
-        ([1e-2], [1.0, 2.0], None),
-        ([1e-2], [1.0], ["ok", "ok"]),
-        ([0.0], [1.0], None),
-        ([math.nan], [1.0], None),
-        ([1e-2], [-1.0], None),
-    ],
-)
-def test_what_is_no_line_is_refused(
-    dts: list[float], errors: list[float], statuses: list[str] | None
-) -> None:
-    with pytest.raises(ValueError, match=r"steps"):
-        fit_line(dts, errors, statuses=statuses)
+def test_what_is_no_line_is_refused() -> None:
+    wrong = ([1e-2], [1.0, 2.0]), ([0.0], [1.0]), ([math.nan], [1.0]), ([1e-2], [-1.0])
+    for dts, errors in wrong:
+        with pytest.raises(ValueError, match="steps"):
+            fit_line(dts, errors)
+    with pytest.raises(ValueError, match="steps"):
+        fit_line([1e-2], [1.0], statuses=["ok", "ok"])
 
 
 @pytest.mark.parametrize("count", [120, slowly(500, reason=MORE)])
@@ -260,23 +229,28 @@ ERRORS: dict[str, tuple[FitKind, np.ndarray]] = {
 }
 
 
-def same(fit: LineFit, other: LineFit, error: float, dt: float) -> None:
+def check_units(name: str, error: float, dt: float) -> None:
     """Two fits are one, but for units of error and of time."""
-    assert (fit.kind, fit.used) == (other.kind, other.used)
-    scales = {"order": 1.0, "order_error": 1.0, "floor": error, "floor_error": error,
-              "floor_below": error, "scatter": 1.0}  # fmt: skip
-    for name, scale in scales.items():
-        expected = scale * getattr(fit, name)
-        assert getattr(other, name) == pytest.approx(expected, rel=1e-4, nan_ok=True), name
-    assert (fit.curve is None) == (other.curve is None)
-    if fit.curve is not None and other.curve is not None:
-        ends = zip(fit.used_range_s, other.used_range_s, strict=True)
-        for own, others in ends:
-            assert other.curve.at(others) == pytest.approx(error * fit.curve.at(own), rel=1e-4)
-            assert others == pytest.approx(dt * own)
+    kind, errors = ERRORS[name]
+    fit = fit_line(STEPS, errors)
+    other = fit_line(dt * STEPS, error * errors, rounding=error * AT_ROUNDING)
+    assert fit.kind == kind
+    assert (other.kind, other.used) == (fit.kind, fit.used)
+    for number in ("order", "order_error", "floor", "floor_error", "floor_below", "scatter"):
+        expected = (error if "floor" in number else 1.0) * getattr(fit, number)
+        assert getattr(other, number) == pytest.approx(expected, rel=1e-4, nan_ok=True), number
+    for own, others in zip(fit.used_range_s, other.used_range_s, strict=True):
+        assert other.curve.at(others) == pytest.approx(error * fit.curve.at(own), rel=1e-4)
+        assert others == pytest.approx(dt * own)
 
 
-UNITS = st.floats(1e-3, 1e3)
+def check_order(name: str, places: list[int]) -> None:
+    _, errors = ERRORS[name]
+    fit, other = fit_line(STEPS, errors), fit_line(STEPS[places], errors[places])
+    assert tuple(np.array(other.used)[np.argsort(places)]) == fit.used
+    assert other.kind == fit.kind
+    for number in ("order", "floor"):
+        assert getattr(other, number) == pytest.approx(getattr(fit, number), nan_ok=True)
 
 
 @pytest.mark.parametrize("name", ERRORS)
@@ -285,40 +259,20 @@ def test_units_of_error_and_time_do_not_matter(name: str, error: float, dt: floa
     check_units(name, error, dt)
 
 
-@slow("units that nobody has chosen: a threshold that is not relative shows at some alone")
-@examples(15)
-@given(st.sampled_from(list(ERRORS)), UNITS, UNITS)
-def test_no_unit_at_random_matters(name: str, error: float, dt: float) -> None:
-    check_units(name, error, dt)
-
-
-def check_units(name: str, error: float, dt: float) -> None:
-    kind, errors = ERRORS[name]
-    fit = fit_line(STEPS, errors)
-    assert fit.kind == kind
-    same(fit, fit_line(dt * STEPS, error * errors, rounding=error * AT_ROUNDING), error, dt)
-
-
 @pytest.mark.parametrize("name", ERRORS)
 @pytest.mark.parametrize("order", ["543210", "120543", "350142"])
 def test_the_order_in_which_runs_come_does_not_matter(name: str, order: str) -> None:
     check_order(name, [int(each) for each in order])
 
 
-@slow("any of 720 orders: three are chosen in `make test`")
+UNITS = st.floats(1e-3, 1e3)
+
+
+@slow("units and orders that nobody has chosen: a threshold that is not relative shows at some")
 @examples(15)
-@given(st.sampled_from(list(ERRORS)), st.permutations(range(6)))
-def test_no_order_at_random_matters(name: str, places: list[int]) -> None:
+@given(st.sampled_from(list(ERRORS)), UNITS, UNITS, st.permutations(range(6)))
+def test_no_unit_and_no_order_at_random_matters(
+    name: str, error: float, dt: float, places: list[int]
+) -> None:
+    check_units(name, error, dt)
     check_order(name, places)
-
-
-def check_order(name: str, places: list[int]) -> None:
-    _, errors = ERRORS[name]
-    fit, other = fit_line(STEPS, errors), fit_line(STEPS[places], errors[places])
-    back = np.argsort(places)
-    assert tuple(np.array(other.used)[back]) == fit.used
-    assert (other.kind, other.order, other.floor) == (
-        fit.kind,
-        pytest.approx(fit.order, nan_ok=True),
-        pytest.approx(fit.floor, nan_ok=True),
-    )

@@ -28,16 +28,13 @@ def test_the_step_of_a_target_has_the_target_for_its_error(at: float, floor: flo
     fit = parabola(floor)
     target = fit.error_at(at)
     assert target == pytest.approx(floor + 10.0 * at**2, rel=1e-3)
-    found = fit.dt_for(target)
-    assert fit.error_at(found) == pytest.approx(target)
+    assert fit.error_at(fit.dt_for(target)) == pytest.approx(target)
 
 
 def test_nothing_is_extrapolated() -> None:
     errors, fit = 10.0 * STEPS**2, parabola(0.0)
-    assert fit.dt_for(1.01 * errors[0]) is None
-    assert fit.dt_for(0.99 * errors[-1]) is None
-    assert fit.error_at(1.01 * STEPS[0]) is None
-    assert fit.error_at(0.99 * STEPS[-1]) is None
+    assert fit.dt_for(1.01 * errors[0]) is fit.dt_for(0.99 * errors[-1]) is None
+    assert fit.error_at(1.01 * STEPS[0]) is fit.error_at(0.99 * STEPS[-1]) is None
     assert fit.error_at(STEPS[0] * (1.0 + 1e-15)) == pytest.approx(errors[0])
 
 
@@ -63,16 +60,13 @@ def test_a_target_that_a_dip_reaches_but_finer_steps_do_not_is_not_reached() -> 
     errors = [1e-2, 5e-3, 1e-4, 3e-3, 4e-3, 4.5e-3]
     fit = fit_line(STEPS, errors)
     assert fit.dt_for(1e-3) is None
-    found = fit.dt_for(7e-3)
-    assert STEPS[1] < found < STEPS[0]
+    assert STEPS[1] < fit.dt_for(7e-3) < STEPS[0]
 
 
 def test_points_that_wander_are_reached_where_they_rise_over_the_target_first() -> None:
     knots = [(1.0, 1e-3), (2.0, 3e-3), (4.0, 2e-3), (8.0, 9e-3)]
-    found = reach(knots, 2.5e-3)
-    assert 1.0 < found < 2.0
-    assert reach(knots, 0.9e-3) is None
-    assert reach(knots, 1e-2) is None
+    assert 1.0 < reach(knots, 2.5e-3) < 2.0
+    assert reach(knots, 0.9e-3) is reach(knots, 1e-2) is None
     assert reach(knots, 9e-3) == pytest.approx(8.0)
 
 
@@ -83,8 +77,7 @@ def test_runs_that_failed_are_no_steps_to_reach_anything_with() -> None:
 
 
 def test_times_are_interpolated_and_not_extrapolated() -> None:
-    seconds = [1.0, 2.0, 4.0]
-    assert interpolate([4e-3, 2e-3, 1e-3], seconds, 1.5e-3) == pytest.approx(4.0 / 1.5)
-    assert interpolate([4e-3, 2e-3, 1e-3], seconds, 2e-3) == pytest.approx(2.0)
-    assert interpolate([4e-3, 2e-3, 1e-3], seconds, 0.9e-3) is None
-    assert interpolate([4e-3, 2e-3, 1e-3], seconds, 4.1e-3) is None
+    errors, seconds = [4e-3, 2e-3, 1e-3], [1.0, 2.0, 4.0]
+    assert interpolate(errors, seconds, 1.5e-3) == pytest.approx(4.0 / 1.5)
+    assert interpolate(errors, seconds, 2e-3) == pytest.approx(2.0)
+    assert interpolate(errors, seconds, 0.9e-3) is interpolate(errors, seconds, 4.1e-3) is None
