@@ -14,8 +14,17 @@ from pathlib import Path
 import pytest
 
 from reports.workers.isolated import Isolated, Limits, Lost
-from tests.worlds.bad_log_tables import PARQUET, WORKBOOKS
-from tests.worlds.bad_log_texts import HEADER, LARGE, ROWS, SPECIAL, TEXTS, Made, text
+from tests.worlds.bad_logs import (
+    HEADER,
+    LARGE,
+    PARQUET,
+    ROWS,
+    SPECIAL,
+    TEXTS,
+    WORKBOOKS,
+    Made,
+    text,
+)
 from tests.worlds.fuzzing import Ended, attempt
 from tests.worlds.tiers import few
 

@@ -44,28 +44,27 @@ IN_TURN = list(zip(cycle(LINKAGES), WORDS, strict=False))
 ONE_AND_ALL = few(LINKAGES, list(LINKAGES)[:1], "channels of a block and of a second loop")
 
 
+Blamed = Callable[..., tuple[str, list[str]]]
+
+
 @pytest.fixture
-def blamed(judge: Judge, tmp_path: Path) -> Callable[..., tuple[str, list[str]]]:
+def blamed(judge: Judge, tmp_path: Path) -> Blamed:
     """The text of the one cause that is told of a log that is out, and its columns."""
 
-    def run(scene: str, log: Log, *options: str, mapped: str = "") -> tuple[str, list[str]]:
-        document = tmp_path / "judged.json"
-        text = Dress().text(log)
-        result = judge(scene, text, "--json", str(document), *options, mapped=mapped)
-        assert result.exit_code == 1, result.output + result.stderr
-        causes = json.loads(document.read_text(encoding="utf-8"))["causes"]
-        assert len(causes) == 1, [cause["text"] for cause in causes]
-        (cause,) = causes
-        assert cause["text"][:40] in " ".join(result.output.split())
-        assert "none that is known" not in result.output
+    def run(scene: str, log: Log, mapped: str = "") -> tuple[str, list[str]]:
+        file = tmp_path / "judged.json"
+        told = judge(scene, Dress().text(log), "--json", file, mapped=mapped, code=1).output
+        (cause,) = json.loads(file.read_text(encoding="utf-8"))["causes"]
+        assert cause["text"][:40] in " ".join(told.split())
+        assert "none that is known" not in told
         return cause["text"], cause["columns"]
 
     return run
 
 
-def holds(case: Planted, words: str, text: str, columns: list[str]) -> None:
+def holds(case: Planted, fault: str, text: str, columns: list[str]) -> None:
     """A cause names the fault, and what it is of."""
-    assert re.search(words, text), text
+    assert re.search(WORDS[fault], text), text
     assert re.search(rf"\b{case.named}\b", text), text
     if case.columns:
         assert set(columns) == set(case.columns)
@@ -73,78 +72,61 @@ def holds(case: Planted, words: str, text: str, columns: list[str]) -> None:
 
 
 @pytest.mark.parametrize("at", few(EITHER, IN_TURN[::2], "`tests/reports/causes` has each"))
-def test_a_fault_is_named_with_its_channel(
-    at: tuple[str, str], blamed: Callable[..., tuple[str, list[str]]]
-) -> None:
+def test_a_fault_is_named_with_its_channel(at: tuple[str, str], blamed: Blamed) -> None:
     scene, fault = at
     case = planted(scene, even(LINKAGES[scene], TURNS, PER_TURN))[fault]()
-    holds(case, WORDS[fault], *blamed(scene, case.log))
+    holds(case, fault, *blamed(scene, case.log))
 
 
 @slow("only here are times uneven and faults in: what looks for one may count on even steps")
 @pytest.mark.parametrize(("scene", "fault"), EITHER)
-def test_at_uneven_times_too(
-    scene: str, fault: str, blamed: Callable[..., tuple[str, list[str]]]
-) -> None:
+def test_at_uneven_times_too(scene: str, fault: str, blamed: Blamed) -> None:
     case = planted(scene, uneven(LINKAGES[scene], 2.0, 120))[fault]()
-    holds(case, WORDS[fault], *blamed(scene, case.log))
+    holds(case, fault, *blamed(scene, case.log))
 
 
 @slow("only here do faults meet angles of joints, wrapped ones, and rates said to be late")
 @pytest.mark.parametrize(("scene", "fault"), EITHER)
-def test_in_all_guises_at_once_too(
-    scene: str, fault: str, blamed: Callable[..., tuple[str, list[str]]]
-) -> None:
+def test_in_all_guises_at_once_too(scene: str, fault: str, blamed: Blamed) -> None:
     linkage, culprits = LINKAGES[scene], CULPRITS[scene]
     plain = {culprits.turn, *culprits.swapped} if fault in ("lost turn", "swapped columns") else {}
     columns = [
         old if old.header in plain else replace(new, header=old.header)
         for old, new in zip(COLUMNS[scene], disguised(scene).columns, strict=True)
     ]
-    mapped = map_text(linkage, columns)
     case = planted(scene, uneven(linkage, 2.0, 120), columns)[fault]()
-    holds(case, WORDS[fault], *blamed(scene, case.log, mapped=mapped))
+    holds(case, fault, *blamed(scene, case.log, map_text(linkage, columns)))
 
 
 @pytest.mark.parametrize("scene", ONE_AND_ALL)
 def test_rates_half_a_sample_late_are_told_and_the_map_that_is_told_mends_it(
-    scene: str, blamed: Callable[..., tuple[str, list[str]]], judge: Judge
+    scene: str, blamed: Blamed, judge: Judge
 ) -> None:
     linkage = LINKAGES[scene]
-    step_s = linkage.period_s / PER_TURN
+    late_s = -linkage.period_s / PER_TURN / 2.0
     columns = [
-        replace(column, later_s=-step_s / 2.0) if column.what in ("omega", "vx", "vy") else column
-        for column in COLUMNS[scene]
+        replace(each, later_s=late_s) if each.what in ("omega", "vx", "vy") else each
+        for each in COLUMNS[scene]
     ]
     log = logged(linkage, even(linkage, TURNS, PER_TURN), columns)
-    text, blamed_columns = blamed(scene, log)
+    text, found = blamed(scene, log)
     assert "belong 0.50 samples" in text
     assert "earlier" in text
     late = {column.header for column in columns if column.later_s}
-    assert set(blamed_columns) == late - {f"{linkage.crank}_omega_rad_s"}  # which is constant
-    told = "\n".join(
-        f'[[channel]]\ncolumn = "{column}"\ndelay_s = {-step_s / 2.0!r}' for column in late
-    )
-    assert judge(scene, Dress().text(log), mapped=told).exit_code == 0
+    assert set(found) == late - {f"{linkage.crank}_omega_rad_s"}  # which is constant
+    told = [f'[[channel]]\ncolumn = "{column}"\ndelay_s = {late_s!r}' for column in late]
+    judge(scene, Dress().text(log), mapped="\n".join(told))
 
 
 @pytest.mark.parametrize("scene", ONE_AND_ALL)
-def test_a_mean_that_is_not_late_is_a_filter_too(
-    scene: str, blamed: Callable[..., tuple[str, list[str]]]
+def test_a_mean_that_is_not_late_and_samples_that_stick_are_told_of_their_column(
+    scene: str, blamed: Blamed
 ) -> None:
-    column = CULPRITS[scene].filtered
     log = logged(LINKAGES[scene], even(LINKAGES[scene], TURNS, PER_TURN), COLUMNS[scene])
-    text, columns = blamed(scene, averaged(log, column, 21))
-    assert columns == [column]
+    filtered, still = CULPRITS[scene].filtered, CULPRITS[scene].stuck
+    text, columns = blamed(scene, averaged(log, filtered, 21))
+    assert columns == [filtered]
     assert "mean over 21 samples" in text
-
-
-@pytest.mark.parametrize("scene", ONE_AND_ALL)
-def test_several_samples_that_stick_are_told_as_one_stretch(
-    scene: str, blamed: Callable[..., tuple[str, list[str]]]
-) -> None:
-    column = CULPRITS[scene].stuck
-    log = logged(LINKAGES[scene], even(LINKAGES[scene], TURNS, PER_TURN), COLUMNS[scene])
-    text, columns = blamed(scene, stuck(log, column, 6))
-    assert columns == [column]
+    text, columns = blamed(scene, stuck(log, still, 6))
+    assert columns == [still]
     assert re.search(r"sticks: samples \d+ to \d+ ", text), text
