@@ -26,14 +26,7 @@ def nearness(scene: Scene, motion: Motion) -> dict[str, Array]:
     distances = dict(motion.conditioning)
     for group in analyse(scene).groups:
         if group.kind == "RPR":
-            ends = (_place(scene, motion, pin) for pin in (group.outer1, group.outer2))
+            ends = (motion.points[pin].position for pin in (group.outer1, group.outer2))
             apart = np.hypot(*np.subtract(*ends).T)
             distances[group.branch_key] = distances[group.branch_key] * apart / np.max(apart)
     return distances
-
-
-def _place(scene: Scene, motion: Motion, pin: str) -> Array:
-    """A pin at the samples [m], (T, 2)."""
-    if pin in motion.points:
-        return motion.points[pin].position
-    return np.broadcast_to(np.array(scene.ground[pin]), (len(motion.time_s), 2))
