@@ -1,32 +1,54 @@
-"""Driving torque and reactions of mechanisms that are worked out otherwise, and what is refused."""
+"""Driving torque and reactions of mechanisms that are worked out otherwise, with springs, redundant
+links and dead points; and what is refused."""
 
 from __future__ import annotations
 
+import math
 import random
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from analytic.check.moved_scene import moved, rotated
-from analytic.dyads.plane import Vec
-from analytic.forces import kinetostatics
-from analytic.kinematics import solve, solve_driven
+from analytic.check import multipliers
+from analytic.forces.kinetostatics import forces
+from analytic.forces.springs import spring_lengths
+from analytic.kinematics import chunks, reach, solve, solve_driven
 from models.characteristics import Constant, Polynomial
 from models.errors import CrankcheckError
 from models.files import load_scene, parse_scene
+from models.laws import ConstantSpeed
 from models.loads import Load
+from models.motion import Motion
+from models.scene import GROUND, Driver, Scene
+from models.springs import LineSpring, PinSpring, SlideSpring
 from models.tabulated import Tabulated
-from tests.analytic.forces.beside import apart, series, turn
-from tests.worlds.loading import loaded
+from tests.analytic.dyads.test_redundant import parallelogram, with_strut
+from tests.analytic.forces.beside import AGREED, apart, out_of_balance, series, turn
+from tests.analytic.forces.test_self_locking import STEEP
+from tests.models.test_friction import RUBBING
+from tests.models.test_loads import PRESS
+from tests.worlds.loading import loaded, massless
+from tests.worlds.mutation import MUTATIONS
+from tests.worlds.tiers import slowly
+
+CENTRAL = load_scene("slider-crank-central")
+ROCKING = load_scene("fourbar-double-rocker")
+LEVEL = replace(parallelogram(1), gravity_m_s2=(0.0, -9.81))
+"""Its bars come into one line at 0 deg."""
+
+
+def at(scene: Scene, *angles_rad: float, speed: float = 1.0) -> Motion:
+    """A motion of one speed through angles of the driver."""
+    return solve_driven(scene, np.array(angles_rad), np.array(speed), np.array(0.0))
 
 
 def test_forces_of_a_motion_are_those_of_its_times() -> None:
     scene = loaded(load_scene("sixbar-stephenson"), random.Random(3))
     time_s = turn(scene)
-    by_time = kinetostatics.forces(scene, time_s)
-    of_motion = kinetostatics.forces(scene, solve(scene, time_s))
-    bare = kinetostatics.forces(scene, time_s, bound=False)
+    by_time, of_motion = forces(scene, time_s), forces(scene, solve(scene, time_s))
+    bare = forces(scene, time_s, bound=False)
     assert apart(by_time, of_motion) < 1e-14
     assert np.all(of_motion.bound.torque < 3.0 * by_time.bound.torque)
     assert np.all(by_time.bound.torque < 3.0 * of_motion.bound.torque)
@@ -37,17 +59,39 @@ def test_forces_of_a_motion_are_those_of_its_times() -> None:
 
 def test_chunks_make_no_difference() -> None:
     scene = load_scene("slider-crank-offset")
-    time_s = np.linspace(0.0, 3.0, 30_000)
-    whole = kinetostatics.forces(scene, time_s, bound=False)
-    part = kinetostatics.forces(scene, time_s[25_000:25_010], bound=False)
-    np.testing.assert_allclose(whole.torque[25_000:25_010], part.torque, rtol=1e-14)
+    time_s, some = np.linspace(0.0, 3.0, 30_000), slice(25_000, 25_010)
+    whole, part = (forces(scene, times, bound=False) for times in (time_s, time_s[some]))
+    np.testing.assert_allclose(whole.torque[some], part.torque, rtol=1e-14)
+
+
+SHARED = """
+name = "shared"
+source = "test"
+gravity_m_s2 = [0.0, -9.81]
+ground = { points = { A = [0.0, 0.0], D = [0.3, 0.0] } }
+sliders = { E = { on = "ground", mass_kg = 0.5 } }
+driver = { link = "crank", speed_rad_s = 10.0 }
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1 }
+coupler = { bar = ["B", "C"], length_m = 0.25 }
+rocker = { bar = ["D", "C"], length_m = 0.2 }
+rod = { bar = ["B", "E"], length_m = 0.3 }
+"""
+HANGING = """
+name = "hanging"
+source = "test"
+gravity_m_s2 = [0.0, -9.81]
+ground = { points = { A = [0.0, 0.0] } }
+links = { crank = { bar = ["A", "B"], length_m = 0.4, mass_kg = 3.0 } }
+driver = { link = "crank", speed_rad_s = 1.0 }
+"""
 
 
 def test_all_forces_of_a_pin_add_up_to_nothing() -> None:
     """Of three bodies too; the ground stands first: what it exerts on the link is the second."""
-    scene = replace(parse_scene(SHARED, "shared"), gravity_m_s2=(0.0, -9.81))
+    scene = parse_scene(SHARED, "shared")
     assert len(scene.pins["B"]) == 3
-    found = kinetostatics.forces(scene, turn(scene))
+    found = forces(scene, turn(scene))
     largest = max(np.abs(force).max() for name, force in series(found) if name.startswith("pin"))
     for by_body in found.pins.values():
         assert np.abs(sum(by_body.values())).max() < 1e-14 * largest
@@ -57,9 +101,7 @@ def test_all_forces_of_a_pin_add_up_to_nothing() -> None:
 def test_a_hanging_weight_pulls_its_pin_down() -> None:
     """A crank that hangs: the pin holds m g - m omega^2 r up, the drive keeps it where it is."""
     scene = parse_scene(HANGING, "hanging")
-    found = kinetostatics.forces(
-        scene, solve_driven(scene, np.radians([-90.0, 0.0]), np.array(2.0), np.array(0.0))
-    )
+    found = forces(scene, at(scene, -0.5 * math.pi, 0.0, speed=2.0))
     down, level = found.pins["A"]["crank"]
     assert down == pytest.approx([0.0, 3.0 * (9.81 + 4.0 * 0.2)], abs=1e-14)
     assert level == pytest.approx([-3.0 * 4.0 * 0.2, 3.0 * 9.81], abs=1e-14)
@@ -67,114 +109,35 @@ def test_a_hanging_weight_pulls_its_pin_down() -> None:
     np.testing.assert_array_equal(found.pins["A"]["ground"], -found.pins["A"]["crank"])
 
 
-SHARED = """
-name = "shared"
-source = "test"
-[ground]
-points = { A = [0.0, 0.0], D = [0.3, 0.0] }
-[links]
-crank = { bar = ["A", "B"], length_m = 0.1 }
-coupler = { bar = ["B", "C"], length_m = 0.25 }
-rocker = { bar = ["D", "C"], length_m = 0.2 }
-rod = { bar = ["B", "E"], length_m = 0.3 }
-[sliders.E]
-on = "ground"
-mass_kg = 0.5
-[driver]
-link = "crank"
-speed_rad_s = 10.0
-"""
-HANGING = """
-name = "hanging"
-source = "test"
-gravity_m_s2 = [0.0, -9.81]
-[ground]
-points = { A = [0.0, 0.0] }
-[links]
-crank = { bar = ["A", "B"], length_m = 0.4, mass_kg = 3.0 }
-[driver]
-link = "crank"
-speed_rad_s = 1.0
-"""
-
-
 def test_force_on_a_central_slider_crank_is_that_of_the_textbook() -> None:
     """Massless rod, a force on the piston: side thrust F tan(psi), torque F r sin(phi + psi) /
     cos(psi), with the rod's lean psi (Shigley and Uicker, Theory of Machines, slider-crank)."""
-    scene = load_scene("slider-crank-central")
-    links = {n: replace(k, mass_kg=0.0, inertia_kg_m2=0.0) for n, k in scene.links.items()}
-    sliders = {n: replace(s, mass_kg=1e-9) for n, s in scene.sliders.items()}
+    sliders = {n: replace(s, mass_kg=1e-9) for n, s in CENTRAL.sliders.items()}
     gas = Load("gas", "block C", "C", Constant(1000.0), direction_rad=np.pi)
-    scene = replace(scene, links=links, sliders=sliders, loads={"gas": gas})
+    scene = replace(massless(CENTRAL), sliders=sliders, loads={"gas": gas})
     phi = np.radians(np.linspace(10.0, 350.0, 18))
-    found = kinetostatics.forces(scene, solve_driven(scene, phi, np.array(1e-3), np.array(0.0)))
+    found = forces(scene, at(scene, *phi, speed=1e-3))
     r, length = scene.links["crank"].points["B"][0], scene.links["rod"].points["C"][0]
     psi = np.arcsin(r * np.sin(phi) / length)
     torque = -1000.0 * r * np.sin(phi + psi) / np.cos(psi)
+    thrust = 1000.0 * np.abs(np.tan(psi))
     np.testing.assert_allclose(found.torque, torque, atol=1e-9)
-    np.testing.assert_allclose(
-        np.abs(found.sliders["C"].normal), 1000.0 * np.abs(np.tan(psi)), atol=1e-9
-    )
+    np.testing.assert_allclose(np.abs(found.sliders["C"].normal), thrust, atol=1e-9)
     np.testing.assert_allclose(found.sliders["C"].moment, 0.0, atol=1e-9)
 
 
-@pytest.mark.parametrize("name", ["shaper", "scotch-yoke", "sixbar-watt"])
-def test_turned_and_moved_mechanisms_have_turned_forces(name: str) -> None:
-    scene = loaded(load_scene(name), random.Random(2))
-    loads = {n: one for n, one in scene.loads.items() if one.over != "angle"}
-    scene = replace(scene, loads=loads)
-    time_s = turn(scene)
-    here = kinetostatics.forces(scene, time_s)
-    there = kinetostatics.forces(moved(rotated(scene, 0.7), (3.0, -2.0)), time_s)
-    c, s = np.cos(0.7), np.sin(0.7)
-    turned = {
-        p: {b: f @ np.array([[c, s], [-s, c]]) for b, f in held.items()}
-        for p, held in here.pins.items()
-    }
-    assert apart(replace(here, pins=turned), there) < 1e-12
-
-
-def test_a_scene_without_mass_and_load_is_refused() -> None:
-    scene = load_scene("fourbar-lecture-1")
-    links = {n: replace(k, mass_kg=0.0, inertia_kg_m2=0.0) for n, k in scene.links.items()}
-    light = replace(scene, links=links)
-    with pytest.raises(CrankcheckError, match="no link or slider has a mass and nothing loads"):
-        kinetostatics.forces(light, [0.0])
+def test_a_scene_without_mass_has_the_forces_of_its_loads() -> None:
     push = Load("push", "rocker", "C", Constant(1.0))
-    assert kinetostatics.forces(replace(light, loads={"push": push}), [0.0]).torque[0] != 0.0
-
-
-@pytest.mark.parametrize(
-    ("load", "words"),
-    [
-        (Load("x", "door", "C", Constant(1.0)), r"loads.x.body: found door; use one of crank, rod"),
-        (Load("x", "rod", "Q", Constant(1.0)), r"loads.x.point: found Q; use one of B, C"),
-        (
-            Load("x", "rod", "C", Constant(1.0), slider="Z", stroke="forward"),
-            r"loads.x.slider: found Z; use one of C",
-        ),
-        (
-            Load("x", "rod", "C", Polynomial((1.0,)), "displacement"),
-            r"loads.x.slider: found none; use one of C",
-        ),
-        (
-            Load("x", "rod", "C", Tabulated((0.0, 0.1), (1.0, 2.0)), "time"),
-            r"loads.x: over the time \[s\] the table goes from 0 to 0.1, and 0.2 is asked for",
-        ),
-    ],
-)
-def test_a_load_that_is_not_there_is_refused(load: Load, words: str) -> None:
-    scene = replace(load_scene("slider-crank-central"), loads={"x": load})
-    with pytest.raises(CrankcheckError, match=words):
-        kinetostatics.forces(scene, [0.1, 0.2])
+    scene = replace(massless(load_scene("fourbar-lecture-1")), loads={"push": push})
+    assert forces(scene, [0.0]).torque[0] != 0.0
 
 
 def test_a_cutting_force_acts_on_the_working_stroke_alone() -> None:
     scene = load_scene("shaper")
     cut = Load("cut", "block F", "F", Constant(500.0), "time", "F", "forward", np.pi)
     time_s = turn(scene)
-    idle = kinetostatics.forces(scene, time_s, bound=False)
-    cutting = kinetostatics.forces(replace(scene, loads={"cut": cut}), time_s, bound=False)
+    idle = forces(scene, time_s, bound=False)
+    cutting = forces(replace(scene, loads={"cut": cut}), time_s, bound=False)
     works = solve(scene, time_s, bound=False).sliders["F"].speed > 0.0
     more = cutting.torque - idle.torque
     assert np.all(np.abs(more[works]) > 0.0)
@@ -184,20 +147,183 @@ def test_a_cutting_force_acts_on_the_working_stroke_alone() -> None:
 
 def test_where_a_stroke_turns_the_bound_holds_the_whole_force() -> None:
     """Rounding may have the speed on either side of 0."""
-    scene = load_scene("slider-crank-central")
     cut = Load("cut", "block C", "C", Constant(500.0), "time", "C", "forward")
-    scene = replace(
-        scene, loads={"cut": cut}, sliders={"C": replace(scene.sliders["C"], mass_kg=1.0)}
-    )
-    still = solve_driven(scene, np.array([np.pi, 1.0]), np.array(1.0), np.array(0.0))
-    found = kinetostatics.forces(scene, still)
-    assert found.bound.pins["C"]["block C"][0] >= 500.0
-    assert found.bound.pins["C"]["block C"][1] < 1e-9
+    heavy = {"C": replace(CENTRAL.sliders["C"], mass_kg=1.0)}
+    scene = replace(CENTRAL, loads={"cut": cut}, sliders=heavy)
+    bound = forces(scene, at(scene, np.pi, 1.0)).bound.pins["C"]["block C"]
+    assert bound[0] >= 500.0
+    assert bound[1] < 1e-9
 
 
-def test_vectors_of_no_length_cost_nothing() -> None:
-    scene = load_scene("slider-crank-central")
-    chunk = next(iter(kinetostatics.chunks(scene, np.zeros(3), bound=True)))[1]
-    body = kinetostatics.free_bodies(scene, chunk)["rod"]
-    assert body.vector((0.1, 0.2), (0.1, 0.2)).v.x == 0.0
-    assert isinstance(body.vector((0.0, 0.0), (0.1, 0.2)).v, Vec)
+def test_a_slider_crank_with_springs_by_hand() -> None:
+    """Crank 0.3, rod 0.5 m at 90 deg, 2 rad/s, nothing with mass: x_C = 0.4 m, x_C' = -0.6 m/s.
+    A spring of 100 N/m and 10 N s/m, slack at 0.1 m, pulls the block back with 100 (0.4 - 0.1)
+    - 10 0.6 = 24 N; the power 24 (-0.6) comes of the drive: M 2 = 24 (-0.6), M = -7.2 N m. The rod,
+    (0.4, -0.3) / 0.5, holds the block with +24 N along x: so with -18 N across, and the guide
+    with +18 N. In the pin A a spring of 2 N m/rad, slack at 30 deg: 2 pi/3 N m more."""
+    scene = massless(CENTRAL)
+    links = {
+        "crank": replace(scene.links["crank"], points={"A": (0.0, 0.0), "B": (0.3, 0.0)}),
+        "rod": replace(scene.links["rod"], points={"B": (0.0, 0.0), "C": (0.5, 0.0)}),
+    }
+    driver = Driver("crank", ConstantSpeed(0.5 * math.pi, 2.0))
+    back = SlideSpring("back", 100.0, 10.0, 0.1, "C")
+    scene = replace(scene, links=links, driver=driver, springs={"back": back})
+    found = forces(scene, [0.0])
+    assert found.torque == pytest.approx([-7.2])
+    assert found.pins["C"]["block C"][0] == pytest.approx([24.0, -18.0])
+    assert found.sliders["C"].normal == pytest.approx([18.0])
+    wound = PinSpring("wound", 2.0, 0.0, math.radians(30.0), "A", (GROUND, "crank"))
+    both = replace(scene, springs={"back": back, "wound": wound})
+    assert forces(both, [0.0]).torque == pytest.approx([-7.2 + math.tau / 3.0])
+
+
+def test_a_spring_in_a_pin_is_wound_up_turn_by_turn() -> None:
+    """On the crank it holds against 3 turns after 3 turns; between crank and coupler, which comes
+    round as often as the rocker, against as many the other way."""
+    scene = load_scene("fourbar-lecture-1")
+    crank = PinSpring("own", 2.0, 0.0, math.radians(600.0), "A", (GROUND, "crank"))
+    coupler = PinSpring("far", 2.0, 0.0, -1.0, "B", ("crank", "coupler"))
+    scene = replace(scene, springs={"own": crank, "far": coupler})
+    instants = np.array([0.0, 1.0, 3.0]) * scene.driver.law.period_s
+    for _, chunk in chunks(scene, instants, bound=False):
+        (_, q, _), (_, other, _) = spring_lengths(scene, chunk, counted=True)
+    assert abs(q[0] - crank.free) <= math.pi
+    assert q - q[0] == pytest.approx([0.0, math.tau, 3.0 * math.tau])
+    assert abs(other[0] - coupler.free) <= math.pi
+    assert other - other[0] == pytest.approx([0.0, -math.tau, -3.0 * math.tau])
+    found = forces(scene, instants)
+    assert apart(found, multipliers.forces(scene, solve(scene, instants))) <= AGREED
+    given = forces(scene, solve_driven(scene, *scene.driver.law.at(instants), instants))
+    assert apart(found, given) <= AGREED
+
+
+def test_a_spring_without_a_free_length_may_come_to_nothing() -> None:
+    """The crank's pin passes a point of the ground: nothing pulls there, and nothing is divided by
+    the length."""
+    plain = load_scene("fourbar-lecture-1")
+    spring = LineSpring("own", 50.0, 0.0, 0.0, ("E", "B"))
+    scene = replace(plain, ground={**plain.ground, "E": (0.0, 0.1)}, springs={"own": spring})
+    assert scene.links["crank"].points["B"] == (0.1, 0.0)
+    found = forces(scene, [0.0])  # the crank stands at 90 deg
+    assert found.torque == pytest.approx(forces(plain, [0.0]).torque)
+    assert found.bound.torque[0] < 1e-12
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_redundant_links_leave_the_torque(number: int) -> None:
+    """The balance of power holds for it, to rounding."""
+    scene = parallelogram(2) if number % 2 else with_strut(parallelogram(1), "B0", "B1")
+    scene = loaded(scene, random.Random(number))
+    scene = replace(scene, loads={}, gravity_m_s2=(0.0, -9.81))
+    time_s = np.linspace(0.0, 1.0, 9)
+    found = forces(scene, time_s)
+    assert not found.pins
+    assert not found.sliders
+    assert "redundant links" in found.undetermined
+    assert "stiffness" in found.undetermined
+    assert out_of_balance(scene, time_s, found) <= AGREED
+    assert np.all(found.bound.torque < 1e-9 * np.abs(found.torque).max())
+
+
+def test_a_redundant_link_without_mass_changes_no_torque() -> None:
+    """Within both bounds, which go on along two ways."""
+    scene = replace(loaded(parallelogram(1), random.Random(5)), gravity_m_s2=(0.0, -9.81))
+    strutted = with_strut(scene, "B0", "B1")
+    strut = replace(strutted.links["strut"], mass_kg=0.0, inertia_kg_m2=0.0)
+    strutted = replace(strutted, links={**strutted.links, "strut": strut})
+    plain, spare = (forces(each, np.linspace(0.0, 1.0, 9)) for each in (scene, strutted))
+    most = plain.bound.torque + spare.bound.torque
+    assert np.all(np.abs(plain.torque - spare.torque) <= most)
+    assert np.all(most < 1e-9 * np.abs(plain.torque).max())
+
+
+def test_a_dead_point_may_be_left_out() -> None:
+    found = forces(LEVEL, at(LEVEL, 0.5, 0.0), skip_dead_points=True)
+    for _, array in series(found):
+        assert np.isnan(array).reshape(2, -1).all(axis=1).tolist() == [False, True]
+    assert np.isinf(found.bound.torque).tolist() == [False, True]
+    assert np.isinf(found.bound.pins["B1"]["coupler"]).tolist() == [False, True]
+
+
+def test_beside_a_dead_point_nothing_is_certain() -> None:
+    found = forces(ROCKING, at(ROCKING, reach(ROCKING)[0][0] + 1e-14))
+    assert np.isinf(found.bound.torque).all()
+    assert np.isinf(found.bound.pins["C"]["coupler"]).all()
+
+
+STILL = massless(load_scene("fourbar-lecture-1"))
+FAST = Load("pull", "rod", "B", Polynomial((0.0,) * 19 + (1e15,)))
+
+
+@pytest.mark.parametrize(
+    ("scene", "when", "words"),
+    [
+        (LEVEL, at(LEVEL, 0.5, 0.0), r"crank at 0 deg .* dead point: the dyad at B1"),
+        (ROCKING, at(ROCKING, reach(ROCKING)[0][0]), r"driver at -65.3757 deg .* the dyad at C"),
+        (replace(CENTRAL, loads={"pull": FAST}), np.array([1e20]),
+         r"t = 1e\+20 s\): forces are larger than numbers go"),
+        (STILL, [0.0], "no link or slider has a mass and nothing loads"),
+    ],
+    ids=["dead point", "end of a range", "beyond all numbers", "without mass"],
+)  # fmt: skip
+def test_what_has_no_forces_is_told(scene: Scene, when: object, words: str) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        forces(scene, when)  # type: ignore[arg-type]
+
+
+def lost(motion: Motion) -> Motion:
+    return replace(motion.each_series(lambda a: np.full_like(a, np.nan)), conditioning={})
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (lambda m: replace(m, points={}), "point A is not in it; solve it without a choice"),
+        (lambda m: replace(m, sliders={}), "slider C is not in it"),
+        (lambda m: replace(m, bound=None), "carries no bounds"),
+        (lost, "no acceleration of link crank"),
+    ],
+)
+def test_a_motion_that_lacks_something_is_refused(
+    spoil: Callable[[Motion], Motion], words: str
+) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        forces(CENTRAL, spoil(solve(CENTRAL, np.array([0.1, 0.2]))))
+
+
+@pytest.mark.parametrize(
+    ("load", "words"),
+    [
+        (Load("x", "door", "C", Constant(1.0)), r"loads.x.body: found door; use one of crank, rod"),
+        (Load("x", "rod", "Q", Constant(1.0)), r"loads.x.point: found Q; use one of B, C"),
+        (Load("x", "rod", "C", Constant(1.0), slider="Z", stroke="forward"),
+         r"loads.x.slider: found Z; use one of C"),
+        (Load("x", "rod", "C", Polynomial((1.0,)), "displacement"),
+         r"loads.x.slider: found none; use one of C"),
+        (Load("x", "rod", "C", Tabulated((0.0, 0.1), (1.0, 2.0)), "time"),
+         r"loads.x: over the time \[s\] the table goes from 0 to 0.1, and 0.2 is asked for"),
+    ],
+)  # fmt: skip
+def test_a_load_that_is_not_there_is_refused(load: Load, words: str) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        forces(replace(CENTRAL, loads={"x": load}), [0.1, 0.2])
+
+
+@pytest.mark.parametrize("files", [40, slowly(600, reason="changes at random")])
+@pytest.mark.parametrize("sound", [PRESS, RUBBING, STEEP], ids=["loads", "friction", "locking"])
+def test_a_changed_file_gives_forces_or_a_message(sound: str, files: int) -> None:
+    """Warnings are errors here, so that no number overflows unseen either."""
+    solved = refused = 0
+    for number in range(files):
+        rng, text = random.Random(number), sound
+        for _ in range(rng.choice((1, 1, 2, 3))):
+            text = rng.choices(list(MUTATIONS), list(MUTATIONS.values()))[0](rng, text)
+        try:
+            scene = parse_scene(text, "changed")
+            time_s = np.linspace(0.01, 0.99, 5) * scene.driver.law.period_s
+            assert not np.isnan(forces(scene, time_s, skip_dead_points=True).bound.torque).any()
+            solved += 1
+        except CrankcheckError:
+            refused += 1
+    assert min(solved, refused) > 0.2 * files, (solved, refused)

@@ -1,18 +1,31 @@
-"""Inertia as one force or two masses: numbers worked by hand, and the link's own force and moment.
-
-The source gives the formulas; the numbers are ours.
-"""
+"""Inertia as one force, as two masses, at the driver, and in impulses that come a step late:
+numbers worked by hand, and what the bodies have themselves."""
 
 from __future__ import annotations
 
 import math
+import random
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from analytic.forces.kinetostatics import forces
+from analytic.forces.late_impulses import ON_TIME, LateImpulses, late_impulses
+from analytic.forces.reduced_machine import reduced_machine
 from analytic.forces.reduction import oscillation_length, plane_motion, rotation, two_masses
+from analytic.kinematics import solve
 from models.array import Array
+from models.characteristics import Constant
 from models.errors import CrankcheckError
+from models.files import load_scene, parse_scene, shipped
+from models.laws import Accelerating, ConstantSpeed
+from models.loads import Load
+from models.scene import Driver
+from tests.worlds.loading import loaded
+from tests.worlds.sprung import sprung
+
+Pair = tuple[float, float]
 
 
 def cross(a: Array, b: Array) -> Array:
@@ -37,49 +50,31 @@ def test_a_rod_in_rotation_worked_by_hand() -> None:
     assert cross(found.place, found.force) == pytest.approx([-12.0])
 
 
-def test_a_link_in_plane_motion_worked_by_hand() -> None:
-    """2 kg, S at 0.3 m on x, J = 0.06, a_A = (0, 10), omega = 10, alpha = 0: a_SA = (-30, 0) in K
-    = (0.4, 0), a_A through S: T = S, as the parallel through K is the x-axis itself."""
-    found = plane_motion(
-        2.0, 0.06, np.array([[0.3, 0.0]]), np.array([[0.0, 10.0]]), np.array([10.0]), np.zeros(1)
-    )
-    assert found.force == pytest.approx(np.array([[60.0, -20.0]]))
-    assert found.place == pytest.approx(np.array([[0.3, 0.0]]))
-    # With alpha = 50, a_SA = (-30, 15): from K = (0.4, 0) back to x = 0.3 it rises by 0.05.
-    found = plane_motion(
-        2.0, 0.06, np.array([[0.3, 0.0]]), np.array([[0.0, 10.0]]), np.array([10.0]),
-        np.array([50.0]),
-    )  # fmt: skip
-    assert found.force == pytest.approx(np.array([[60.0, -50.0]]))
-    assert found.place == pytest.approx(np.array([[0.3, 0.05]]))
-
-
-def test_a_link_in_translation_has_its_inertia_in_the_centre() -> None:
-    """3 kg, a_A = a_S = (2, -1) and no turning: P = -3 (2, -1) = (-6, 3) through S."""
-    found = plane_motion(
-        3.0, 0.06, np.array([[0.3, 0.2]]), np.array([[2.0, -1.0]]), np.zeros(1), np.zeros(1)
-    )
-    assert found.force == pytest.approx(np.array([[-6.0, 3.0]]))
-    assert found.place == pytest.approx(np.array([[0.3, 0.2]]))
-
-
-def test_from_the_other_pin_the_inertia_has_the_same_line_of_action() -> None:
-    """The link above from B = (0.5, 0): S at -0.2 m, K at 0.2 + 0.06 / (2 0.2) = 0.35 m from B, so
-    at 0.15; a_B = (0, 10) + 50 (0, 0.5) - 100 (0.5, 0) = (-50, 35), a_SB = (-30, 25) - a_B = (20,
-    -10). S + u a_B = K + w a_SB: 0.3 - 50 u = 0.15 + 20 w, 35 u = -10 w give u = -0.0075, so
-    T' = (0.675, -0.2625); from T = (0.3, 0.05) that is (0.375, -0.3125) = P / 160, along P."""
-    one = plane_motion(
-        2.0, 0.06, np.array([[0.3, 0.0]]), np.array([[0.0, 10.0]]), np.array([10.0]),
-        np.array([50.0]),
-    )  # fmt: skip
-    other = plane_motion(
-        2.0, 0.06, np.array([[-0.2, 0.0]]), np.array([[-50.0, 35.0]]), np.array([10.0]),
-        np.array([50.0]),
-    )  # fmt: skip
-    assert other.force == pytest.approx(one.force)
-    place = other.place + np.array([[0.5, 0.0]])
-    assert place == pytest.approx(np.array([[0.675, -0.2625]]))
-    assert place - one.place == pytest.approx(one.force / 160.0)
+@pytest.mark.parametrize(
+    ("mass", "centre", "a_a", "omega", "alpha", "force", "place"),
+    [
+        # a_SA = (-30, 0) in K = (0.4, 0), a_A through S: T = S, as the parallel through K is the
+        # x-axis itself. With alpha a_SA = (-30, 15): from K back to x = 0.3 it rises by 0.05.
+        (2.0, (0.3, 0.0), (0.0, 10.0), 10.0, 0.0, (60.0, -20.0), (0.3, 0.0)),
+        (2.0, (0.3, 0.0), (0.0, 10.0), 10.0, 50.0, (60.0, -50.0), (0.3, 0.05)),
+        # That one from B = (0.5, 0): S at -0.2 m, K at 0.2 + 0.06 / (2 0.2) = 0.35 m from B, so at
+        # 0.15; a_B = (0, 10) + 50 (0, 0.5) - 100 (0.5, 0) = (-50, 35), a_SB = (-30, 25) - a_B =
+        # (20, -10). S + u a_B = K + w a_SB: 0.3 - 50 u = 0.15 + 20 w, 35 u = -10 w give u =
+        # -0.0075, so T' = (0.675, -0.2625); from T that is (0.375, -0.3125) = P / 160, along P.
+        (2.0, (-0.2, 0.0), (-50.0, 35.0), 10.0, 50.0, (60.0, -50.0), (0.675 - 0.5, -0.2625)),
+        # In translation a_A = a_S: P = -3 (2, -1) through S.
+        (3.0, (0.3, 0.2), (2.0, -1.0), 0.0, 0.0, (-6.0, 3.0), (0.3, 0.2)),
+    ],
+    ids=["turning evenly", "ever faster", "from its other pin", "in translation"],
+)
+def test_a_link_in_plane_motion_worked_by_hand(
+    mass: float, centre: Pair, a_a: Pair, omega: float, alpha: float, force: Pair, place: Pair
+) -> None:
+    """J = 0.06 kg m^2."""
+    turning = np.array([omega]), np.array([alpha])
+    found = plane_motion(mass, 0.06, np.array([centre]), np.array([a_a]), *turning)
+    assert found.force == pytest.approx(np.array([force]))
+    assert found.place == pytest.approx(np.array([place]))
 
 
 @pytest.mark.parametrize("parallel", [False, True])
@@ -143,3 +138,101 @@ def test_two_masses_and_their_couple_have_the_inertia_of_the_link() -> None:
 def test_what_has_no_reduction_is_refused(make: object, words: str) -> None:
     with pytest.raises(CrankcheckError, match=words):
         make()  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(("name", "springs"), [*((n, False) for n in shipped()), ("shaper", True)])
+def test_the_reduced_machine_takes_the_torque_of_the_drive(name: str, springs: bool) -> None:
+    """torque = I alpha + I' omega^2 / 2 - M, under an accelerating driver and any loads."""
+    scene = load_scene(name)
+    scene = sprung(scene, random.Random(1)) if springs else loaded(scene, random.Random(name))
+    law = Accelerating(float(scene.driver.law.at(np.zeros(1))[0][0]), 0.5, 1.0)
+    scene = replace(scene, driver=Driver(scene.driver.link, law))
+    time_s = np.linspace(0.01, 0.9 if springs else 0.2, 7)
+    machine, (_, omega, alpha) = reduced_machine(scene, time_s), law.at(time_s)
+    torque = machine.inertia * alpha + 0.5 * machine.slope * omega**2 - machine.torque
+    found = forces(scene, time_s).torque
+    assert torque == pytest.approx(found, abs=1e-11 * np.abs(found).max())
+
+
+def test_a_scotch_yoke_worked_by_hand() -> None:
+    """Yoke of mass m on a crank r: I = J_crank + m r^2 sin^2 phi, M = -F r sin phi."""
+    scene = load_scene("scotch-yoke")
+    crank, yoke = scene.links["crank"], scene.links["yoke"]
+    sliders = {n: replace(s, mass_kg=0.0, inertia_kg_m2=0.0) for n, s in scene.sliders.items()}
+    push = Load("push", "yoke", next(iter(yoke.points)), Constant(40.0))
+    driver = Driver("crank", ConstantSpeed(0.3, 1.0))
+    scene = replace(scene, sliders=sliders, loads={"push": push}, driver=driver)
+    time_s = np.linspace(0.0, 6.0, 13)
+    machine = reduced_machine(scene, time_s)
+    r, phi = crank.points["B"][0], machine.theta
+    own = crank.inertia_kg_m2 + crank.mass_kg * crank.centre_m[0] ** 2
+    assert phi == pytest.approx(0.3 + time_s)
+    assert machine.inertia == pytest.approx(own + yoke.mass_kg * r**2 * np.sin(phi) ** 2)
+    assert machine.slope == pytest.approx(yoke.mass_kg * r**2 * np.sin(2 * phi), abs=1e-15)
+    assert machine.torque == pytest.approx(-40.0 * r * np.sin(phi), abs=1e-13)
+
+
+def test_a_slider_crank_worked_by_hand() -> None:
+    """Crank 0.3 m without mass at 90 deg, rod 0.5 m: the rod is in translation there, all of it at
+    0.3 m/rad against x. Rod 2 kg, block 4 kg: J = 6 0.3^2 = 0.54 kg m^2. 100 N along x on the block
+    and weights: M = 100 (-0.3) = -30 N m, as a level motion lifts nothing. The rod's slope is
+    -0.3 / 0.5, x' = -0.3, theta'_rod = -0.3 cos 90 / 0.4 = 0, theta''_rod = 0.3 / 0.4 = 0.75;
+    x_C'' = -0.3 cos 90 - (0.5 (0.8) 0^2 + 0.5 (-0.6) 0.75) = 0.225; x_S'' half of that. So
+    J' = 2 (4 (-0.3) 0.225 + 2 (-0.3) 0.1125) = -0.675 kg m^2/rad."""
+    text = """
+name = "worked"
+source = "a test"
+gravity_m_s2 = [0.0, -9.81]
+ground = { points = { A = [0.0, 0.0] } }
+sliders = { C = { on = "ground", mass_kg = 4.0 } }
+driver = { link = "crank", speed_rad_s = 1.0, start_deg = 90.0 }
+loads = { push = { block = "C", force_n = 100.0 } }
+[links]
+crank = { bar = ["A", "B"], length_m = 0.3, mass_kg = 0.0 }
+rod = { bar = ["B", "C"], length_m = 0.5, mass_kg = 2.0 }
+"""
+    machine = reduced_machine(parse_scene(text, "worked"), np.zeros(1))
+    assert machine.inertia == pytest.approx([0.54])
+    assert machine.torque == pytest.approx([-30.0])
+    assert machine.slope == pytest.approx([-0.675])
+
+
+DT_S = 1e-3
+TEXT = """
+name = "rotor"
+source = "a test"
+ground = { points = { A = [0.0, 0.0] } }
+links = { crank = { bar = ["A", "B"], length_m = 1.0, mass_kg = 3.0 } }
+driver = { link = "crank", speed_rad_s = 2.0 }
+"""
+ROTOR = parse_scene(TEXT, "rotor")
+
+
+def of_steps(every: int) -> LateImpulses:
+    times = every * DT_S * np.arange(3000 // every + 1)
+    return late_impulses(ROTOR, solve(ROTOR, times), DT_S, 0.3)
+
+
+def test_a_body_that_turns_evenly_has_late_accelerations_of_its_centre_alone() -> None:
+    """T = (m r^2 + I) w^2 / 2 = 2 J; S = m r^2 w^4 / 2 = 6 J/s^2; and the acceleration turns by
+    w dt in a step, so that over 3 s its differences make m r^2 w^6 / 2 dt^2 3000 = 24 dt^2 3000.
+    A log of every tenth step says the same."""
+    late, tenth = of_steps(1), of_steps(10)
+    assert late.start == pytest.approx(2.0 * 6.0 * DT_S**2 / 2.0)
+    assert (late.offset, tenth.offset) == pytest.approx((late.start, late.start))
+    assert late.loss == pytest.approx(2.0 * 24.0 * DT_S**4 * 3000 / 2.0, rel=1e-5)
+    assert tenth.loss == pytest.approx(late.loss, rel=1e-4)
+
+
+def test_what_does_not_move_has_no_late_impulses() -> None:
+    stopped = solve(ROTOR, DT_S * np.arange(10)).each_series(np.zeros_like)
+    assert late_impulses(ROTOR, stopped, DT_S, 0.3) == ON_TIME
+
+
+def test_what_comes_and_goes_is_late_by_its_mean_over_the_first_or_the_last_while() -> None:
+    times = DT_S * np.arange(1001)
+    even = solve(ROTOR, times)
+    crank = even.links["crank"]
+    jolted = {"crank": replace(crank, alpha=np.where(times == 0.5, 1e6, crank.alpha))}
+    whole = late_impulses(ROTOR, replace(even, links=jolted), DT_S, 0.1)
+    assert whole.offset == pytest.approx(late_impulses(ROTOR, even, DT_S, 0.1).offset)
