@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
@@ -35,142 +35,111 @@ STIFF, SOFT, BIASED, UNBIASED = (
 FOURBAR = load_scene(SCENES[0])
 
 
-@pytest.fixture(scope="module")
-def stored(store: Path) -> Stored:
-    return read_store(store)
+@dataclass(frozen=True)
+class Study:
+    """A store, and what is read of it."""
+
+    stored: Stored
+    lines: tuple[Line, ...]
+
+    def told(self, demand: Demand, texts: Mapping[str, str] = TEXTS) -> MeasuredStudy:
+        return evidence(self.stored, self.lines, demand, texts, EVERY.values())
+
+    def error(self, choice: Choice, steps: float) -> float:
+        """That of the four-bar, as it stands in the store."""
+        named = (FOURBAR.name, choice.label)
+        (line,) = [x for x in self.lines if (x.scene, f"{x.engine} {x.variant}") == named]
+        cells = line.cells
+        return float(cells.loc[cells["steps_per_turn"].round(6) == steps, "place_pure"].iloc[0])
 
 
 @pytest.fixture(scope="module")
-def every(stored: Stored) -> tuple[Line, ...]:
-    return lines(stored)
+def study(store: Path) -> Study:
+    stored = read_store(store)
+    return Study(stored, lines(stored))
 
 
 def at(speed: float, *scenes: Scene) -> Demand:
     return demanded(scenes or (FOURBAR,), speed, 1e-3 * math.tau / abs(speed), 1e-3, 2.0)
 
 
-def told(
-    stored: Stored, every: tuple[Line, ...], demand: Demand, texts: Mapping[str, str] = TEXTS
-) -> MeasuredStudy:
-    return evidence(stored, every, demand, texts, EVERY.values())
+def refused(known: MeasuredStudy, words: str) -> bool:
+    """It has nothing, and says so."""
+    return known.measured == {} and any(words in each for each in known.refusals)
 
 
-def measured(every: tuple[Line, ...], choice: Choice, scene: str, steps: float) -> float:
-    """The error that stands in the store."""
-    (line,) = [
-        line
-        for line in every
-        if (line.scene, f"{line.engine} {line.variant}") == (scene, choice.label)
-    ]
-    cells = line.cells
-    return float(cells.loc[cells["steps_per_turn"].round(6) == steps, "place_pure"].iloc[0])
-
-
-def test_at_its_own_steps_and_speed_it_says_what_was_measured(
-    stored: Stored, every: tuple[Line, ...]
-) -> None:
-    known = told(stored, every, at(10.0))
+def test_at_its_own_steps_and_speed_it_says_what_was_measured(study: Study) -> None:
+    known = study.told(at(10.0))
     for choice in (STIFF, SOFT, BIASED, UNBIASED):
         for steps in STEPS:
-            error = known.error(FOURBAR, choice, steps)
-            assert error == pytest.approx(measured(every, choice, FOURBAR.name, steps), rel=1e-6)
+            wanted = pytest.approx(study.error(choice, steps), rel=1e-6)
+            assert known.error(FOURBAR, choice, steps) == wanted
     assert known.turns == pytest.approx(2.0)
     assert known.refusals == ()
 
 
-def test_between_its_steps_it_reads_a_straight_line_and_outside_nothing(
-    stored: Stored, every: tuple[Line, ...]
-) -> None:
-    known = told(stored, every, at(10.0))
-    ends = [measured(every, STIFF, FOURBAR.name, steps) for steps in (180, 360)]
+def test_between_its_steps_it_reads_a_straight_line_and_outside_nothing(study: Study) -> None:
+    known = study.told(at(10.0))
     middle = known.error(FOURBAR, STIFF, math.sqrt(180 * 360))
-    assert middle == pytest.approx(math.sqrt(ends[0] * ends[1]), rel=1e-9)
+    wanted = math.sqrt(study.error(STIFF, 180) * study.error(STIFF, 360))
+    assert middle == pytest.approx(wanted, rel=1e-9)
     for steps in (STEPS[0] - 1.0, STEPS[-1] + 1.0):
         assert known.error(FOURBAR, STIFF, steps) is None
     assert known.error(FOURBAR, EVERY["mujoco RK4"], 360) is None
+    assert MeasuredSteps(((90.0, 1e-3), (180.0, 0.0))).error(180.0) == 0.0
 
 
-def test_at_another_speed_settings_in_seconds_say_nothing(
-    stored: Stored, every: tuple[Line, ...]
-) -> None:
-    known = told(stored, every, at(0.3))
+def test_at_another_speed_settings_in_seconds_say_nothing(study: Study) -> None:
+    known = study.told(at(0.3))
     for choice in (STIFF, UNBIASED):
-        assert known.error(FOURBAR, choice, 360) == pytest.approx(
-            measured(every, choice, FOURBAR.name, 360)
-        )
-    for choice in (SOFT, BIASED):
+        assert known.error(FOURBAR, choice, 360) == pytest.approx(study.error(choice, 360))
+    for choice, setting in ((SOFT, "solref_timeconst_s"), (BIASED, "error_bias")):
         assert known.error(FOURBAR, choice, 360) is None
-    assert any(
-        "mujoco as-shipped: solref_timeconst_s in seconds" in each for each in known.refusals
-    )
-    assert any("pymunk as-shipped: error_bias in seconds" in each for each in known.refusals)
+        words = f"{choice.label}: {setting} in seconds"
+        assert any(words in each for each in known.refusals)
 
 
-def test_the_other_way_round_is_another_motion(stored: Stored, every: tuple[Line, ...]) -> None:
-    known = told(stored, every, at(-10.0))
-    assert known.measured == {}
-    assert any("turns the other way" in each for each in known.refusals)
-
-
-def test_another_scene_of_the_name_and_one_that_it_lacks_are_told(
-    stored: Stored, every: tuple[Line, ...]
-) -> None:
-    longer = {
-        **TEXTS,
-        FOURBAR.name: TEXTS[FOURBAR.name].replace("length_m = 0.25", "length_m = 0.26"),
-    }
-    known = told(stored, every, at(10.0), longer)
-    assert known.measured == {}
-    assert any(f"another scene {FOURBAR.name}" in each for each in known.refusals)
-    other = load_scene("whitworth")
-    known = told(stored, every, at(10.0, other), scene_texts(["whitworth"]))
+def test_another_motion_or_scene_of_the_name_and_one_that_it_lacks_are_told(study: Study) -> None:
+    assert refused(study.told(at(-10.0)), "turns the other way")
+    longer = TEXTS[FOURBAR.name].replace("length_m = 0.25", "length_m = 0.26")
+    known = study.told(at(10.0), {**TEXTS, FOURBAR.name: longer})
+    assert refused(known, f"another scene {FOURBAR.name}")
+    known = study.told(at(10.0, load_scene("whitworth")), scene_texts(["whitworth"]))
     assert known.refusals == ("whitworth: not in the study",)
 
 
-def test_with_gravity_it_serves_its_own_speed_alone(
-    stored: Stored, every: tuple[Line, ...]
-) -> None:
-    heavy = replace(FOURBAR, gravity_m_s2=(0.0, -9.81))
-    text = TEXTS[FOURBAR.name].replace("[ground]", "gravity_m_s2 = [0.0, -9.81]\n[ground]", 1)
-    texts = {**TEXTS, FOURBAR.name: text}
-    weighed = replace(stored, manifest=replace(stored.manifest, scenes=texts))
-    assert told(weighed, every, at(10.0, heavy), texts).measured
-    known = told(weighed, every, at(20.0, heavy), texts)
-    assert known.measured == {}
-    assert any("has gravity, and turns at 10 rad/s there" in each for each in known.refusals)
-
-
-def test_with_loads_it_serves_its_own_speed_alone(stored: Stored, every: tuple[Line, ...]) -> None:
-    text = f'{TEXTS[FOURBAR.name]}\n[loads.pull]\nlink = "crank"\ntorque_n_m = 1.0\n'
-    texts = {**TEXTS, FOURBAR.name: text}
-    pulled = replace(stored, manifest=replace(stored.manifest, scenes=texts))
-    known = told(pulled, every, at(20.0, parse_scene(text, "pulled")), texts)
-    assert known.measured == {}
-    assert any("has loads, and turns at 10 rad/s there" in each for each in known.refusals)
-
-
 @pytest.mark.parametrize(
-    ("change", "words"),
+    ("kind", "text"),
     [
-        ({"version": "0.9"}, "of mujoco 0.9; here it is"),
-        ({"drive": "servo"}, "under the drive servo"),
+        ("gravity", f"gravity_m_s2 = [0.0, -9.81]\n{TEXTS[FOURBAR.name]}"),
+        ("loads", f'{TEXTS[FOURBAR.name]}\n[loads.pull]\nlink = "crank"\ntorque_n_m = 1.0\n'),
     ],
 )
-def test_another_version_or_drive_does_not_serve(
-    stored: Stored, every: tuple[Line, ...], change: dict[str, str], words: str
+def test_with_gravity_or_loads_it_serves_its_own_speed_alone(
+    study: Study, kind: str, text: str
 ) -> None:
-    changed = tuple(replace(line, **change) for line in every if line.engine == "mujoco")  # type: ignore[arg-type]
-    known = told(stored, changed, at(10.0))
-    assert known.measured == {}
-    assert any(words in each for each in known.refusals)
+    scene, texts = parse_scene(text, kind), {**TEXTS, FOURBAR.name: text}
+    manifest = replace(study.stored.manifest, scenes=texts)
+    pulled = replace(study, stored=replace(study.stored, manifest=manifest))
+    assert pulled.told(at(10.0, scene), texts).measured
+    known = pulled.told(at(20.0, scene), texts)
+    assert refused(known, f"has {kind}, and turns at 10 rad/s there")
 
 
-def test_beside_a_run_that_failed_nothing_is_read_and_finer_misses_are_known(
-    stored: Stored, every: tuple[Line, ...]
-) -> None:
+def test_another_version_or_drive_does_not_serve(study: Study) -> None:
+    for change, words in (
+        ({"version": "0.9"}, "of mujoco 0.9; here it is"),
+        ({"drive": "servo"}, "under the drive servo"),
+    ):
+        mujoco = [line for line in study.lines if line.engine == "mujoco"]
+        changed = tuple(replace(line, **change) for line in mujoco)  # type: ignore[arg-type]
+        assert refused(replace(study, lines=changed).told(at(10.0)), words)
+
+
+def test_beside_a_run_that_failed_nothing_is_read_and_finer_misses_are_known(study: Study) -> None:
     """The finest cell of pymunk "no bias" on the lever is said to have diverged."""
     lever = load_scene("slotted-lever")
-    known = told(stored, every, at(10.0, lever))
+    known = study.told(at(10.0, lever))
     assert known.error(lever, UNBIASED, 359) is not None
     assert known.error(lever, UNBIASED, 400) is None
     assert known.missed(lever, UNBIASED, 100.0, 1.0) == pytest.approx(720.0)
@@ -178,19 +147,12 @@ def test_beside_a_run_that_failed_nothing_is_read_and_finer_misses_are_known(
     assert known.missed(lever, STIFF, 100.0, 1.0) is None
 
 
-def test_its_scenes_and_settings_are_choices(stored: Stored, every: tuple[Line, ...]) -> None:
-    assert set(stored_scenes(stored)) == set(SCENES)
-    found = {choice.label: choice for choice in stored_choices(every)}
+def test_its_scenes_are_choices_and_its_settings_that_an_engine_takes(study: Study) -> None:
+    assert set(stored_scenes(study.stored)) == set(SCENES)
+    found = {choice.label: choice for choice in stored_choices(study.lines)}
     for choice in (STIFF, SOFT, BIASED, UNBIASED):
         assert found[choice.label].settings == choice.settings
-
-
-def test_settings_that_an_engine_does_not_take_are_no_choice(every: tuple[Line, ...]) -> None:
     settings = resolved(engine("mujoco").profiles["tuned"], None)
+    line = next(line for line in study.lines if line.engine == "mujoco")
     for wrong in ({"nothing": 1}, {"iterations": 0}):
-        line = replace(next(x for x in every if x.engine == "mujoco"), settings=settings | wrong)
-        assert stored_choices([line]) == []
-
-
-def test_an_error_of_zero_is_read_as_such() -> None:
-    assert MeasuredSteps(((90.0, 1e-3), (180.0, 0.0))).error(180.0) == 0.0
+        assert stored_choices([replace(line, settings=settings | wrong)]) == []
