@@ -46,23 +46,23 @@ def of(traces: Traces) -> Callable[[str], Trace]:
     return lambda key: traces.get(key, {})
 
 
-def split_of(line: Line, geometric: Callable[[Array, float], Array]) -> Split:
-    return split(line, of(traces_of(line, geometric)), BODY, LENGTH)
+def waves(floor: float, harmonic: int = 1) -> Callable[[Array, float], Array]:
+    """A floor in the phase, and a step's error of order 2 with another shape."""
+    return lambda phase, dt: floor * np.sin(phase) + 40.0 * dt**2 * np.cos(harmonic * phase)
 
 
-def second_order(floor: float) -> tuple[Line, Split]:
-    """A line with a floor in the phase, and a step's error of order 2 with another shape."""
+def split_of(line: Line, geometric: Callable[[Array, float], Array], drive: float = 0.0) -> Split:
+    return split(line, of(traces_of(line, geometric, drive)), BODY, LENGTH)
 
-    def error(phase: Array, dt_s: float) -> Array:
-        return floor * np.sin(phase) + 40.0 * dt_s**2 * np.cos(2 * phase)
 
-    line = line_of(lambda dt_s: floor + 40.0 * dt_s**2)
-    return line, split(line, of(traces_of(line, error, drive=3e-9)), BODY, LENGTH)
+def second_order(floor: float) -> Line:
+    return line_of(lambda dt_s: floor + 40.0 * dt_s**2)
 
 
 @pytest.mark.parametrize("floor", [1e-4, 1e-2])
 def test_floor_and_discretisation_are_told_apart_instant_by_instant(floor: float) -> None:
-    line, found = second_order(floor)
+    line = second_order(floor)
+    found = split_of(line, waves(floor, 2))
     assert found.why == ""
     for key, dt_s in zip(line.cells["key"], line.cells["dt_s"], strict=True):
         parts = found.cells[key]
@@ -75,7 +75,7 @@ def test_floor_and_discretisation_are_told_apart_instant_by_instant(floor: float
 
 
 def test_parts_add_up_to_the_total_and_gaps_are_over_the_longest_link() -> None:
-    _, found = second_order(1e-3)
+    found = split_of(second_order(1e-3), waves(1e-3, 2), drive=3e-9)
     for parts in found.cells.values():
         total = parts.drive + parts.floor + parts.discretisation
         np.testing.assert_allclose(total, parts.total, atol=1e-18)
@@ -84,20 +84,18 @@ def test_parts_add_up_to_the_total_and_gaps_are_over_the_longest_link() -> None:
 
 
 def test_without_a_floor_the_extrapolation_is_within_its_doubt() -> None:
-    line = line_of(lambda dt_s: 40.0 * dt_s**2 * (1.0 + 0.02 * math.sin(1e4 * dt_s)))
-    found = split_of(
-        line, lambda phase, dt: 40.0 * dt**2 * (1.0 + 0.02 * math.sin(1e4 * dt)) * np.cos(phase)
-    )
+    def error(dt_s: float) -> float:
+        return 40.0 * dt_s**2 * (1.0 + 0.02 * math.sin(1e4 * dt_s))
+
+    found = split_of(line_of(error), lambda phase, dt: error(dt) * np.cos(phase))
     assert 0.0 < found.floor < found.doubt
     assert not found.seen
 
 
 def test_what_coarser_steps_tell_otherwise_is_doubt() -> None:
     """A phase at which the error falls with another order leaves something behind at dt = 0."""
-    line = line_of(lambda dt_s: 1e-4 + 40.0 * dt_s**2)
-    found = split_of(
-        line, lambda phase, dt: 1e-4 * np.sin(phase) + 40.0 * dt**2 * np.cos(phase) + 0.05 * dt
-    )
+    line = second_order(1e-4)
+    found = split_of(line, lambda phase, dt: waves(1e-4)(phase, dt) + 0.05 * dt)
     parts = found.cells[str(line.cells["key"].iloc[0])]
     off = np.max(np.abs(parts.floor - 1e-4 * np.sin(parts.driver_rad)))
     assert 1e-5 < off < 1.2 * found.doubt
@@ -106,9 +104,9 @@ def test_what_coarser_steps_tell_otherwise_is_doubt() -> None:
 
 def test_a_line_that_falls_throughout_has_no_floor_whatever_is_left() -> None:
     """What is far below the finest error is nothing to be told from so few curves."""
-    line = line_of(lambda dt_s: 40.0 * dt_s**2)
+    line = second_order(0.0)
     assert line.fit.kind == "order"
-    found = split_of(line, lambda phase, dt: 40.0 * dt**2 * np.cos(phase) + 1e-6 * np.sin(phase))
+    found = split_of(line, waves(1e-6))
     assert found.floor == pytest.approx(1e-6, rel=0.1)
     assert found.doubt >= found.floor
     assert not found.seen
@@ -117,7 +115,7 @@ def test_a_line_that_falls_throughout_has_no_floor_whatever_is_left() -> None:
 def test_an_order_that_is_not_well_known_is_doubt() -> None:
     """Also where the third step can not be asked, as it was logged at other instants."""
     line = line_of(lambda dt_s: 1e-4 + 40.0 * dt_s**2 * (1.0 + 0.05 * math.sin(1e4 * dt_s)))
-    traces = traces_of(line, lambda phase, dt: 1e-4 * np.sin(phase) + 40.0 * dt**2 * np.cos(phase))
+    traces = traces_of(line, waves(1e-4))
     third = str(line.cells["key"].iloc[-3])
     traces[third] = {**traces[third], "time_s": traces[third]["time_s"] + 1e-3}
     found = split(line, of(traces), BODY, LENGTH)
@@ -144,30 +142,31 @@ def test_an_error_that_follows_no_order_is_not_extrapolated() -> None:
     assert found.why == "the error follows no order of the step"
     assert math.isnan(found.floor)
     assert not found.seen
-    assert all(parts.floor is None for parts in found.cells.values())
-    assert all(parts.geometric is not None for parts in found.cells.values())
+    for parts in found.cells.values():
+        assert (parts.floor, parts.geometric is None) == (None, False)
 
 
-def test_steps_that_were_logged_at_other_instants_are_not_extrapolated() -> None:
-    line, _ = second_order(1e-3)
-    traces = traces_of(line, lambda phase, dt: 1e-3 * np.sin(phase) + dt**2)
+def test_steps_that_were_logged_at_other_instants_or_not_at_all_are_not_extrapolated() -> None:
+    line = second_order(1e-3)
+    traces = traces_of(line, waves(1e-3))
     finest = str(line.cells["key"].iloc[-1])
     moved = traces[finest]["time_s"] + 0.3 * PERIOD_S / 90
     traces[finest] = {**traces[finest], "time_s": moved}
     found = split(line, of(traces), BODY, LENGTH)
     assert found.why == "the two finest steps were logged at different instants"
+    assert split(line, of({}), BODY, LENGTH).why == "no run that the fit stands on was logged"
 
 
 def test_a_crank_that_left_its_reach_leaves_the_total() -> None:
-    line, _ = second_order(1e-3)
-    traces = traces_of(line, lambda phase, dt: 1e-3 * np.sin(phase) + dt**2)
-    for key, trace in traces.items():
-        traces[key] = {k: v for k, v in trace.items() if not k.startswith("geometric")}
+    line = second_order(1e-3)
+    traces = {
+        key: {name: a for name, a in trace.items() if not name.startswith("geometric")}
+        for key, trace in traces_of(line, waves(1e-3)).items()
+    }
     found = split(line, of(traces), BODY, LENGTH)
     assert found.why == "the logged crank left the reach of the mechanism"
     for key, parts in found.cells.items():
-        assert parts.drive is None
-        assert parts.geometric is None
+        assert parts.drive is parts.geometric is None
         np.testing.assert_array_equal(parts.total, traces[key]["angle.rocker"])
 
 
@@ -178,7 +177,7 @@ def test_a_run_that_did_not_end_well_is_split_but_not_extrapolated_from(
     rows = [cell("s", "v", n, 40.0 * (PERIOD_S / n) ** 2, 1.0) for n in STEPS]
     rows[bad]["status"] = "branch-changed"
     (line,) = lines(stored(rows))
-    found = split_of(line, lambda phase, dt: 40.0 * dt**2 * np.cos(phase))
+    found = split_of(line, waves(0.0))
     assert len(found.cells) == 4
     assert math.isfinite(found.floor) == told
     assert all((parts.floor is not None) == told for parts in found.cells.values())
@@ -190,9 +189,7 @@ def test_a_finest_run_that_timed_out_leaves_the_floor_to_the_others() -> None:
     rows.append(cell("s", "v", 1440, math.nan, 1.0, status="timeout"))
     (line,) = lines(stored(rows))
     assert line.fit.kind == "floor"
-    traces = traces_of(
-        line, lambda phase, dt: 1e-3 * np.sin(phase) + 40.0 * dt**2 * np.cos(2 * phase)
-    )
+    traces = traces_of(line, waves(1e-3, 2))
     del traces[str(line.cells["key"].iloc[-1])]
     found = split(line, of(traces), BODY, LENGTH)
     assert (found.why, found.seen) == ("", True)
@@ -215,17 +212,11 @@ def test_runs_at_rounding_are_not_extrapolated_from() -> None:
     assert most == pytest.approx(1e-7 * (45 * third / PERIOD_S) ** 4, rel=1e-3)
 
 
-def test_a_line_whose_logs_are_gone_says_so() -> None:
-    line, _ = second_order(1e-3)
-    assert split(line, of({}), BODY, LENGTH).why == "no run that the fit stands on was logged"
-
-
 def test_sliders_are_over_the_longest_link() -> None:
-    line = line_of(lambda dt_s: 40.0 * dt_s**2)
-    traces = traces_of(line, lambda phase, dt: 40.0 * dt**2 * np.cos(phase))
+    line = second_order(0.0)
     slid = {
         key: {name.replace("angle.rocker", "displacement.C"): a for name, a in trace.items()}
-        for key, trace in traces.items()
+        for key, trace in traces_of(line, waves(0.0)).items()
     }
     found = split(line, of(slid), CurveBody("displacement.C", LENGTH), LENGTH)
     for key, parts in found.cells.items():
@@ -246,13 +237,9 @@ def test_the_worst_body_is_not_decided_by_one_line_that_is_far_off() -> None:
                 "geometric.angle.coupler": np.array([9.0, 9.0, 9.0]),
             }
     body = worst_body(found, of(traces), LENGTH)
-    assert body == CurveBody("angle.rocker", 1.0)
-    assert body.name == "angle of rocker"
-
-
-def test_a_scene_without_a_run_that_ended_well_has_no_worst_body() -> None:
+    assert (body, body.name) == (BODY, "angle of rocker")
     rows = [cell("s", "v", n, math.nan, 1.0, status="diverged") for n in (90, 180)]
-    assert worst_body(lines(stored(rows)), lambda key: {}, LENGTH) is None
+    assert worst_body(lines(stored(rows)), of({}), LENGTH) is None, "no run ended well"
 
 
 def test_shared_instants_are_found_whatever_the_steps() -> None:
@@ -261,6 +248,5 @@ def test_shared_instants_are_found_whatever_the_steps() -> None:
     assert len(here) == 46
     np.testing.assert_allclose(a[here], b[there])
     assert len(shared(a, b + 1e-3, 1.0)[0]) < SHARED
-    assert len(shared(a, np.zeros(0), 1.0)[0]) == 0
-    assert len(shared(np.zeros(0), a, 1.0)[0]) == 0
-    assert len(shared(a, a[:1], 1.0)[0]) == 1
+    for one, other, number in ((a, a[:0], 0), (a[:0], a, 0), (a, a[:1], 1)):
+        assert len(shared(one, other, 1.0)[0]) == number

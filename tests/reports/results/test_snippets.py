@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from xml.etree import ElementTree as Xml
 
 import pytest
@@ -58,6 +58,7 @@ PROFILES = {
     "pymunk": pymunk_settings.AS_SHIPPED,
     "exudyn": exudyn_settings.AS_SHIPPED,
 }
+Found = Mapping[tuple[str, float], Recommendation]
 ROUNDING = 1e-10
 """rad: below this two runs of the same settings need not agree."""
 
@@ -82,21 +83,17 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Stored:
 
 
 @pytest.fixture(scope="module")
-def recommended(store: Stored) -> tuple[Recommendation, ...]:
-    return recommendations(store)
-
-
-def test_every_target_is_reached_on_the_four_bar(recommended: tuple[Recommendation, ...]) -> None:
-    found = {(one.best.engine, one.target) for one in recommended if not one.reason}
-    assert found == {(engine, target) for engine in BARE for target in TARGETS}
+def recommended(store: Stored) -> Found:
+    """By engine and target: every target is reached on the four-bar."""
+    found = {(one.best.engine, one.target): one for one in recommendations(store) if not one.reason}
+    assert found.keys() == {(engine, target) for engine in BARE for target in TARGETS}
+    return found
 
 
 @pytest.mark.parametrize("target", TARGETS)
 @pytest.mark.parametrize("engine", BARE)
-def test_a_pasted_snippet_keeps_its_promise(
-    engine: str, target: float, recommended: tuple[Recommendation, ...]
-) -> None:
-    one = next(r for r in recommended if (r.best.engine, r.target) == (engine, target))
+def test_a_pasted_snippet_keeps_its_promise(engine: str, target: float, recommended: Found) -> None:
+    one = recommended[engine, target]
     found = BARE[engine](one.snippet(), round(one.best.steps_per_turn), 10.0)
     assert found <= target
     # Not by being better than what was measured, either: these are the settings of the cell.
@@ -105,20 +102,18 @@ def test_a_pasted_snippet_keeps_its_promise(
 
 @pytest.mark.parametrize("target", TARGETS)
 def test_what_is_in_force_is_enough_under_a_drive_of_another_kind(
-    target: float, recommended: tuple[Recommendation, ...]
+    target: float, recommended: Found
 ) -> None:
     """Without the solver's settings that the flywheel asks for. The crank's speed varies under a
     motor of limited gain, by a third, and accelerations and errors are larger for that."""
-    one = next(r for r in recommended if (r.best.engine, r.target) == ("mujoco", target))
+    one = recommended["mujoco", target]
     found = mujoco_error_of_geometry(one.snippet(), round(one.best.steps_per_turn), 10.0)
     assert found < 3.0 * one.best.worst_error
 
 
 @pytest.mark.parametrize("engine", BARE)
-def test_a_snippet_for_another_speed_keeps_it_too(
-    engine: str, recommended: tuple[Recommendation, ...]
-) -> None:
-    one = next(r for r in recommended if (r.best.engine, r.target) == (engine, 1e-4))
+def test_a_snippet_for_another_speed_keeps_it_too(engine: str, recommended: Found) -> None:
+    one = recommended[engine, 1e-4]
     text = one.snippet(period_s=2.0 * math.pi)
     found = BARE[engine](text, round(one.best.steps_per_turn), 1.0)
     assert found == pytest.approx(one.best.worst_error, rel=0.01, abs=ROUNDING)
@@ -194,9 +189,9 @@ def test_no_setting_is_left_out(engine: str, name: str) -> None:
 @pytest.mark.parametrize("target", few(TARGETS, {1e-4}, "settings differ little between targets"))
 @pytest.mark.parametrize("engine", BARE)
 def test_a_recommendation_does_no_harm_to_what_is_beside_it(
-    engine: str, target: float, recommended: tuple[Recommendation, ...]
+    engine: str, target: float, recommended: Found
 ) -> None:
-    one = next(r for r in recommended if (r.best.engine, r.target) == (engine, target))
+    one = recommended[engine, target]
     for each in filter(None, (one, one.steadier)):
         assert DISTURBANCE[engine](each.snippet()).worst < 1e-9
 
@@ -229,13 +224,11 @@ def test_a_mark_of_comment_in_a_name_does_no_harm() -> None:
     assert code.count("\nspace.step(") == 1
 
 
-def test_bare_models_see_a_wrong_setting(recommended: tuple[Recommendation, ...]) -> None:
+def test_bare_models_see_a_wrong_setting(recommended: Found) -> None:
     """The check has power: another loop stiffness, or a joint bias, breaks the promise."""
-    found = {(r.best.engine, r.target): r for r in recommended}
-    mujoco = found["mujoco", 1e-4]
+    mujoco, pymunk = recommended["mujoco", 1e-4], recommended["pymunk", 1e-4]
     soft = mujoco.snippet().replace("0.9999 0.9999", "0.99 0.99")
     assert soft != mujoco.snippet()
     assert mujoco_error(soft, round(mujoco.best.steps_per_turn), 10.0) > 2 * mujoco.best.worst_error
-    pymunk = found["pymunk", 1e-4]
     biased = pymunk.snippet().replace("error_bias = 0.0", "error_bias = 0.1")
     assert pymunk_error(biased, round(pymunk.best.steps_per_turn), 10.0) > 1e-4
