@@ -19,6 +19,7 @@ import math
 import re
 from dataclasses import replace
 from functools import cache
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +36,7 @@ from sim.engine import SettingValue
 from tests.worlds.command_line import crank
 from tests.worlds.driven import HARD, ITERATIONS, LEFT, TUNED_RANGE, Driven, Range, made, recipes
 from tests.worlds.tiers import at_length, slow, slowly
+from tests.worlds.turns import of_turns
 
 SEED = 20_261_121
 PARTS, EACH = 20, 50
@@ -73,9 +75,7 @@ def drawn(first: int, count: int, within: Range = TUNED_RANGE) -> list[Driven]:
 
 
 def cell(one: Driven, engine: str, **settings: SettingValue) -> Cell:
-    """One period in an engine under profile tuned."""
-    dt_s = one.scene.driver.law.period_s / one.steps_per_turn
-    return Cell(one.scene, engine, "tuned", dt_s, one.steps_per_turn, settings=settings)
+    return of_turns(one.scene, engine, one.steps_per_turn, converge=True, settings=settings)
 
 
 def checked(one: Driven, engine: str, **settings: SettingValue) -> Checked:
@@ -85,14 +85,13 @@ def checked(one: Driven, engine: str, **settings: SettingValue) -> Checked:
 def alarms(found: list[Driven]) -> list[str]:
     """What fails, with the scene file and the command that show it."""
     texts = []
-    for one in found:
-        for engine in ENGINES:
-            seen = checked(one, engine)
-            if seen.verdict != "within":
-                told = "\n".join(f"{finding.rule} {finding.text}" for finding in seen.failures)
-                command = f"verify {one.scene.name}.toml --engine {engine} --turns 1"
-                command += f" --steps-per-turn {one.steps_per_turn}"
-                texts.append(f"{told}\ncrankcheck {command}\n{one.text}")
+    for one, engine in product(found, ENGINES):
+        seen = checked(one, engine)
+        if seen.verdict != "within":
+            told = "\n".join(f"{finding.rule} {finding.text}" for finding in seen.failures)
+            command = f"verify {one.scene.name}.toml --engine {engine} --turns 1"
+            command += f" --steps-per-turn {one.steps_per_turn}"
+            texts.append(f"{told}\ncrankcheck {command}\n{one.text}")
     return texts
 
 
@@ -227,11 +226,11 @@ start_deg = -31.7
 
 def test_a_slider_may_travel_further_than_all_links_together_are_long() -> None:
     scene = parse_scene(FAR, "FAR")
-    period = scene.driver.law.period_s
-    travel = solve(scene, np.linspace(0.0, period, 91)).sliders["line"].displacement
+    time_s = np.linspace(0.0, scene.driver.law.period_s, 91)
+    travel = solve(scene, time_s).sliders["line"].displacement
     assert np.ptp(travel) > 2.0 * sum(span(link.points) for link in scene.links.values())
-    cell = Cell(scene, "pymunk", "tuned", period / 360, 360, settings={"iterations": 1000})
-    assert check(cell).failures == ()
+    asked = {"converge": True, "settings": {"iterations": 1000}}
+    assert check(of_turns(scene, "pymunk", **asked)).failures == ()
 
 
 @slow("only here are iterations too few for what is asked: twenty mechanisms, of which half")
