@@ -29,8 +29,6 @@ from hypothesis import strategies as st
 from models.files import shipped
 from reports.workers.isolated import Isolated, Limits, Lost
 from tests.worlds import fuzzing
-from tests.worlds.elastic_files import elastic_mechanisms
-from tests.worlds.free_files import free_mechanisms
 from tests.worlds.fuzzing import (
     COMMANDS,
     ELASTIC,
@@ -44,7 +42,13 @@ from tests.worlds.fuzzing import (
 )
 from tests.worlds.in_process import Here
 from tests.worlds.mutation import mutant, retied, stretched
-from tests.worlds.scene_files import Tree, scene_files, toml
+from tests.worlds.scene_files import (
+    Tree,
+    elastic_mechanisms,
+    free_mechanisms,
+    scene_files,
+    toml,
+)
 from tests.worlds.tiers import at_length, slow, slowly
 
 LIMITS = Limits(time_s=600.0, memory_gb=1.0)

@@ -14,8 +14,7 @@ from sim.registry import engine, offering
 from sim.settings import resolved
 from sim.snippets import Stepping, frame_snippet, snippet
 from sim.tuning import search_space
-from tests.worlds.bare import BARE, measured_as_we_did
-from tests.worlds.bare_exudyn import measured_in_exudyn
+from tests.worlds.bare import BARE, measured_as_we_did, measured_in_exudyn
 from tests.worlds.tiers import slowly
 from tests.worlds.workshop import DISTURBANCE, mujoco_disturbance
 
@@ -162,6 +161,12 @@ def same(line: str, other: str) -> bool:
         return False
     pairs = zip(re.findall(number, line), re.findall(number, other), strict=True)
     return all(math.isclose(float(a), float(b), rel_tol=1e-12) for a, b in pairs)
+
+
+def test_what_redundant_joints_need_is_said_where_the_solver_is_chosen_by_need() -> None:
+    words = "Where joints are redundant"
+    assert words in snippet("exudyn", {}, 360.0)
+    assert words not in snippet("exudyn", {"linear_solver": "EigenDense"}, 360.0)
 
 
 def test_a_step_that_softens_contacts_is_said_to() -> None:

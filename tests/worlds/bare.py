@@ -1,31 +1,150 @@
-"""The four-bar in MuJoCo and in pymunk as a user would write it, with a place for a snippet."""
+"""The four-bar in each engine as a user would write it, with a place for a snippet.
+
+It knows nothing of crankcheck. The numbers are those of the lecture's first example (crank 0.1,
+coupler 0.25, rocker 0.2, ground 0.3 m, rods of 1 kg/m, crank from 90 deg); the angles to be found
+follow from the law of cosines.
+"""
 
 from __future__ import annotations
 
 import math
 import re
 from collections.abc import Callable
+from typing import Any
 
+import exudyn as exu
+import exudyn.itemInterface as items  # noqa: N813 - a module
 import mujoco
 import numpy as np
 import pymunk
 
 from models.array import Array
-from tests.worlds.bare_exudyn import exudyn_error
-from tests.worlds.fourbar import (
-    COUPLER,
-    CRANK,
-    GROUND,
-    ROCKER,
-    START,
-    TURNS,
-    angles,
-    rates,
-    worst,
-)
 
-Fourbar = tuple[tuple[pymunk.Body, ...], tuple[pymunk.Constraint, ...]]
-"""Crank, coupler and rocker, and their joints."""
+CRANK, COUPLER, ROCKER, GROUND = 0.1, 0.25, 0.2, 0.3
+START = math.pi / 2
+TURNS = 2
+
+
+def angles(crank: Array) -> tuple[Array, Array]:
+    """Angles of coupler and rocker [rad] at angles of the crank; the open assembly."""
+    bx, by = CRANK * np.cos(crank), CRANK * np.sin(crank)
+    diagonal = np.hypot(bx - GROUND, by)
+    at_d = np.arccos((diagonal**2 + ROCKER**2 - COUPLER**2) / (2 * diagonal * ROCKER))
+    rocker = np.unwrap(np.arctan2(by, bx - GROUND)) - at_d
+    cx, cy = GROUND + ROCKER * np.cos(rocker), ROCKER * np.sin(rocker)
+    return np.unwrap(np.arctan2(cy - by, cx - bx)), rocker
+
+
+def rates(crank: float, speed: float) -> tuple[float, float]:
+    """Angular velocities of coupler and rocker [rad/s], from the law of sines of the velocities."""
+    coupler, rocker = (float(each[0]) for each in angles(np.array([crank])))
+    across = math.sin(rocker - coupler)
+    return (
+        speed * CRANK / COUPLER * math.sin(crank - rocker) / across,
+        speed * CRANK / ROCKER * math.sin(crank - coupler) / across,
+    )
+
+
+def worst(found: tuple[Array, ...], exact: tuple[Array, ...]) -> float:
+    """The largest difference."""
+    return max(float(np.abs(a - b).max()) for a, b in zip(found, exact, strict=True))
+
+
+def exudyn_fourbar(system: Any, speed: float) -> list[Any]:
+    """The four-bar added to a system, driven; the nodes of crank, coupler and rocker."""
+    coupler, rocker = (float(each[0]) for each in angles(np.array([START])))
+    of_coupler, of_rocker = rates(START, speed)
+    b = np.array([CRANK * math.cos(START), CRANK * math.sin(START)])
+    c = np.array([GROUND + ROCKER * math.cos(rocker), ROCKER * math.sin(rocker)])
+    d = np.array([GROUND, 0.0])
+    of_b, of_c = speed * _across(b), of_rocker * _across(c - d)
+    bars = (
+        (CRANK, b / 2, START, of_b / 2, speed),
+        (COUPLER, (b + c) / 2, coupler, (of_b + of_c) / 2, of_coupler),
+        (ROCKER, (c + d) / 2, rocker, of_c / 2, of_rocker),
+    )
+    ground = system.AddObject(items.ObjectGround())
+    made = [
+        exudyn_body(system, length, length**3 / 12, [*place, theta], [*velocity, omega])
+        for length, place, theta, velocity, omega in bars
+    ]
+    nodes, bodies = zip(*made, strict=True)
+    pins = (
+        (ground, 0.0, bodies[0], -CRANK / 2),
+        (bodies[0], CRANK / 2, bodies[1], -COUPLER / 2),
+        (bodies[1], COUPLER / 2, bodies[2], ROCKER / 2),
+        (ground, GROUND, bodies[2], -ROCKER / 2),
+    )
+    for one, at_one, other, at_other in pins:
+        exudyn_pin(system, (one, at_one), (other, at_other))
+    still = system.AddNode(items.NodePointGround())
+    ends = [
+        system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
+        for node, coordinate in ((still, 0), (nodes[0], 2))
+    ]
+    system.AddObject(
+        items.ObjectConnectorCoordinate(markerNumbers=ends, velocityLevel=True, offset=speed)
+    )
+    return list(nodes)
+
+
+def _across(vector: Array) -> Array:
+    return np.array([-vector[1], vector[0]])
+
+
+def exudyn_body(
+    system: Any, mass: float, inertia: float, pose: list[float], rates: list[float]
+) -> tuple[Any, Any]:
+    """A body added to a system: its node and itself."""
+    node = system.AddNode(items.NodeRigidBody2D(referenceCoordinates=pose, initialVelocities=rates))
+    given = items.ObjectRigidBody2D(mass=mass, inertia=inertia, nodeNumber=node)
+    return node, system.AddObject(given)
+
+
+def exudyn_pin(system: Any, *ends: tuple[Any, float]) -> None:
+    """A pin added to a system, at places along two bodies."""
+    markers = [
+        system.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[x, 0.0, 0.0]))
+        for body, x in ends
+    ]
+    system.AddObject(items.ObjectJointRevolute2D(markerNumbers=markers))
+
+
+def simulated(system: Any, simulation: Any, nodes: list[Any]) -> list[Array]:
+    """Coordinates of the nodes at every step, after the times, of a system that is run."""
+    kept = {"storeInternal": True, "writeToFile": False}
+    kept["outputVariableType"] = exu.OutputVariableType.Coordinates
+    sensors = [system.AddSensor(items.SensorNode(nodeNumber=node, **kept)) for node in nodes]
+    system.Assemble()
+    simulation.solution.file.write = False
+    simulation.solution.sensors.writePeriod = 0.0
+    system.SolveDynamic(simulation)
+    return [np.array(system.GetSensorStoredData(sensor)) for sensor in sensors]
+
+
+def exudyn_error(snippet: str, steps: int, speed: float) -> float:
+    """The largest error of coupler and rocker [rad] over two turns with a snippet; infinite where
+    exudyn goes no further."""
+    container = exu.SystemContainer()
+    system = container.AddSystem()
+    nodes = exudyn_fourbar(system, speed)
+    simulation = exu.SimulationSettings()
+    simulation.timeIntegration.endTime = TURNS * 2.0 * math.pi / speed
+    exec(measured_in_exudyn(snippet), {"simulationSettings": simulation, "exu": exu})
+    assert simulation.timeIntegration.numberOfSteps == TURNS * steps
+    try:
+        _, coupler, rocker = simulated(system, simulation, nodes)
+    except exu.SolverError:
+        return math.inf
+    started = (float(each[0]) for each in angles(np.array([START])))
+    exact = angles(START + speed * coupler[:, 0])
+    found = tuple(first + log[:, 3] for first, log in zip(started, (coupler, rocker), strict=True))
+    return worst(found, exact)
+
+
+def measured_in_exudyn(snippet: str) -> str:
+    """The snippet with the settings that stand in its comments in force, too."""
+    return snippet.replace("#   ", "")
 
 
 BODIES = """
@@ -82,7 +201,8 @@ def mujoco_error(snippet: str, steps: int, speed: float) -> float:
     flywheel = 1e12 * (0.55 * 0.3**2 + (0.1**3 + 0.25**3 + 0.2**3) / 12)
     text = fourbar_bodies(MJCF, flywheel)
     model = mujoco.MjModel.from_xml_string(pasted(text, measured_as_we_did(snippet)))
-    return _turned(model, steps, speed, lambda turned: START + speed * _times(model, len(turned)))
+    times = model.opt.timestep * np.arange(TURNS * steps + 1)
+    return _turned(model, steps, speed, lambda _: START + speed * times)
 
 
 def mujoco_error_of_geometry(snippet: str, steps: int, speed: float) -> float:
@@ -92,11 +212,6 @@ def mujoco_error_of_geometry(snippet: str, steps: int, speed: float) -> float:
     text = fourbar_bodies(MJCF, 0.0).replace("</mujoco>", motor)
     model = mujoco.MjModel.from_xml_string(pasted(text, snippet))
     return _turned(model, steps, speed, lambda turned: START + turned[:, 0])
-
-
-def _times(model: mujoco.MjModel, samples: int) -> Array:
-    times: Array = model.opt.timestep * np.arange(samples)
-    return times
 
 
 def _turned(
@@ -117,8 +232,10 @@ def _turned(
     return worst(found, exact)
 
 
-def pymunk_fourbar(space: pymunk.Space, speed: float) -> Fourbar:
-    """The four-bar added to a space."""
+def pymunk_fourbar(
+    space: pymunk.Space, speed: float
+) -> tuple[tuple[pymunk.Body, ...], tuple[pymunk.Constraint, ...]]:
+    """The four-bar added to a space: crank, coupler and rocker, and their joints."""
     at_start = tuple(float(each[0]) for each in angles(np.array([START])))
     b = CRANK * math.cos(START), CRANK * math.sin(START)
     c = GROUND + ROCKER * math.cos(at_start[1]), ROCKER * math.sin(at_start[1])

@@ -15,8 +15,7 @@ from models.laws import Accelerating, Oscillating
 from models.loads import Load, Over
 from models.scene import GROUND, Driver, Point, Scene
 from models.tabulated import Interpolation, Tabulated
-from tests.worlds.layouts import Layout
-from tests.worlds.strategies import FORMS, SWINGS, Designed, swinging, with_dyads
+from tests.worlds.strategies import FORMS, SWINGS, Designed, Layout, swinging, with_dyads
 
 KINDS = ("RRR", "RRP", "RPR", "PRP", "RPP")
 TRIES = 8

@@ -36,6 +36,16 @@ BY_SITES = '<connect name="C" site1="coupler-tip" site2="rocker-tip"/>'
 ROCKER_JOINT = '<joint name="D"/>'
 
 
+def rocker(attributes: str) -> tuple[str, str]:
+    """An edit that gives the hinge of the rocker some attributes."""
+    return ROCKER_JOINT, f'<joint name="D" {attributes}/>'
+
+
+def tied(equality: str) -> tuple[str, str]:
+    """An edit that adds to the equalities."""
+    return "</equality>", f"{equality}</equality>"
+
+
 def planted(*edits: str) -> str:
     """The four-bar with old and new texts by turns."""
     text = HEALTHY

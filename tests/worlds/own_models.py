@@ -6,7 +6,8 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from reports.own_model.account import Account, checked_line, read_here
+from reports.judge.cell import Checked
+from reports.own_model.account import Account, Line, checked_line, read_here
 from reports.own_model.judged import JudgedModel
 from reports.own_model.request import ModelRequest
 from reports.own_model.running import judged_lines
@@ -67,6 +68,18 @@ def judged(text: str, joint: str, turns: float = 1.0, dt_s: float | None = None)
         path.write_text(text)
         account = read_here(ModelRequest(path, joint, 10.0, turns=turns, dt_s=dt_s))
         return judged_lines(account, checked_line, lambda _: None)
+
+
+def read_text(folder: Path, text: str | bytes, **asked: object) -> Account:
+    """A model of this text; its joint A is driven at 10 rad/s where nothing else is asked."""
+    path = folder / "model.xml"
+    path.write_bytes(text.encode() if isinstance(text, str) else text)
+    return read_here(ModelRequest(path, **{"joint": "A", "speed_rad_s": 10.0, **asked}))  # type: ignore[arg-type]
+
+
+def line(account: Account, profile: str) -> Checked:
+    """What comes of a model in one line of its verdict."""
+    return checked_line(Line(account, profile))
 
 
 def texts(account: Account) -> list[str]:

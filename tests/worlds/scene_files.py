@@ -3,6 +3,9 @@
 A crank with dyads that mostly close, and then up to four things wrong with it: a number at an end
 of its range, two numbers that are the same, a point by the name of another, or what is no scene at
 all: a date for a number, a table for a name, a key too many.
+
+Mechanisms are driven, let go for a moment, or have elastic links, stiff enough for their speed
+mostly; numbers are as a person would write them.
 """
 
 from __future__ import annotations
@@ -258,3 +261,152 @@ def _value(value: object) -> str:
     if isinstance(value, datetime.date | datetime.time):
         return value.isoformat()
     return repr(value)
+
+
+OVER = ("time", "angle", "omega", "speed", "displacement")
+UNIT = {"time": "s", "angle": "deg", "omega": "rad_s", "speed": "m_s", "displacement": "m"}
+
+
+@st.composite
+def free_mechanisms(draw: st.DrawFn) -> Tree:
+    """The tables of a mechanism that is let go for a moment."""
+    tree = draw(mechanisms())
+    driver: Tree = {"link": "crank", "law": "free", "start_deg": draw(between(-180.0, 180.0))}
+    driver["duration_s"] = draw(between(0.01, 0.05))
+    if draw(st.booleans()):
+        driver["speed_rad_s"] = draw(between(-20.0, 20.0))
+    tree["driver"] = driver
+    tree["gravity_m_s2"] = [0.0, draw(st.sampled_from([0.0, -9.81]))]
+    tree["ground"]["points"]["G"] = [0.1, 0.5]  # type: ignore[index]
+    points = sorted(_ends(tree["links"]) - set(tree["ground"]["points"]))  # type: ignore[index]
+    for kind, one in (("springs", _spring), ("loads", _load)):
+        count = draw(st.sampled_from([0, 1, 1, 2]))
+        tree[kind] = {f"{kind[0]}{k}": one(draw, tree, points) for k in range(count)}
+    if draw(st.integers(0, 4)) == 0:
+        tree["friction"] = {"A": {"torque_n_m": draw(between(0.0, 0.01))}}
+    if draw(st.integers(0, 4)) == 0:
+        speed = driver.get("speed_rad_s", 0.0)
+        tree["start"] = {"rates_rad_s": {"crank": draw(st.sampled_from([speed, speed, 1.0]))}}
+    return tree
+
+
+def _ends(links: object) -> set[str]:
+    """The points of links."""
+    assert isinstance(links, dict)
+    return {
+        point for one in links.values() for point in (*one.get("bar", ()), *one.get("points", ()))
+    }
+
+
+def _spring(draw: st.DrawFn, tree: Tree, points: list[str]) -> Tree:
+    """A spring, a damper, or both, anywhere."""
+    rate, damping, free = (
+        draw(between(0.1, 100.0)),
+        draw(between(0.0, 1.0)),
+        draw(between(0.0, 0.4)),
+    )
+    kind = draw(st.sampled_from(["points", "points", "pin", "slider"]))
+    if kind == "pin":
+        own: Tree = {"pin": draw(st.sampled_from(["B", *points])), "rate_n_m_rad": rate}
+        return own | {"damping_n_m_s": damping, "free_deg": 100.0 * free}
+    start = draw(st.sampled_from(["G"] * 4 + points))
+    where: Tree = {"points": [start, draw(st.sampled_from(points))]}
+    if kind == "slider" and tree["sliders"]:
+        where = {"slider": draw(st.sampled_from(sorted(tree["sliders"])))}  # type: ignore[call-overload]
+    return where | {"rate_n_m": rate, "damping_n_s_m": damping, "free_m": free}
+
+
+def _load(draw: st.DrawFn, tree: Tree, points: list[str]) -> Tree:
+    """A torque on the crank, by one of the laws, over one of what they go over."""
+    size, over = draw(between(-1.0, 1.0)), draw(st.sampled_from(OVER))
+    found: Tree = {"link": "crank"}
+    law = draw(st.sampled_from(["constant", "pulse", "steps", "fourier", "polynomial", "table"]))
+    if law == "constant":
+        return found | {"torque_n_m": size}
+    if law == "pulse":
+        return found | {"law": law, "torque_n_m": size, "period_s": draw(between(0.01, 0.1))}
+    if law == "steps":
+        times = [draw(between(0.0, 0.02)), draw(between(0.02, 0.04))]
+        return found | {"law": law, "torque_n_m": [size, -size], "at_s": times}
+    if over in ("speed", "displacement") and not tree["sliders"]:
+        over = "omega"
+    if over in ("speed", "displacement"):
+        found["slider"] = draw(st.sampled_from(sorted(tree["sliders"])))  # type: ignore[call-overload]
+    if law == "fourier" and over in ("omega", "speed"):  # which has no period
+        law = "polynomial"
+    found |= {"law": law, "over": over}
+    if law == "fourier":
+        over_period = {f"period_{UNIT[over]}": draw(between(0.05, 90.0))}
+        return found | {"torque_n_m": size, "cosines": [0.1], "sines": [0.1, 0.2], **over_period}
+    if law == "polynomial":
+        return found | {"torque_n_m": [size, -0.01]}
+    reach = draw(st.sampled_from([1.0, 400.0]))
+    table = {"interpolation": draw(st.sampled_from(["linear", "pchip"]))}
+    rows = {f"at_{UNIT[over]}": [-reach, 0.0, reach], "torque_n_m": [size, 0.0, -size]}
+    return found | table | rows
+
+
+SHAPES = ("periodic", "quasi-static", "quasi-static", "straight")
+
+
+@st.composite
+def elastic_mechanisms(draw: st.DrawFn) -> Tree:
+    """The tables of a four-bar or a slider-crank, of whose links one or two are elastic."""
+    fourbar = draw(st.booleans())
+    ground: Tree = {"A": [0.0, 0.0]}
+    links: Tree = {"crank": {"bar": ["A", "B"], "length_m": draw(between(0.02, 0.06))}}
+    links["rod"] = {"bar": ["B", "C"], "length_m": draw(between(0.25, 0.35))}
+    tree: Tree = {"name": "fuzzed", "source": "a test", "ground": {"points": ground}}
+    tree |= {"links": links, "sliders": {}, "driver": draw(_drivers()), "elastic": {}}
+    if fourbar:
+        ground["D"] = [draw(between(0.25, 0.35)), draw(between(-0.05, 0.05))]
+        links["rocker"] = {"bar": ["D", "C"], "length_m": draw(between(0.2, 0.3))}
+    else:
+        line: Tree = {"on": "ground", "mass_kg": draw(between(0.0, 1.0))}
+        line |= {"through_m": [0.0, draw(between(-0.02, 0.02))]}
+        tree["sliders"] = {"C": line | {"direction_deg": draw(between(-180.0, 180.0))}}
+    _put_on(draw, tree, links)
+    return tree
+
+
+def _put_on(draw: st.DrawFn, tree: Tree, links: Tree) -> None:
+    """Elastic links, the shape that they start with, and what acts."""
+    names = st.sampled_from([*[name for name in links if name != "crank"] * 15, "crank", "nothing"])
+    for name in draw(st.lists(names, min_size=1, max_size=2, unique=True)):
+        tree["elastic"][name] = _elastic(draw)  # type: ignore[index]
+    if draw(st.booleans()):
+        tree["start"] = {"shape": draw(st.sampled_from(SHAPES))}
+    if draw(st.integers(0, 2)) == 0:
+        tree["gravity_m_s2"] = [0.0, -9.81]
+    if draw(st.integers(0, 4)) == 0:
+        body = draw(st.sampled_from([*links]))
+        tree["loads"] = {"push": {"link": body, "torque_n_m": draw(between(-0.1, 0.1))}}
+    if draw(st.integers(0, 4)) == 0:
+        tree["springs"] = {"hold": {"points": ["A", "C"], "rate_n_m": draw(between(0.1, 10.0))}}
+
+
+@st.composite
+def _drivers(draw: st.DrawFn) -> Tree:
+    """As those of rigid scenes, and let go for a moment."""
+    if draw(st.integers(0, 7)):
+        return draw(drivers())
+    return {"link": "crank", "law": "free", "speed_rad_s": 5.0, "duration_s": 0.02}
+
+
+def _elastic(draw: st.DrawFn) -> Tree:
+    """How a link bends, stretches, or both."""
+    found: Tree = {"flexural_n_m2": draw(st.sampled_from([0.5, 5.0, 5.0, 50.0, 1e6]))}
+    if draw(st.booleans()):
+        found = {"modulus_pa": draw(st.sampled_from([7e10, 2e11, 2e9]))}
+        found |= {"width_m": draw(between(0.005, 0.03)), "height_m": draw(between(0.001, 0.02))}
+        if draw(st.booleans()):
+            found["density_kg_m3"] = draw(between(1000.0, 8000.0))
+    if draw(st.integers(0, 3)) == 0:
+        found |= {"stretches": True}
+        if "modulus_pa" not in found:
+            found["axial_n"] = draw(st.sampled_from([1e4, 1e6]))
+    if draw(st.integers(0, 3)) == 0:
+        found["bends"] = draw(st.booleans())
+    if draw(st.booleans()):
+        found["damping_s"] = draw(st.sampled_from([0.0, 1e-4, 1e-3, 10.0]))
+    return found

@@ -23,8 +23,7 @@ from models.laws import ConstantSpeed
 from models.scene import GROUND, Scene
 from models.scene_text import scene_text
 from tests.analytic.wide_chain import Angle, Given
-from tests.worlds.layouts import Layout
-from tests.worlds.strategies import FORMS, swinging, with_dyads
+from tests.worlds.strategies import FORMS, Layout, swinging, with_dyads
 
 KINDS = ("RRR", "RRP", "RPR", "PRP", "RPP")
 TURNS = 2775

@@ -1,8 +1,10 @@
 """A user's own model in which a mechanism is not alone, and what a snippet does to the rest of it.
 
 Beside the four-bar of `tests.worlds.bare`: a floor, a box that falls on it, a box that lies there,
-a body that drifts, and a constraint of the user's own that gives way. The mechanism touches none of
-them. The user has his solver work until a box that lies there does lie still.
+a body that drifts, and a constraint of the user's own that gives way; in exudyn a pendulum, a mass
+on a spring with a damper, and a body that flies, all in one system of equations, so that Newton's
+method ends for all at once. The mechanism touches none of them. The user has his solver work until
+a box that lies there does lie still.
 """
 
 from __future__ import annotations
@@ -11,18 +13,94 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
+import exudyn as exu
+import exudyn.itemInterface as items  # noqa: N813 - a module
 import mujoco
 import numpy as np
 import pymunk
 
 from models.array import Array
-from tests.worlds.bare import BODIES, CONNECT, fourbar_bodies, pasted, pymunk_fourbar
-from tests.worlds.fourbar import START, rates
-from tests.worlds.workshop_exudyn import exudyn_disturbance
+from tests.worlds.bare import (
+    BODIES,
+    CONNECT,
+    START,
+    exudyn_body,
+    exudyn_fourbar,
+    exudyn_pin,
+    fourbar_bodies,
+    pasted,
+    pymunk_fourbar,
+    rates,
+    simulated,
+)
 
 SPEED = 10.0
 LASTS_S = 1.0
+
+
+def exudyn_disturbance(snippet: str) -> float:
+    """The largest difference [m, rad] over a second to the system without the snippet, stepped as
+    that says that all is: with its integrator and step."""
+    simulation = _simulation()
+    exec(snippet, {"simulationSettings": simulation, "exu": exu})
+    stepping = simulation.timeIntegration
+    integrator, radius = stepping.solverType, stepping.generalizedAlpha.spectralRadius
+    try:
+        same = _same_exudyn_steps(stepping.numberOfSteps, integrator, radius)
+        found = _rest(simulation)
+    except exu.SolverError:
+        return math.inf
+    return float(np.max(np.abs(found - same)))
+
+
+def _simulation() -> Any:
+    """A user's own settings, by which Newton's method ends near rounding."""
+    simulation = exu.SimulationSettings()
+    simulation.timeIntegration.endTime = LASTS_S
+    simulation.timeIntegration.newton.relativeTolerance = 1e-12
+    simulation.timeIntegration.newton.absoluteTolerance = 1e-13
+    return simulation
+
+
+@cache
+def _same_exudyn_steps(steps: int, integrator: Any, radius: float) -> Array:
+    """The rest of the system without a snippet, stepped so."""
+    simulation = _simulation()
+    simulation.timeIntegration.numberOfSteps = steps
+    simulation.timeIntegration.solverType = integrator
+    simulation.timeIntegration.generalizedAlpha.spectralRadius = radius
+    return _rest(simulation)
+
+
+def _rest(simulation: Any) -> Array:
+    """The coordinates of the rest over a second."""
+    container = exu.SystemContainer()  # which has to live as long as its system
+    system = container.AddSystem()
+    exudyn_fourbar(system, SPEED)
+    ground = system.AddObject(items.ObjectGround())
+    swings, bounces, _ = bodies = [
+        _body(system, x, rates)
+        for x, rates in ((2.0, [0.0] * 3), (4.0, [0.5, 0.0, 1.0]), (6.0, [1.0, 3.0, 2.0]))
+    ]
+    exudyn_pin(system, (ground, 1.7), (swings[1], -0.3))
+    ends = [
+        system.AddMarker(items.MarkerBodyPosition(bodyNumber=body, localPosition=place))
+        for body, place in ((ground, [4.0, 1.0, 0.0]), (bounces[1], [0.0, 0.0, 0.0]))
+    ]
+    given = {"stiffness": [20.0, 20.0, 0.0], "damping": [0.5, 0.5, 0.0]}
+    system.AddObject(items.ObjectConnectorCartesianSpringDamper(markerNumbers=ends, **given))
+    rows = simulated(system, simulation, [node for node, _ in bodies])
+    return np.concatenate([row[:, 1:] for row in rows], axis=1)
+
+
+def _body(system: Any, x: float, rates: list[float]) -> tuple[Any, Any]:
+    """A body of 1 kg that falls; its node and itself."""
+    node, body = exudyn_body(system, 1.0, 0.03, [x, 0.0, 0.0], rates)
+    marker = system.AddMarker(items.MarkerBodyMass(bodyNumber=body))
+    system.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=[0.0, -9.81, 0.0]))
+    return node, body
 
 
 @dataclass(frozen=True)
@@ -87,7 +165,7 @@ def mujoco_disturbance(snippet: str) -> Disturbance:
     """What a snippet for MuJoCo changes."""
     model = mujoco.MjModel.from_xml_string(pasted(fourbar_bodies(MJCF, 0.0), snippet))
     found, end = _mujoco_run(model)
-    untouched = mujoco.MjModel.from_xml_string(fourbar_bodies(MJCF, 0.0))
+    untouched = _untouched()
     same = _same_steps(model.opt.timestep, model.opt.integrator)
     lies, drifts = (untouched.joint(name) for name in ("lies", "drifts"))
     place, spin = drifts.qposadr[0], drifts.dofadr[0]
@@ -98,6 +176,10 @@ def mujoco_disturbance(snippet: str) -> Disturbance:
         end.qvel[spin : spin + 6] - DRIFT,
     ]
     return Disturbance(_largest(found - same), _largest(np.concatenate(lasting)))
+
+
+def _untouched() -> mujoco.MjModel:
+    return mujoco.MjModel.from_xml_string(fourbar_bodies(MJCF, 0.0))
 
 
 DRIFT = np.array([0.1, 0.2, 0.3, 1.0, 2.0, 3.0])
@@ -123,7 +205,7 @@ def _mujoco_run(model: mujoco.MjModel) -> tuple[Array, mujoco.MjData]:
 @cache
 def _same_steps(timestep: float, integrator: int) -> Array:
     """The rest of the model without a snippet, stepped so."""
-    model = mujoco.MjModel.from_xml_string(fourbar_bodies(MJCF, 0.0))
+    model = _untouched()
     model.opt.timestep, model.opt.integrator = timestep, integrator
     return _mujoco_run(model)[0]
 
@@ -131,9 +213,7 @@ def _same_steps(timestep: float, integrator: int) -> Array:
 @cache
 def _settled() -> Array:
     """The last coordinates of the model as it was."""
-    _, end = _mujoco_run(mujoco.MjModel.from_xml_string(fourbar_bodies(MJCF, 0.0)))
-    places: Array = end.qpos.copy()
-    return places
+    return _mujoco_run(_untouched())[1].qpos.copy()
 
 
 def pymunk_disturbance(snippet: str) -> Disturbance:

@@ -57,72 +57,43 @@ OPTIONS: dict[str, str] = {
     "judge fourbar-lecture-1 FILE --target 1e-3 --format pdf": "'pdf'",
     "judge fourbar-lecture-1 FILE --target 1e-3 -o OUT.pdf": "pdf",
 }
-MAPS: dict[str, tuple[str, str]] = {
-    "a column that is not there": (
-        '[[channel]]\ncolumn = "rockr_deg"', "'rockr_deg' is not in .*rocker_deg",
+OF_ROCKER: dict[str, str] = {
+    'of = "rockr"\nkind = "angle"': "of: 'rockr' is not in scene fourbar-lecture-1; .*rocker",
+    'unit = "degs"': "'degs' is unknown; .*deg",
+    'unit = "mm"': "mm is a unit of length, and",
+    'kind = "angel"': "'angel' is unknown; .*angle",
+    'kind = "vx"': "'vx' is no kind of reading of link roc",
+    'relative_to = "couplr"': "'couplr'; .*coupler",
+    'relative_to = "rocker"': "'rocker'; .*another link",
+    'units = "deg"': "channel.1.units: unknown key; .*unit",
+    '[[channel]]\ncolumn = "rocker_deg"': "told twice",
+    'of = "crank"\nkind = "angle"': (
+        "two columns for one quantity, angle of crank: 'crank_deg' and 'rocker_deg'"
     ),
-    "a column of times that is not there": (
-        '[time]\ncolumn = "tme_s"', "'tme_s' is not in .*time_s",
+    'wrapped = "yes"': "found 'yes'",
+    "ignore = 1": "ignore: found 1",
+    "sign = 2": "channel.1.sign: foun",
+    'offset = "1"': "channel.1.offset: found '1'",
+    "offset = inf": "channel.1.offset: found inf",
+    'time = "C_x_mm"': "'C_x_mm' is no column of times",
+}
+"""What a map says of the column ``rocker_deg``."""
+MAPS: dict[str, str] = {
+    **{f'[[channel]]\ncolumn = "rocker_deg"\n{told}': words for told, words in OF_ROCKER.items()},
+    '[[channel]]\ncolumn = "rockr_deg"': "'rockr_deg' is not in .*rocker_deg",
+    '[[channel]]\ncolumn = "C_x_mm"\non = "crank"': "'crank' does not carry C; .*coupler",
+    '[[channel]]\nof = "rocker"': "channel.1.column: missing; add",
+    '[channel]\ncolumn = "rocker_deg"': "channel",
+    '[time]\ncolumn = "tme_s"': "'tme_s' is not in .*time_s",
+    '[time]\nunit = "sec"': "'sec' is no unit of time; .*s",
+    "[colums]\na = 1": "colums: unknown key; ",
+    '[file]\ndecimal = "!"': "file.decimal: found '!'",
+    '[file]\nseparator = "|||"': "file.separator: found",
+    "[[channel": "not valid TOML",
+    "".join(f'[[channel]]\ncolumn = "{c}"\nignore = true\n' for c in HEADER.split(",")[1:]): (
+        "no column is of scene"
     ),
-    "a body that is not there": (
-        '[[channel]]\ncolumn = "rocker_deg"\nof = "rockr"\nkind = "angle"',
-        "of: 'rockr' is not in scene fourbar-lecture-1; .*rocker",
-    ),
-    "a unit that is not there": (
-        '[[channel]]\ncolumn = "rocker_deg"\nunit = "degs"', "'degs' is unknown; .*deg",
-    ),
-    "a unit of something else": (
-        '[[channel]]\ncolumn = "rocker_deg"\nunit = "mm"', "mm is a unit of length, and",
-    ),
-    "a unit of time that is not there": ('[time]\nunit = "sec"', "'sec' is no unit of time; .*s"),
-    "a kind that is not there": (
-        '[[channel]]\ncolumn = "rocker_deg"\nkind = "angel"', "'angel' is unknown; .*angle",
-    ),
-    "a kind of something else": (
-        '[[channel]]\ncolumn = "rocker_deg"\nkind = "vx"', "'vx' is no kind of reading of link roc",
-    ),
-    "another link that is not there": (
-        '[[channel]]\ncolumn = "rocker_deg"\nrelative_to = "couplr"', "'couplr'; .*coupler",
-    ),
-    "a link against itself": (
-        '[[channel]]\ncolumn = "rocker_deg"\nrelative_to = "rocker"', "'rocker'; .*another link",
-    ),
-    "a body that does not carry the pin": (
-        '[[channel]]\ncolumn = "C_x_mm"\non = "crank"', "'crank' does not carry C; .*coupler",
-    ),
-    "an unknown key": (
-        '[[channel]]\ncolumn = "rocker_deg"\nunits = "deg"', "channel.1.units: unknown key; .*unit",
-    ),
-    "an unknown table": ("[colums]\na = 1", "colums: unknown key; "),
-    "a table for a list": ('[channel]\ncolumn = "rocker_deg"', "channel"),
-    "a column told twice": (
-        '[[channel]]\ncolumn = "rocker_deg"\n[[channel]]\ncolumn = "rocker_deg"', "told twice",
-    ),
-    "two columns for one quantity": (
-        '[[channel]]\ncolumn = "rocker_deg"\nof = "crank"\nkind = "angle"',
-        "two columns for one quantity, angle of crank: 'crank_deg' and 'rocker_deg'",
-    ),
-    "a truth that is none": ('[[channel]]\ncolumn = "rocker_deg"\nwrapped = "yes"', "found 'yes'"),
-    "a number for a truth": ('[[channel]]\ncolumn = "rocker_deg"\nignore = 1', "ignore: found 1"),
-    "a decimal sign that is none": ('[file]\ndecimal = "!"', "file.decimal: found '!'"),
-    "a sign that is none": ('[[channel]]\ncolumn = "rocker_deg"\nsign = 2', "channel.1.sign: foun"),
-    "a text for a number": (
-        '[[channel]]\ncolumn = "rocker_deg"\noffset = "1"', "channel.1.offset: found '1'",
-    ),
-    "an infinite offset": (
-        '[[channel]]\ncolumn = "rocker_deg"\noffset = inf', "channel.1.offset: found inf",
-    ),
-    "a channel without a column": ('[[channel]]\nof = "rocker"', "channel.1.column: missing; add"),
-    "a separator that is none": ('[file]\nseparator = "|||"', "file.separator: found"),
-    "a time that is none": (
-        '[[channel]]\ncolumn = "rocker_deg"\ntime = "C_x_mm"', "'C_x_mm' is no column of times",
-    ),
-    "no TOML": ("[[channel", "not valid TOML"),
-    "all columns left out": (
-        "".join(f'[[channel]]\ncolumn = "{c}"\nignore = true\n' for c in HEADER.split(",")[1:]),
-        "no column is of scene",
-    ),
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True)
@@ -146,26 +117,20 @@ def cases() -> Iterator[tuple[str, Case]]:
         yield f"Parquet, {name}", Case(made, words, name="log.parquet")
     for name, (made, words) in WORKBOOKS.items():
         yield f"workbook, {name}", Case(made, words, name="log.xlsx")
+    right = text(*ROWS)
     for command, words in OPTIONS.items():
-        yield command, Case(text(*ROWS), words, command)
-    for name, (mapped, words) in MAPS.items():
-        yield f"map, {name}", Case(text(*ROWS), words, mapped=mapped)
-    without = [",".join([*row.split(",")[:1], *row.split(",")[2:]]) for row in [HEADER, *ROWS]]
-    yield (
-        "logged without the crank",
-        Case(
-            "\n".join(without).encode(), "no angle of crank .*log crank_", f"{PLAIN} --drive logged"
-        ),
-    )
+        yield command, Case(right, words, command)
+    for mapped, words in MAPS.items():
+        yield f"map, {mapped}", Case(right, words, mapped=mapped)
+    rows = [row.split(",") for row in (HEADER, *ROWS)]
+    without = "\n".join(",".join([*row[:1], *row[2:]]) for row in rows).encode()
+    logged = f"{PLAIN} --drive logged"
+    yield "logged, no crank", Case(without, "no angle of crank .*log crank_", logged)
     swinging = text(*ROWS, header=HEADER.replace("crank_deg", "lever_deg"))
-    yield (
-        "fitted to a lever that swings",
-        Case(
-            swinging, "driver of tangent has no constant speed", "judge tangent FILE --drive fitted"
-        ),
-    )
-    yield "another ending", Case(text(*ROWS), "found '.docx'; use .csv, .tsv", name="log.docx")
-    yield "no ending", Case(text(*ROWS), "found no ending; use .csv", name="log")
+    fitted, words = "judge tangent FILE --drive fitted", "driver of tangent has no constant speed"
+    yield "fitted to a lever that swings", Case(swinging, words, fitted)
+    yield "another ending", Case(right, "found '.docx'; use .csv, .tsv", name="log.docx")
+    yield "no ending", Case(right, "found no ending; use .csv", name="log")
 
 
 CASES = dict(cases())
