@@ -22,7 +22,7 @@ from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.files import load_scene
 from models.scene import Scene
-from tests.analytic.test_reach import fourbar
+from tests.analytic.four_bars import fourbar
 from tests.worlds.tiers import few, slowly
 
 

@@ -4,20 +4,25 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 
 from analytic.kinematics import solve, solve_driven
+from analytic.mechanism.cycle import series
 from analytic.mechanism.fourbar import FourBar
+from analytic.mechanism.grashof import four_bar_type, inverted_slider_crank_type, slider_crank_type
+from analytic.mechanism.grashof_of_scene import grashof_of
 from analytic.mechanism.travel import Travel, travel, travels
 from models.errors import CrankcheckError, ReachError, StructureError
 from models.files import load_scene, parse_scene
 from models.laws import ConstantSpeed
-from models.scene import Driver, Scene
-from tests.analytic.test_reach import fourbar
+from models.scene import Driver
+from tests.analytic.four_bars import fourbar
 from tests.worlds.tiers import slowly
 
+CHANGE = "change point"
 STILL = """
 name = "still"
 source = "a test"
@@ -31,30 +36,31 @@ rocker = {{ bar = ["{rocker}", "C"], length_m = 0.2 }}
 link = "crank"
 speed_rad_s = 10.0
 """
-CRANK_ROCKERS = [
-    (0.1, 0.25, 0.2, 0.3),
-    (1.0, 2.5, 2.0, 3.0),
-    (0.2, 0.9, 0.7, 0.6),
-    (0.05, 0.3, 0.1, 0.28),
-]
+CRANK_ROCKERS = [(0.1, 0.25, 0.2, 0.3), (1.0, 2.5, 2.0, 3.0), (0.2, 0.9, 0.7, 0.6)]
+CRANK_ROCKERS += [(0.05, 0.3, 0.1, 0.28)]
+Lengths = tuple[float, float, float, float]
 
 
 @pytest.mark.parametrize(
-    ("lengths", "wanted"),
+    ("lengths", "of_class", "name"),
     [
-        ((0.1, 0.25, 0.2, 0.3), "crank-rocker"),
-        ((0.2, 0.25, 0.1, 0.3), "crank-rocker"),  # driven at its rocker, still one
-        ((0.25, 0.2, 0.3, 0.1), "double-crank"),
-        ((0.25, 0.1, 0.2, 0.3), "double-rocker"),
-        ((0.3, 0.22, 0.25, 0.5), "triple-rocker"),
-        ((0.1, 0.3, 0.1, 0.3), "change point"),
-        ((0.2, 0.2, 0.2, 0.2), "change point"),
-        ((0.1, 0.2, 0.3, 0.4), "change point"),
+        ((0.1, 0.25, 0.2, 0.3), "crank-rocker", "Grashof crank-rocker"),
+        ((0.2, 0.25, 0.1, 0.3), "crank-rocker", "Grashof rocker-crank"),
+        ((0.25, 0.2, 0.3, 0.1), "double-crank", "Grashof double-crank (drag link)"),
+        ((0.25, 0.1, 0.2, 0.3), "double-rocker", "Grashof double-rocker"),
+        ((0.3, 0.22, 0.25, 0.5), "triple-rocker", "non-Grashof triple-rocker (longest: ground)"),
+        ((0.1, 0.3, 0.1, 0.3), CHANGE, f"{CHANGE}, parallelogram or antiparallelogram"),
+        ((0.2, 0.2, 0.3, 0.3), CHANGE, f"{CHANGE}, kite (deltoid)"),
+        ((0.2, 0.2, 0.2, 0.2), CHANGE, f"{CHANGE}, rhombus"),
+        ((0.1, 0.2, 0.3, 0.4), CHANGE, f"{CHANGE}, between crank-rocker and triple-rocker"),
     ],
 )
-def test_grashof_class(lengths: tuple[float, float, float, float], wanted: str) -> None:
-    assert FourBar(*lengths).grashof_class == wanted
-    assert FourBar(*(1e3 * x for x in lengths)).grashof_class == wanted
+def test_a_four_bar_has_its_class_and_its_name(lengths: Lengths, of_class: str, name: str) -> None:
+    assert FourBar(*lengths).grashof_class == of_class
+    assert FourBar(*(1e3 * x for x in lengths)).grashof_class == of_class
+    found = four_bar_type(FourBar(*lengths))
+    assert found.name == name
+    assert found.is_grashof != name.startswith("non-Grashof")
 
 
 @pytest.mark.parametrize(
@@ -125,9 +131,7 @@ def test_a_rocker_on_the_pivot_of_the_crank_is_no_four_bar() -> None:
 
 @pytest.mark.parametrize("lengths", CRANK_ROCKERS)
 @pytest.mark.parametrize("branch", [1, -1])
-def test_swing_and_time_ratio_are_those_of_the_motion(
-    lengths: tuple[float, float, float, float], branch: int
-) -> None:
+def test_swing_and_time_ratio_are_those_of_the_motion(lengths: Lengths, branch: int) -> None:
     bar, found = FourBar(*lengths), travel(fourbar(*lengths, branch), "rocker")
     assert found.stroke == pytest.approx(bar.rocker_swing_rad, abs=1e-12)
     assert found.time_ratio == pytest.approx(bar.time_ratio, abs=1e-9)
@@ -140,21 +144,15 @@ def test_swing_belongs_to_a_driven_crank() -> None:
             _ = FourBar(*lengths).time_ratio
 
 
-def _transmission(scene: Scene, theta: np.ndarray) -> np.ndarray:
-    """The angle at C between coupler and rocker, from the places of B, C and D."""
-    motion = solve_driven(scene, theta, np.ones_like(theta), np.zeros_like(theta), bound=False)
-    b, c, d = (motion.points[p].position for p in "BCD")
-    x, y = b - c, d - c
-    return np.abs(np.arctan2(x[:, 0] * y[:, 1] - x[:, 1] * y[:, 0], np.sum(x * y, axis=1)))
-
-
 @pytest.mark.parametrize("lengths", [*CRANK_ROCKERS, (0.25, 0.2, 0.3, 0.1), (0.25, 0.1, 0.2, 0.3)])
-def test_transmission_extremes_are_those_of_a_sweep(
-    lengths: tuple[float, float, float, float],
-) -> None:
-    bar, scene = FourBar(*lengths), fourbar(*lengths)
+def test_transmission_extremes_are_those_of_a_sweep(lengths: Lengths) -> None:
+    """The angle at C between coupler and rocker, from the places of B, C and D."""
+    bar = FourBar(*lengths)
     near, far = bar.driver_range_rad
-    mu = _transmission(scene, np.linspace(near + 1e-12, far - 1e-12, 5001))
+    theta = np.linspace(near + 1e-12, far - 1e-12, 5001)
+    motion = solve_driven(fourbar(*lengths), theta, np.ones(1), np.zeros(1), bound=False)
+    b, c, d = (motion.points[p].position @ (1.0, 1.0j) for p in "BCD")
+    mu = np.abs(np.angle((b - c) / (d - c)))
     low, high = bar.transmission_rad
     tolerance = 1e-6 if bar.driver_turns_fully else 1e-4  # a square root at the ends of the range
     assert mu.min() == pytest.approx(low, abs=tolerance)
@@ -171,28 +169,16 @@ def test_stroke_and_time_ratio_of_the_slider_crank(e: float) -> None:
     imbalance = abs(math.asin(e / (rod - r)) - math.asin(e / (rod + r)))
     assert (found.high_at_rad - found.low_at_rad) % math.tau > math.pi or e <= 0.0
     assert found.stroke == pytest.approx(stroke, abs=1e-15)
-    assert found.time_ratio == pytest.approx(
-        (math.pi + imbalance) / (math.pi - imbalance), abs=1e-9
-    )
-
-
-def test_swing_and_time_ratio_of_the_slotted_lever() -> None:
-    beta = 2.0 * math.asin(0.1 / 0.3)
-    found = travel(load_scene("slotted-lever"), "lever")
-    assert found.stroke == pytest.approx(beta, abs=1e-13)
-    assert found.time_ratio == pytest.approx((math.pi + beta) / (math.pi - beta), abs=1e-9)
+    ratio = (math.pi + imbalance) / (math.pi - imbalance)
+    assert found.time_ratio == pytest.approx(ratio, abs=1e-9)
 
 
 @pytest.mark.parametrize("short", [1e-3, 1e-6, 1e-9, 1e-12])
 def test_a_lever_that_swings_back_between_two_looks_is_seen_to(short: float) -> None:
     """With the block next to the pivot it goes half a turn back in a millionth of one."""
-    scene = load_scene("slotted-lever")
-    scene = replace(
-        scene, ground={**scene.ground, "A": (0.0, 0.1 / (1.0 - short)), "C": (0.0, 0.0)}
-    )
-    beta = 2.0 * math.asin(1.0 - short)
-    found = travel(scene, "lever")
-    assert found.stroke == pytest.approx(beta, abs=1e-8)
+    ground = {"A": (0.0, 0.1 / (1.0 - short)), "C": (0.0, 0.0)}
+    found = travel(replace(load_scene("slotted-lever"), ground=ground), "lever")
+    assert found.stroke == pytest.approx(2.0 * math.asin(1.0 - short), abs=1e-8)
     narrow = 2.0 * math.acos(1.0 - short)  # math.pi - beta, with its digits
     assert found.time_ratio == pytest.approx((math.tau - narrow) / narrow, rel=1e-3)
 
@@ -202,19 +188,11 @@ def test_limit_positions_are_where_the_output_rests() -> None:
         scene = load_scene(name)
         found = travel(scene, output)
         at = np.array([found.low_at_rad, found.high_at_rad])
-        motion = solve_driven(scene, at, np.ones(2), np.zeros(2))
-        if output in scene.links:
-            place, rate = motion.links[output].theta, motion.links[output].omega
-        else:
-            place, rate = motion.sliders[output].displacement, motion.sliders[output].speed
+        place, rate, _ = series(solve_driven(scene, at, np.ones(2), np.zeros(2)), output)
         assert np.allclose(rate, 0.0, rtol=0, atol=1e-12)
         assert np.allclose(np.diff(place), found.stroke, rtol=0, atol=1e-12)
         dense = solve(scene, np.linspace(0.0, scene.driver.law.period_s, 4001), bound=False)
-        swept = (
-            dense.links[output].theta
-            if output in scene.links
-            else dense.sliders[output].displacement
-        )
+        swept, _, _ = series(dense, output)
         assert np.ptp(swept) == pytest.approx(found.stroke, abs=1e-5 * found.stroke)
         assert np.ptp(swept) <= found.stroke + 1e-12
 
@@ -236,9 +214,8 @@ def test_swing_of_more_than_half_a_turn_is_counted_in_full() -> None:
 def test_output_without_limits_is_refused() -> None:
     with pytest.raises(CrankcheckError, match="lever never turns back"):
         travel(load_scene("whitworth"), "lever")
-    with pytest.raises(
-        CrankcheckError, match="no link or slider 'ram'; it has crank, lever, rod, B, F"
-    ):
+    said = "no link or slider 'ram'; it has crank, lever, rod, B, F"
+    with pytest.raises(CrankcheckError, match=said):
         travel(load_scene("shaper"), "ram")
     scene = load_scene("fourbar-double-rocker")
     turning = replace(scene, driver=Driver(scene.driver.link, ConstantSpeed(0.0, 1.0)))
@@ -249,21 +226,44 @@ def test_output_without_limits_is_refused() -> None:
 def test_travels_of_many_outputs_take_the_work_of_one(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = load_scene("sixbar-watt")
     outputs = (*scene.links, *scene.sliders)
-    asked: list[int] = []
-
-    def counting(*args: object, **options: object) -> object:
-        asked.append(1)
-        return solve_driven(*args, **options)  # type: ignore[arg-type]  # passed on as they are
-
-    monkeypatch.setattr("analytic.mechanism.cycle.solve_driven", counting)
+    asked = Mock(wraps=solve_driven)
+    monkeypatch.setattr("analytic.mechanism.cycle.solve_driven", asked)
     found = travels(scene, outputs)
-    together = len(asked)
+    together = asked.call_count
     for output in outputs:
-        asked.clear()
+        asked.reset_mock()
         if isinstance(found[output], Travel):
             assert travel(scene, output) == found[output]
-            assert len(asked) == together
+            assert asked.call_count == together
         else:
             with pytest.raises(CrankcheckError, match=r"turns back|never turns"):
                 travel(scene, output)
     assert sum(isinstance(one, Travel) for one in found.values()) > 2
+
+
+def test_an_offset_counts() -> None:
+    assert slider_crank_type(0.1, 0.3, 0.1).driver_turns
+    assert not slider_crank_type(0.1, 0.3, 0.21).is_grashof
+    assert slider_crank_type(0.1, 0.3, 0.2).name == "change point, offset slider-crank"
+    assert slider_crank_type(0.2, 0.2, 0.0).name == "change point, isosceles central slider-crank"
+    assert inverted_slider_crank_type(0.3, 0.1, 0.05).follower_turns
+    assert not inverted_slider_crank_type(0.1, 0.3, 0.05).follower_turns
+    assert not inverted_slider_crank_type(0.1, 0.3, 0.25).driver_turns
+    with pytest.raises(ValueError, match="reach the line together"):
+        slider_crank_type(0.1, 0.1, 0.3)
+    for crank, ground, offset in ((0.0, 0.3, 0.1), (0.3, 0.0, 0.1), (0.1, 0.1, 0.3)):
+        with pytest.raises(ValueError, match="reach the guide together"):
+            inverted_slider_crank_type(crank, ground, offset)
+
+
+@pytest.mark.parametrize(
+    ("scene", "word"),
+    [
+        ("slider-crank-offset", "Grashof offset slider-crank"),
+        ("whitworth", "Whitworth"),
+        ("slotted-lever", "slotted lever"),
+    ],
+)
+def test_a_scene_has_the_name_of_its_chain_and_a_six_bar_none(scene: str, word: str) -> None:
+    assert word in grashof_of(load_scene(scene)).name
+    assert grashof_of(load_scene("sixbar-watt")) is None
