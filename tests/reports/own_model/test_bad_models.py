@@ -16,29 +16,25 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from models.mjcf import build
 from reports.own_model import assembly
-from reports.own_model.account import Account, Line, checked_line, read, read_here
+from reports.own_model.account import read, read_here
 from reports.own_model.request import ModelRequest
 from reports.own_model.running import run_lines
 from reports.workers.isolated import Limits
-from tests.worlds.own_four_bar import CLOSED, HEALTHY, ROCKER_JOINT, planted
+from tests.worlds.own_four_bar import CLOSED, HEALTHY, ROCKER_JOINT, planted, rocker, tied
+from tests.worlds.own_models import line, read_text
 from tests.worlds.tiers import few, slowly
 
 PLATES = """<mujoco>
   <option gravity="0 0 0"/>
   <default><geom type="capsule" size="0.01" contype="0" conaffinity="0"/></default>
   <worldbody>
-    <body name="crank">
-      <joint name="A"/>
-      <geom fromto="0 0 0 0 0.1 0"/>
+    <body name="crank"><joint name="A"/><geom fromto="0 0 0 0 0.1 0"/>
       <body name="bar" pos="0 0.1 0"><joint name="B"/><geom fromto="0 0 0 0.4 0 0"/></body>
     </body>
     <body name="rocker" pos="0.4 0 0"><joint name="D"/><geom fromto="0 0 0 0 0.1 0"/></body>
     <!-- more -->
   </worldbody>
-  <equality>
-    <connect name="C" body1="bar" body2="rocker" anchor="0.4 0 0"/>
-    <!-- ties -->
-  </equality>
+  <equality><connect name="C" body1="bar" body2="rocker" anchor="0.4 0 0"/><!-- ties --></equality>
 </mujoco>
 """
 """A parallelogram."""
@@ -71,15 +67,20 @@ TRIAD = """<mujoco>
 """
 
 
-def read_text(folder: Path, text: str | bytes, **more: object) -> Account:
-    path = folder / "model.xml"
-    path.write_bytes(text.encode() if isinstance(text, str) else text)
-    asked = {"joint": "A", "speed_rad_s": 10.0, **more}
-    return read_here(ModelRequest(path, **asked))  # type: ignore[arg-type]
+def included(file: str) -> str:
+    return planted("<worldbody>", f'<include file="{file}"/><worldbody>')
 
 
 DEEP = "<mujoco><worldbody>" + "<body>" * 5000 + "</body>" * 5000 + "</worldbody></mujoco>"
 BOMB = '<!DOCTYPE m [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;&a;">]><mujoco model="&b;"/>'
+BESIDE = '<body name="far"><freejoint/><geom size="1" type="sphere"/></body></worldbody>'
+FAR = '<connect body1="far" anchor="0 0 0"/>'
+BELT = '<tendon><fixed name="t"><joint joint="D" coef="1"/></fixed></tendon>'
+TILTING = '<weld body1="coupler" body2="rocker" relpose="0 0 0 0.9 0.1 0 0"/>'
+AGAIN = '<connect body1="coupler" body2="rocker" anchor="0.1 0 0"/>'
+OFF = ('tolerance="1e-16"/>', 'tolerance="1e-16"><flag equality="disable"/></option>')
+MESH = '<asset><mesh file="no.stl"/></asset><worldbody>'
+LOOSE = PLATES.replace("<!-- more -->", THIRD.format(off=0.001)).replace("<!-- ties -->", TIED)
 REFUSED: dict[str, tuple[str | bytes, str]] = {
     "empty": ("", "no XML: no element found"),
     "urdf": ('<robot name="x"/>', "its root is <robot>, that of MJCF is <mujoco>"),
@@ -87,85 +88,57 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "bomb": (BOMB, "it declares entities"),
     "controls": (HEALTHY.replace("rocker", "ro&#27;ck"), "no XML: reference to invalid character"),
     "no mesh": (
-        planted("<worldbody>", '<asset><mesh file="no.stl"/></asset><worldbody>'),
-        "MuJoCo refuses the model: Error: Error opening file 'no.stl'",
+        planted("<worldbody>", MESH), "MuJoCo refuses the model: Error: Error opening file 'no.stl'"
     ),
     "nan": (planted('pos="0 0 0.1"', 'pos="0 0 nan"'), "body_pos of coupler is not finite"),
-    "infinite": (planted(ROCKER_JOINT, '<joint name="D" stiffness="inf"/>'), "jnt_stiffness of D"),
+    "infinite": (planted(*rocker('stiffness="inf"')), "jnt_stiffness of D"),
     "nan in an anchor": (
-        planted('anchor="0.23373437 0', 'anchor="nan 0'),
-        "<connect> C: its anchor or pose is not finite",
+        planted('or="0.23373437', 'or="nan'), "<connect> C: its anchor or pose is not finite"
     ),
     "no mass": (planted('"rocker-bar"', '"rocker-bar" mass="0"'), "mass and inertia of moving"),
     "outside": (
-        planted("<worldbody>", '<include file="../x.xml"/><worldbody>'),
+        included("../x.xml"),
         "<include file='../x.xml'> is outside the folder of the model; copy it into",
     ),
-    "itself": (
-        planted("<worldbody>", '<include file="model.xml"/><worldbody>'),
-        "more than 20 files that include one another",
-    ),
-    "not there": (planted("<worldbody>", '<include file="x.xml"/><worldbody>'), "x.xml: not there"),
+    "itself": (included("model.xml"), "more than 20 files that include one another"),
+    "not there": (included("x.xml"), "x.xml: not there"),
     "no loop": (planted(CLOSED, ""), "no loop: the model has no <equality>"),
     "loop that is off": (
-        planted('<connect name="C"', '<connect active="false" name="C"'),
-        "no loop: no equality is active",
+        planted('<connect name', '<connect active="false" name'), "no loop: no equality is active"
     ),
-    "loops switched off": (
-        planted('tolerance="1e-16"/>', 'tolerance="1e-16"><flag equality="disable"/></option>'),
-        'no loop: <flag equality="disable"/>',
-    ),
+    "loops switched off": (planted(*OFF), 'no loop: <flag equality="disable"/>'),
     "loop elsewhere": (
-        planted(
-            "</worldbody>", '<body name="far"><freejoint/><geom size="1" type="sphere"/></body>'
-            "</worldbody>", CLOSED, '<connect body1="far" anchor="0 0 0"/>',
-        ),
+        planted("</worldbody>", BESIDE, CLOSED, FAR),
         "no equality ties a body that moves with the driven joint",
     ),
-    "ball": (planted(ROCKER_JOINT, '<joint name="D" type="ball"/>'), "a ball joint leaves"),
+    "ball": (planted(*rocker('type="ball"')), "a ball joint leaves"),
     "free": (planted(ROCKER_JOINT, '<freejoint name="D"/>'), "joint D of body rocker: a free"),
     "slide across": (
-        planted(ROCKER_JOINT, '<joint name="D" type="slide" axis="0 1 0"/>'),
-        "it slides 90 deg off the plane",
+        planted(*rocker('type="slide" axis="0 1 0"')), "it slides 90 deg off the plane"
     ),
     "two hinges": (
-        planted(ROCKER_JOINT, ROCKER_JOINT + '<joint name="D2" pos="0 0 0.05"/>'),
+        planted(ROCKER_JOINT, f'{ROCKER_JOINT}<joint name="D2" pos="0 0 0.05"/>'),
         "body rocker: its joints are hinge hinge",
     ),
     "held": (
-        planted("</equality>", '<weld body1="crank"/></equality>'),
+        planted(*tied('<weld body1="crank"/>')),
         "joint A can not turn: a weld ties its body to the ground",
     ),
-    "tilting weld": (
-        planted("</equality>", '<weld body1="coupler" body2="rocker" '
-                'relpose="0 0 0 0.9 0.1 0 0"/></equality>'),
-        "deg out of the plane",
-    ),
+    "tilting weld": (planted(*tied(TILTING)), "deg out of the plane"),
     "tendon": (
-        planted("<equality>", '<tendon><fixed name="t"><joint joint="D" coef="1"/></fixed></tendon>'
-                '<equality><tendon tendon1="t"/>'),
+        planted("<equality>", f'{BELT}<equality><tendon tendon1="t"/>'),
         "a <tendon> equality couples coordinates",
     ),
     "a hinge far round": (
-        planted(ROCKER_JOINT, '<joint name="D" ref="1e12"/>'),
+        planted(*rocker('ref="1e12"')),
         "model.xml: joint D reads 1.59e+11 turns in this pose; take whole turns off it",
     ),
     "no step": (planted('timestep="0.001"', 'timestep="0"'), "its timestep is 0 s; give it one"),
     "two cranks": (FIVE, "(with A held these still move: B, E, D)"),
     "a triad that does not turn": (TRIAD, "joint A would turn from 0 to 360 deg, and reaches -147"),
-    "a third link that does not fit": (
-        PLATES.replace("<!-- more -->", THIRD.format(off=0.001)).replace("<!-- ties -->", TIED),
-        "redundant link third fits in place only",
-    ),
-    "held twice": (
-        planted(
-            "</equality>", '<connect body1="coupler" body2="rocker" anchor="0.1 0 0"/></equality>'
-        ),
-        "= -1; one driver needs mobility 1",
-    ),
+    "a third link that does not fit": (LOOSE, "redundant link third fits in place only"),
+    "held twice": (planted(*tied(AGAIN)), "= -1; one driver needs mobility 1"),
 }  # fmt: skip
-
-
 LATE = "a triad that does not turn"
 """The reach of a joint is told of `test_public_models` too, and a triad takes its time."""
 
@@ -199,12 +172,13 @@ def test_what_is_no_plain_file_is_not_read(tmp_path: Path) -> None:
 
 
 def test_a_link_to_a_file_elsewhere_is_not_included(tmp_path: Path) -> None:
-    (tmp_path / "other").mkdir()
-    (tmp_path / "other" / "x.xml").write_text("<mujoco/>", encoding="utf-8")
-    (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / "x.xml").symlink_to(tmp_path / "other" / "x.xml")
+    mine, other = tmp_path / "mine", tmp_path / "other"
+    mine.mkdir()
+    other.mkdir()
+    (other / "x.xml").write_text("<mujoco/>", encoding="utf-8")
+    (mine / "x.xml").symlink_to(other / "x.xml")
     with pytest.raises(CrankcheckError, match="outside the folder of the model"):
-        read_text(tmp_path / "mine", planted("<worldbody>", '<include file="x.xml"/><worldbody>'))
+        read_text(mine, included("x.xml"))
 
 
 ASKED = {
@@ -245,22 +219,18 @@ def test_any_names_make_a_scene(case: str, tmp_path: Path) -> None:
     assert all(len(name) <= 40 and name.isascii() for name in scene.pins)
 
 
-def test_a_parallelogram_passes_its_change_points_with_a_note(tmp_path: Path) -> None:
-    account = read_text(tmp_path, PLATES, converge=False)
-    assert "continued smoothly through the change points of C" in account.notes[-1]
-    assert checked_line(Line(account, "recommended")).verdict == "within"
-
-
-def test_redundant_links_are_no_fault(tmp_path: Path) -> None:
-    text = PLATES.replace("<!-- more -->", THIRD.format(off=0)).replace("<!-- ties -->", TIED)
+@pytest.mark.parametrize(("more", "ties"), [("", ""), (THIRD.format(off=0), TIED)], ids=["", "+1"])
+def test_a_parallelogram_passes_its_change_points_with_a_note_and_with_a_redundant_link(
+    more: str, ties: str, tmp_path: Path
+) -> None:
+    text = PLATES.replace("<!-- more -->", more).replace("<!-- ties -->", ties)
     account = read_text(tmp_path, text, converge=False)
-    assert checked_line(Line(account, "recommended")).verdict == "within"
+    assert "continued smoothly through the change points of C" in account.notes[-1]
+    assert line(account, "recommended").verdict == "within"
 
 
 def test_both_assemblies_of_a_flat_pose_may_be_chosen(tmp_path: Path) -> None:
-    flat = PLATES.replace("0 0 0 0 0.1 0", "0 0 0 0.1 0 0").replace(
-        'pos="0 0.1 0"', 'pos="0.1 0 0"'
-    )
+    flat = PLATES.replace("0 0 0 0 0.1 0", "0 0 0 0.1 0 0").replace("0 0.1 0", "0.1 0 0")
     with pytest.raises(CrankcheckError, match="two assemblies equally well, C"):
         read_text(tmp_path, flat)
     assert read_text(tmp_path, flat, branch={"C": -1}).scene.branch == {"C": -1}
@@ -297,22 +267,23 @@ def test_more_choices_than_are_tried_are_asked_for(
     assert len(found) == most + 1
 
 
-@pytest.mark.parametrize("start_deg", [36000.0, -36000.0])
-def test_a_start_many_turns_away_is_held_to_what_one_nearby_is(
-    start_deg: float, tmp_path: Path
+KEYS = '</equality><keyframe><key name="home"/><key name="turned" qpos="6.5 0 6.3"/></keyframe>'
+STARTS: list[tuple[str, dict[str, object]]] = [
+    ("recommended", {"start_deg": 36000.0, "turns": 0.3}),
+    ("recommended", {"start_deg": -36000.0, "turns": 0.3}),
+    ("as-written", {"key": "home"}),
+    ("as-written", {"key": "home", "speed_rad_s": -10.0}),
+    ("as-written", {"key": "turned"}),
+    ("as-written", {"key": "turned", "speed_rad_s": -10.0}),
+]
+
+
+@pytest.mark.parametrize(("profile", "asked"), STARTS)
+def test_it_runs_backwards_and_from_whole_turns_and_many_turns_away(
+    profile: str, asked: dict[str, object], tmp_path: Path
 ) -> None:
-    account = read_text(tmp_path, HEALTHY, start_deg=start_deg, converge=False, turns=0.3)
-    assert checked_line(Line(account, "recommended")).verdict == "within"
-
-
-@pytest.mark.parametrize("speed", [10.0, -10.0])
-@pytest.mark.parametrize("key", ["home", "turned"])
-def test_it_runs_backwards_and_from_whole_turns(speed: float, key: str, tmp_path: Path) -> None:
-    keys = '</equality><keyframe><key name="home"/><key name="turned" qpos="6.5 0 6.3"/></keyframe>'
-    account = read_text(
-        tmp_path, planted("</equality>", keys), key=key, speed_rad_s=speed, converge=False
-    )
-    assert checked_line(Line(account, "as-written")).verdict == "within"
+    account = read_text(tmp_path, planted("</equality>", KEYS), converge=False, **asked)
+    assert line(account, profile).verdict == "within"
 
 
 def test_a_reading_that_takes_too_long_or_too_much_ends(tmp_path: Path) -> None:
@@ -329,8 +300,8 @@ def test_a_reading_that_takes_too_long_or_too_much_ends(tmp_path: Path) -> None:
 def test_a_line_that_hangs_is_a_row_with_its_reason(tmp_path: Path) -> None:
     """In a process of its own (0.4 s), which is ended."""
     account = replace(read_text(tmp_path, HEALTHY, converge=False), profiles=["as-written"])
-    (line,) = run_lines(account, Limits(1e-4, 2.0)).lines
-    assert (line.verdict, line.status, line.reason) == ("out", "timeout", "no end within 0.0001 s")
+    (one,) = run_lines(account, Limits(1e-4, 2.0)).lines
+    assert (one.verdict, one.status, one.reason) == ("out", "timeout", "no end within 0.0001 s")
 
 
 def test_a_run_to_a_singular_position_is_refused_with_the_range_that_can_be_set(
