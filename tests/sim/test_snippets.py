@@ -165,8 +165,11 @@ def same(line: str, other: str) -> bool:
 
 def test_what_redundant_joints_need_is_said_where_the_solver_is_chosen_by_need() -> None:
     words = "Where joints are redundant"
-    assert words in snippet("exudyn", {}, 360.0)
-    assert words not in snippet("exudyn", {"linear_solver": "EigenDense"}, 360.0)
+    tuned = resolved(engine("exudyn").profiles["tuned"], None)
+    assert tuned["linear_solver"] == "by-need"
+    for solver, said in (("by-need", True), ("EigenDense", False)):
+        text = snippet("exudyn", {**tuned, "linear_solver": solver}, 360.0)
+        assert (words in text) == said
 
 
 def test_a_step_that_softens_contacts_is_said_to() -> None:

@@ -101,6 +101,14 @@ def test_a_channel_whose_last_digit_is_all_that_is_off_is_not_late() -> None:
     assert not causes(rounded.case)
 
 
+def test_readings_that_are_off_by_a_part_of_the_last_digit_are_rounded_all_the_same() -> None:
+    plain = of(angle("rocker"), angle("coupler"))
+    off = 2.5e-5 * np.sin(1e3 * plain.time_s)
+    rounded = plain.put({"rocker_a": np.round(plain.values["rocker_a"] + off, 4)})
+    cause = only(replace(rounded, limits=dict.fromkeys(rounded.limits, 3e-5)))
+    assert "(column rocker_a) is rounded to 4 decimals (rad)" in cause.text
+
+
 def test_all_that_is_late_is_a_start_elsewhere() -> None:
     plain = of(angle("rocker"), angle("crank"), omega("rocker"))
     cause = only(plain.of(solve(SCENE, plain.time_s + 0.01, bound=False)))

@@ -85,6 +85,10 @@ def test_a_run_of_other_turns_is_shown_at_the_same_crank_angles() -> None:
     np.testing.assert_allclose(row, 1e-3 * np.sin(2 * np.pi * TIME_S / period), atol=1e-7)
 
 
+def test_a_run_that_rounding_ends_early_is_drawn_to_its_end() -> None:
+    assert np.isfinite(rows_off(traced(FOURBAR, TIME_S * (1.0 - 1e-14), 1e-3))).all()
+
+
 def test_a_run_is_drawn_as_far_as_it_was_logged_and_cut_off_where_it_came_apart() -> None:
     assert np.isfinite(rows_off(traced(FOURBAR, TIME_S[:40], 1e-3))[0]).sum() == 40
     trace = traced(FOURBAR, TIME_S)

@@ -25,7 +25,7 @@ from reports.store.manifest import Manifest
 from reports.store.reader import read_store
 from tests.reports.figures.room import boxes, has_room
 from tests.reports.results.made import cell, stored
-from tests.worlds.free_store import SCENE
+from tests.worlds.free_store import LASTS_S, SCENE
 from tests.worlds.small_store import SCENES
 from tests.worlds.tiers import few
 
@@ -61,6 +61,13 @@ def test_words_keep_off_each_other_and_off_the_edge(
 @pytest.mark.parametrize("name", few(LET_GO, {"let-go", "phase"}, OTHER))
 def test_words_of_what_was_let_go_keep_off_each_other(free_store: Path, name: str) -> None:
     has_room(figure_of, Report(read_store(free_store)), name, SCENE)
+
+
+def test_energies_are_drawn_over_the_whole_run(free_store: Path) -> None:
+    drawn = figure_of(Report(read_store(free_store)), "energy", SCENE)
+    assert drawn is not None
+    ends = [axes.get_xlim() for axes in drawn.axes]
+    assert ends == [(0.0, pytest.approx(LASTS_S))] * len(ends)
 
 
 @pytest.mark.parametrize("scene", few(LETTERED, {"shaper", "sixbar-stephenson"}, OTHER))

@@ -10,6 +10,7 @@ import pytest
 from rich.console import Console
 
 from reports.judge.cell import unfinished
+from reports.output.numbers import short
 from reports.own_model import checked_line
 from reports.own_model.checked_line import without_run
 from reports.own_model.judged import JudgedModel, errors_of, judged_model
@@ -121,7 +122,11 @@ def test_how_open_the_pose_is_and_which_joint_is_worst_are_told(crowded: JudgedM
 def test_the_cure_of_a_model_names_its_own_settings(rubbing: JudgedModel) -> None:
     cures = {finding.cure for one in rubbing.lines for finding in one.findings}
     assert not any("profile tuned" in cure for cure in cures)
-    assert any(cure.startswith("The recommended settings: ") for cure in cures)
+    best = errors_of(rubbing.lines[-1])[0]
+    less = {short(errors_of(one)[0] / best) for one in rubbing.lines if one.verdict == "out"}
+    told = {f"The recommended settings: {n} times less error, within tolerance." for n in less}
+    assert told
+    assert told <= cures
 
 
 @pytest.mark.parametrize("status", ["crashed", "timeout", "unsupported"])
