@@ -1,4 +1,4 @@
-"""What may be asked for, and the steps that follow from it."""
+"""What may be asked for, the steps that follow from it, and what advice chooses from."""
 
 from __future__ import annotations
 
@@ -12,9 +12,12 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from models.laws import ConstantSpeed
 from models.scene import Scene
-from reports.advise.choices import Choice
+from reports.advise.choices import OWN, Choice, choices
 from reports.advise.demand import MOST_SUBSTEPS, Demand, at_speed, demanded
 from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED
+from reports.plan.study import load_study
+from sim.registry import engine, usual
+from sim.settings import resolved
 
 FOURBAR = load_scene("fourbar-lecture-1")
 CHOICE = Choice("fake", "tuned", "tuned", {})
@@ -88,11 +91,36 @@ def test_what_can_not_be_asked_for_is_told(changes: dict[str, float], words: str
         asked(**changes)
 
 
-def test_the_longest_frame_that_a_message_names_is_taken() -> None:
+def test_the_longest_frame_that_a_message_names_is_taken_and_no_driver_of_another_law() -> None:
     assert asked(frame_s=321.0, turns=2.0).least <= MOST_SUBSTEPS
     assert asked(turns=2650.0).least == 1
-
-
-def test_a_driver_of_another_law_is_refused_by_name() -> None:
     with pytest.raises(CrankcheckError, match=r'fourbar-double-rocker.*law = "constant"'):
         asked(FOURBAR, load_scene("fourbar-double-rocker"))
+
+
+def test_all_profiles_and_the_variants_of_the_shipped_study_are_there() -> None:
+    every = choices(usual(), ())
+    labels = sorted(choice.label for choice in every)
+    for name in usual():
+        assert {f"{name} {profile}" for profile in engine(name).profiles} <= {*labels}
+    variants = [one for each in load_study(None).variants for one in each.each()]
+    assert labels == sorted(f"{one.engine} {one.name}" for one in variants)
+    for choice in every:
+        assert choice.settings.keys() == engine(choice.engine).profiles["tuned"].settings.keys()
+
+
+def test_a_variant_like_another_choice_is_left_out_and_one_of_its_name_told_apart() -> None:
+    settings = resolved(engine("pymunk").profiles["tuned"], {"iterations": 77})
+    same = Choice("pymunk", "alias", "tuned", resolved(engine("pymunk").profiles["tuned"], None))
+    mine = Choice("pymunk", "no bias", "tuned", settings)
+    plain = choices(["pymunk"], ())
+    every = choices(["pymunk"], (same, mine, replace(mine, name="twice")))
+    (added,) = [choice for choice in every if choice not in plain]
+    assert (added.name, added.settings) == ("no bias (study)", settings)
+
+
+def test_words_tell_what_is_not_as_shipped_of_the_engines_asked_for_alone() -> None:
+    words = {choice.label: choice.words for choice in choices(["pymunk"], ())}
+    assert {label.split()[0] for label in words} == {"pymunk"}
+    assert words["pymunk as-shipped"] == OWN
+    assert words["pymunk no bias"] == "error_bias 0"

@@ -1,27 +1,38 @@
-"""The search for the fewest sub-steps, on errors whose law is known."""
+"""The search for the fewest sub-steps, on errors whose law is known; its runs and their prices."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, cast
+from typing import Any, cast, get_args
 
+import numpy as np
 import pytest
 
 from models.files import load_scene
-from reports.advise.choices import Choice
+from reports.advise.choices import Choice, choices
 from reports.advise.demand import demanded
 from reports.advise.evidence import MeasuredSteps, MeasuredStudy
-from reports.advise.look import TriedRun
-from reports.advise.search import SearchResult, _reached
+from reports.advise.look import WORDS, TriedRun, _seen, look
+from reports.advise.prices import ROUNDS, Prices, prices, timings
+from reports.advise.search import SearchResult, Worst, _reached
+from reports.compare.beside import Beside, Truth
+from reports.compare.compare import compare
+from reports.compare.errors import Departure
 from reports.judge.cell import Cell
+from reports.quantities import named
+from reports.stability.error_series import ErrorSeries
+from reports.sweep.measured import Repeats
 from reports.workers.isolated import Isolated, Lost
+from sim.engine import Status
+from sim.run import run
 
 DEMAND = demanded(
     [load_scene("fourbar-lecture-1"), load_scene("slider-crank-central")], 10.0, 1 / 60, 1e-3, 10.0
 )
 FIRST, SECOND = (scene.name for scene in DEMAND.scenes)
+FRAMES = DEMAND.frames_per_turn
 CHOICE = Choice("fake", "tuned", "tuned", {})
 Law = Callable[[str, int], TriedRun | Lost | float]
 """From scene and sub-steps to what a run gives."""
@@ -51,9 +62,9 @@ def searched(
     return _reached(demand, known or MeasuredStudy(), isolated, CHOICE), child
 
 
-def studied(law: Callable[[str, float], float], low: float, high: float) -> MeasuredStudy:
-    """A study of both scenes, from so many steps in a turn to so many."""
-    steps = [low * (high / low) ** (k / 8) for k in range(9)]
+def studied(law: Callable[[str, float], float], low: float) -> MeasuredStudy:
+    """A study of both scenes, from so many steps in a frame to 400."""
+    steps = [FRAMES * low * (400 / low) ** (k / 8) for k in range(9)]
     measured = {
         (name, CHOICE.key): MeasuredSteps(tuple((n, law(name, n)) for n in steps))
         for name in (FIRST, SECOND)
@@ -92,16 +103,12 @@ def test_a_scene_that_is_over_the_target_spares_the_runs_of_the_others() -> None
     assert over == []
 
 
-def test_luck_is_no_promise() -> None:
-    """Two errors that cancel with 3 sub-steps."""
+def test_luck_is_no_promise_and_settings_that_break_with_more_sub_steps_have_none() -> None:
+    """Two errors cancel with 3 sub-steps."""
     found, _ = searched(lambda _, n: 1e-5 if n == 3 else 1e-3 * (8.0 / n) ** 2)
     assert found.promise.substeps == 8
-
-
-def test_settings_that_break_with_more_sub_steps_promise_nothing() -> None:
-    found, _ = searched(
-        lambda _, n: TriedRun(math.inf, "diverged", "") if n > 9 else 1e-3 * 7.0 / n
-    )
+    breaks = TriedRun(math.inf, "diverged", "")
+    found, _ = searched(lambda _, n: breaks if n > 9 else 1e-3 * 7.0 / n)
     assert found.promise is None
     assert found.unsteady
     assert max(found.unsteady) <= 9
@@ -127,14 +134,10 @@ def test_an_error_that_grows_has_to_stay_under_the_target_for_longer() -> None:
     """With 2 and 3 it does over ten turns, and not over eighty."""
 
     def law(name: str, n: int) -> TriedRun:
-        long = child_turns() > 11.0
+        long = child.asked[-1][2] > 11.0
         return TriedRun((3e-3 if long else 1e-3) * 2.0 / n, growth=1.0 if long else 1.3)
 
     child = Child(law)
-
-    def child_turns() -> float:
-        return child.asked[-1][2]
-
     found = _reached(DEMAND, MeasuredStudy(), cast("Isolated[TriedRun]", child), CHOICE)
     assert found.promise.substeps == 6
     assert any(turns == pytest.approx(80.0, rel=0.01) for _, _, turns in child.asked)
@@ -158,20 +161,15 @@ def test_a_run_that_no_step_mends_is_the_last(end: TriedRun | Lost, status: str)
 
 
 def test_a_run_that_comes_apart_at_the_frame_is_not() -> None:
-    found, _ = searched(
-        lambda _, n: (
-            TriedRun(math.inf, "diverged", "came apart") if n < 5 else 1e-3 * (6.0 / n) ** 2
-        )
-    )
+    apart = TriedRun(math.inf, "diverged", "came apart")
+    found, _ = searched(lambda _, n: apart if n < 5 else 1e-3 * (6.0 / n) ** 2)
     assert found.at_frame.seen.status == "diverged"
     assert found.promise.substeps == 6
 
 
 def test_what_a_study_covers_is_not_run_but_its_promise_is() -> None:
     law = second_order(4.9)
-    steps = DEMAND.frames_per_turn
-    known = studied(lambda name, n: law(name, n / steps), steps, 400 * steps)
-    found, child = searched(law, known)
+    found, child = searched(law, studied(lambda name, n: law(name, n / FRAMES), 1))
     assert found.promise.substeps == 5
     assert not found.promise.seen.studied
     assert {(name, n) for name, n, _ in child.asked} == {(FIRST, 5), (SECOND, 5)}
@@ -180,9 +178,7 @@ def test_what_a_study_covers_is_not_run_but_its_promise_is() -> None:
 
 
 def test_a_study_that_says_otherwise_than_a_run_is_left() -> None:
-    steps = DEMAND.frames_per_turn
-    known = studied(lambda name, n: 1e-4, steps, 400 * steps)
-    found, child = searched(second_order(5.0), known)
+    found, child = searched(second_order(5.0), studied(lambda name, n: 1e-4, 1))
     assert found.promise.substeps == 5
     assert not found.at_frame.seen.studied
     assert {n >= 6 for _, n, _ in child.asked} == {True, False}
@@ -191,11 +187,108 @@ def test_a_study_that_says_otherwise_than_a_run_is_left() -> None:
 def test_what_a_study_lacks_is_run() -> None:
     """Of one scene it has nothing, and of the other nothing at the frame itself."""
     law = second_order(4.9)
-    steps = DEMAND.frames_per_turn
-    whole = studied(lambda name, n: law(name, n / steps), 2 * steps, 400 * steps)
-    known = replace(
-        whole, measured={key: each for key, each in whole.measured.items() if key[0] == SECOND}
-    )
+    whole = studied(lambda name, n: law(name, n / FRAMES), 2).measured
+    known = MeasuredStudy(measured={key: whole[key] for key in whole if key[0] == SECOND})
     found, child = searched(law, known)
     assert found.promise.substeps == 5
     assert {n for name, n, _ in child.asked if name == SECOND} == {1, 5}
+
+
+FAST = demanded([load_scene("slider-crank-central")], 50.0, 0.002, 1e-3, 4.0)
+
+
+def series(place: np.ndarray, turns: float = 4.0) -> ErrorSeries:
+    """Errors of place over so many turns."""
+    time_s, none = np.linspace(0.0, turns, place.size), np.zeros_like(place)
+    return ErrorSeries("ok", "", time_s, time_s, place, none, none, none, 1.0, 1.0)
+
+
+@pytest.mark.parametrize("choice", choices(["mujoco", "pymunk"], ()), ids=lambda each: each.label)
+def test_the_error_of_a_run_is_that_of_a_comparison(choice: Choice) -> None:
+    (scene,) = FAST.scenes
+    cell, truth = FAST.cell(scene, choice, 2), Truth(scene)
+    options = {"dt_s": cell.dt_s, "steps": cell.steps, "settings": choice.settings}
+    done = run(scene, truth.start, choice.engine, choice.profile, **options)
+    errors = compare(Beside.of(truth, done))
+    places = [worst.pure for name in named("place") if (worst := errors.worst(name))]
+    assert look(cell).error == pytest.approx(max(places), rel=1e-9)
+
+
+def test_an_error_that_grows_is_seen_and_one_that_comes_back_every_turn_is_not() -> None:
+    turn = np.linspace(0.0, 4.0, 401)
+    steady = _seen(series(1e-3 * np.abs(np.sin(math.tau * turn))))
+    assert (steady.error, steady.grows) == (pytest.approx(1e-3), False)
+    creeps = _seen(series(1e-3 * turn))
+    assert (creeps.error, creeps.grows) == (pytest.approx(4e-3), True)
+    assert creeps.growth == pytest.approx(2.0, rel=0.02)
+    only = _seen(series(np.linspace(0.0, 1.0, 50), turns=1.0))  # a single turn tells none
+    assert math.isnan(only.growth)
+    assert not only.grows
+
+
+@pytest.mark.parametrize(
+    ("change", "status"),
+    [
+        ({"status": "diverged", "reason": "came apart"}, "diverged"),
+        ({"departure": Departure("rod", 0.1, 0.2)}, "branch-changed"),
+        ({"incomplete": "3 samples, not the 4"}, "crashed"),
+    ],
+)
+def test_what_did_not_end_well_has_no_error(change: dict[str, object], status: str) -> None:
+    found = _seen(replace(series(np.zeros(9)), **change))  # type: ignore[arg-type]
+    assert (found.error, found.status) == (math.inf, status)
+    assert found.reason
+
+
+def test_what_an_engine_can_not_hold_is_told_and_not_raised() -> None:
+    wrong = Choice("mujoco", "tuned", "tuned", {"close": "nowhere"})
+    found = look(FAST.cell(FAST.scenes[0], wrong, 1))
+    assert (found.error, found.status) == (math.inf, "unsupported")
+    assert "nowhere" in found.reason
+    assert {*WORDS, "ok"} == {*get_args(Status)}
+    assert TriedRun(1.0).status == "ok"
+
+
+def promised(name: str, substeps: int | None) -> SearchResult:
+    promise = Worst(substeps, FIRST, TriedRun(5e-4)) if substeps else None
+    return SearchResult(Choice("fake", name, "tuned", {}), None, promise, None)
+
+
+def priced(
+    taken: Sequence[tuple[Repeats, Repeats] | None], *found: SearchResult
+) -> tuple[Prices, list[Cell]]:
+    """Prices where cells take so many microseconds, and the cells that were timed."""
+    asked: list[Cell] = []
+
+    def timed(_: object, cells: Sequence[tuple[Cell, float]], rounds: int, *__: object) -> object:
+        assert rounds == ROUNDS
+        asked.extend(cell for cell, _ in cells)
+        return taken
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("reports.advise.prices.timed_in_turns", timed)
+        return prices(DEMAND, found), asked
+
+
+def test_the_dearest_scene_counts_at_the_step_of_the_promise() -> None:
+    every = [promised("a", 4), promised("none", None), promised("b", 1)]
+    taken = [((3.0, 9.0), (2.0, 8.0)), ((5.0,), (4.0,)), ((1.0,), (1.0,)), ((1.5,), (1.5,))]
+    found, asked = priced(taken, *every)
+    first, none, last = found.each
+    assert (first.scene, first.us_per_step) == (SECOND, 4.0)
+    assert first.s_per_s == pytest.approx(4e-6 * 4 / DEMAND.frame_s)
+    assert none is None
+    assert last.s_per_s == pytest.approx(1.5e-6 / DEMAND.frame_s)
+    assert [(cell.scene.name, cell.dt_s, cell.profile) for cell in asked] == [
+        (name, DEMAND.frame_s / n, "tuned") for n in (4, 1) for name in (FIRST, SECOND)
+    ]
+    assert timings(DEMAND, every) == ROUNDS * 4
+
+
+def test_the_noise_is_how_far_two_halves_lie_apart_and_a_lost_scene_leaves_no_price() -> None:
+    half = ((2.0,), (2.2,))
+    assert priced([half, half], promised("a", 1))[0].noise == pytest.approx(0.1)
+    assert priced([half, None], promised("a", 1))[0].each == (None,)
+    nothing, _ = priced([], promised("none", None))
+    assert nothing.each == (None,)
+    assert math.isnan(nothing.noise)
