@@ -1,70 +1,69 @@
-"""Error series: whole turns, size, differencing; and the tracks of what a run logged and lacks."""
+"""Error series: whole turns, size, differencing, tracks of what a run logged and lacks; and the
+last turn of a run, with what it was off by."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from types import ModuleType
 
 import numpy as np
 import pytest
 
+from models.array import Array
 from models.scene import Scene
-from reports.compare.beside import Truth
+from reports.compare.beside import Beside, Truth
+from reports.compare.compare import compare
+from reports.compare.last_turn import trace
 from reports.compare.series import angle_error, length, rate, second_rate, size
 from reports.compare.tracks import tracks
 from sim.engine import Run
 
+Disturbed = Callable[..., Run]
+LINE, LONG = np.linspace(0.0, 1.0, 20), np.linspace(0.0, 20.0, 500)
 
-def test_whole_turns_at_the_start_are_no_error() -> None:
-    reference = np.linspace(0.0, 1.0, 50)
-    assert size(angle_error(reference + 3 * math.tau + 1e-6, reference)).maximum == pytest.approx(
-        1e-6
-    )
+
+def with_one(at: int, value: float) -> Array:
+    series = LINE.copy()
+    series[at] = value
+    return series
+
+
+@pytest.mark.parametrize(
+    ("angle", "reference", "error"),
+    [
+        (LINE + 3 * math.tau + 1e-6, LINE, 1e-6),
+        (np.remainder(LONG + 1e-5 + math.pi, math.tau) - math.pi, LONG, 3 * math.tau - 1e-5),
+        *((with_one(at, LINE[at] + math.tau), LINE, math.tau) for at in (0, 7, 19)),
+    ],
+    ids=["whole turns at the start", "wrapped", "first sample", "one sample", "last sample"],
+)
+def test_whole_turns_are_no_error_at_the_start_alone(
+    angle: Array, reference: Array, error: float
+) -> None:
+    assert size(angle_error(angle, reference)).maximum == pytest.approx(error)
 
 
 def test_a_whole_turn_gained_slowly_on_the_way_is_an_error() -> None:
-    reference = np.zeros(200)
-    engine = np.linspace(0.0, math.tau, 200)
-    assert size(angle_error(engine, reference)).final == pytest.approx(math.tau)
-
-
-def test_a_wrapped_angle_is_an_error_of_whole_turns() -> None:
-    reference = np.linspace(0.0, 20.0, 500)
-    wrapped = np.remainder(reference + 1e-5 + math.pi, math.tau) - math.pi
-    assert size(angle_error(wrapped, reference)).maximum == pytest.approx(3 * math.tau, rel=1e-5)
-
-
-@pytest.mark.parametrize("at", [0, 7, 19])
-def test_a_whole_turn_at_one_sample_alone_is_an_error(at: int) -> None:
-    reference = np.linspace(0.0, 1.0, 20)
-    engine = reference.copy()
-    engine[at] += math.tau
-    assert size(angle_error(engine, reference)).maximum == pytest.approx(math.tau)
+    gained = size(angle_error(np.linspace(0.0, math.tau, 200), np.zeros(200)))
+    assert gained.final == pytest.approx(math.tau)
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 @pytest.mark.parametrize("at", [0, 7, 19])
 def test_one_sample_that_is_no_number_is_never_skipped(bad: float, at: int) -> None:
-    series = np.linspace(0.0, 1.0, 20)
-    series[at] = bad
-    measured = size(series)
+    measured = size(with_one(at, bad))
     assert math.isnan(measured.maximum)
     assert math.isnan(measured.rms)
     assert measured.index == at
 
 
-def test_size_of_a_known_series() -> None:
+def test_size_of_known_series() -> None:
     measured = size(np.array([3.0, -4.0, 0.0, 1.0]))
     assert (measured.maximum, measured.final, measured.index) == (4.0, 1.0, 1)
     assert measured.rms == pytest.approx(math.sqrt(26 / 4))
-
-
-def test_rms_of_huge_errors_does_not_overflow() -> None:
-    assert size(np.array([1e200, 1e200])).rms == pytest.approx(1e200)
-
-
-def test_length_of_vectors_is_euclidean() -> None:
+    assert size(np.array([1e200, 1e200])).rms == pytest.approx(1e200)  # does not overflow
     assert length(np.array([[3.0, 4.0], [0.0, -2.0]])).tolist() == [5.0, 2.0]
 
 
@@ -76,23 +75,60 @@ def test_differences_are_exact_for_a_parabola_and_drop_both_ends() -> None:
 
 
 def test_what_a_run_lacks_is_one_nan_for_all_its_samples(
-    fourbar: Scene, disturbed: Callable[..., Run]
+    fourbar: Scene, disturbed: Disturbed
 ) -> None:
     run = disturbed(fourbar)
     rocker = run.motion.links["rocker"]
-    lacking = {
-        "coupler": rocker,
-        "rocker": replace(rocker, omega=np.full_like(rocker.omega, np.nan)),
-    }
-    part = replace(run, motion=replace(run.motion, links=lacking))
-    reference = Truth(fourbar).at(run.motion.time_s)
-    errors = {
-        track.body: track.error
-        for track in tracks(fourbar, part, reference, ("velocity",))
-        if track.body_kind == "link"
-    }
+    silent = replace(rocker, omega=np.full_like(rocker.omega, np.nan))
+    part = replace(run, motion=replace(run.motion, links={"coupler": rocker, "rocker": silent}))
+    found = tracks(fourbar, part, Truth(fourbar).at(run.motion.time_s), ("velocity",))
+    errors = {track.body: track.error for track in found if track.body_kind == "link"}
     assert errors["coupler"].strides == (8,)
     for body in ("crank", "rocker"):
         assert errors[body].shape == run.motion.time_s.shape
         assert errors[body].strides == (0,)
         assert np.isnan(errors[body]).all()
+
+
+def traced(run: Run, scene: Scene) -> dict[str, Array]:
+    return trace(Truth(scene, bound=False), run)
+
+
+@pytest.mark.parametrize("steps", [720, 1440])
+def test_it_is_the_last_turn_at_equal_parts(
+    fourbar: Scene, disturbed: Disturbed, steps: int
+) -> None:
+    found = traced(disturbed(fourbar, steps=steps), fourbar)
+    assert found["time_s"].size == 91
+    turns = np.diff(found["driver_rad"]) * 90 / math.tau
+    np.testing.assert_allclose(turns, 1.0, rtol=1e-12)
+    assert found["time_s"][-1] == pytest.approx(steps / 720 * fourbar.driver.law.period_s)
+
+
+def test_its_errors_keep_their_signs_and_are_no_larger_than_those_of_the_whole_run(
+    fourbar: Scene, disturbed: Disturbed, fake_engine: ModuleType
+) -> None:
+    run = disturbed(fourbar, fake_engine.turned_link("rocker", lambda _: -1e-3))
+    found = traced(run, fourbar)
+    np.testing.assert_allclose(found["angle.rocker"], -1e-3, rtol=1e-6)
+    for name in ("angle.coupler", "drive"):
+        np.testing.assert_allclose(found[name], 0.0, atol=1e-12)
+    worst = compare(Beside.of(Truth(fourbar), run)).worst("gap")
+    assert 0.0 < np.max(found["gap"]) <= worst.maximum
+
+
+def test_a_late_crank_is_drive_and_not_geometry(
+    fourbar: Scene, disturbed: Disturbed, fake_engine: ModuleType
+) -> None:
+    late = fake_engine.turned_link("crank", lambda _: 1e-3)
+    found = traced(disturbed(fourbar, late), fourbar)
+    np.testing.assert_allclose(found["drive"], 1e-3, rtol=1e-9)
+    assert np.max(np.abs(found["angle.rocker"])) < 1e-12
+    assert np.max(np.abs(found["geometric.angle.rocker"])) > 1e-4
+
+
+def test_a_run_cut_short_gives_what_there_is(fourbar: Scene, disturbed: Disturbed) -> None:
+    found = traced(disturbed(fourbar, steps=100), fourbar)
+    assert 10 <= found["time_s"].size <= 14
+    assert found["time_s"][0] == 0.0
+    assert traced(replace(disturbed(fourbar), motion=None), fourbar) == {}
