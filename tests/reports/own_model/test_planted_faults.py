@@ -1,78 +1,74 @@
-"""Faults planted in a healthy model: each is named with its joint or body, or refused with it."""
+"""Faults planted in a healthy model: each is named with its joint or body, or refused with it. What
+is recommended was seen to gain: contacts off, the integrator, or nothing at all."""
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.own_model.account import Account, Line, checked_line, read_here
-from reports.own_model.request import ModelRequest
-from tests.worlds.own_four_bar import BY_SITES, CLOSED, ROCKER_JOINT, planted
-from tests.worlds.own_models import texts
+from reports.own_model.account import Account
+from reports.own_model.judged import JudgedModel
+from reports.own_model.sentences import NO_HELP, verdict_text
+from reports.own_model.table import show
+from reports.page.model_page import model_page
+from tests.worlds.own_four_bar import BY_SITES, CLOSED, planted, rocker
+from tests.worlds.own_models import FACTS, judged, line, read_text, texts
 
 
 def read(folder: Path, *edits: str) -> Account:
-    path = folder / "model.xml"
-    path.write_text(planted(*edits), encoding="utf-8")
-    return read_here(ModelRequest(path, "A", 10.0, converge=False))
+    return read_text(folder, planted(*edits), converge=False)
 
 
-def rocker(attributes: str) -> tuple[str, str]:
-    return ROCKER_JOINT, f'<joint name="D" {attributes}/>'
-
-
-OFF = 'anchor="0.23373437'
+OFF, SOLREF = 'anchor="0.23373437', 'solref="0.005 0.6"'
+HOME = '<keyframe><key name="home" qpos="0 0 0"/></keyframe>'
+BELT = '<tendon><fixed name="belt" armature="1"><joint joint="D" coef="1"/></fixed></tendon>'
+LIFTED = ('<body name="rocker"', '<body name="rocker" gravcomp="-5"')
 NAMED = {
     "anchor 1 mm off": ((OFF, 'anchor="0.23473437'), "loop C: its pin is 0.001 m off"),
     "hinge 1 mm off": (rocker('pos="0 0 0.001"'), "joint D: its pin is 0.001 m off an end of geom"),
     "a contact that rubs": (
-        ('contype="0" conaffinity="0"', ""),
-        "coupler-bar touches rocker-bar in 100% of the poses",
+        ('contype="0" conaffinity="0"', ""), "coupler-bar touches rocker-bar in 100% of the poses"
     ),
     "a spring": (rocker('stiffness="5"'), "joint D: a spring of 5 N m/rad"),
     "damping": (rocker('damping="0.5"'), "joint D: damping of 0.5 N m s/rad"),
     "a heavy rotor": (rocker('armature="1000"'), "joint D: an armature of 1e+03 kg m^2"),
     "dry friction": (rocker('frictionloss="0.5"'), "joint D: dry friction of 0.5 N m"),
     "solref of a twentieth of a second": (
-        ('solref="0.005 0.6"', 'solref="0.05 1"'),
-        "loop C: solref gives it a time constant of 0.05 s",
+        (SOLREF, 'solref="0.05 1"'), "loop C: solref gives it a time constant of 0.05 s"
     ),
     "solref of a soft spring": (
-        ('solref="0.005 0.6"', 'solref="-100 -1000"'),
+        (SOLREF, 'solref="-100 -1000"'),
         "loop C: solref gives it a stiffness of 100 1/s^2 and a damping of 1000 1/s; MuJoCo's own "
         "are 2500 and 100",
     ),
     "solref of a soft damper": (
-        ('solref="0.005 0.6"', 'solref="-1e6 0"'),
+        (SOLREF, 'solref="-1e6 0"'),
         "loop C: solref gives it a stiffness of 1e+06 1/s^2 and a damping of 0 1/s",
     ),
     "a rotor on a tendon": (
-        ("<equality>", '<tendon><fixed name="belt" armature="1"><joint joint="D" coef="1"/></fixed>'
-         "</tendon><equality>"),
+        ("<equality>", f"{BELT}<equality>"),
         "tendon belt goes over the linkage: an armature of 1, which moves with it",
     ),
     "a weight that is lifted": (
-        ('gravity="0 0 0"', 'gravity="0 0 -9.81"', '<body name="rocker"',
-         '<body name="rocker" gravcomp="-5"'),
+        ('gravity="0 0 0"', 'gravity="0 0 -9.81"', *LIFTED),
         "body rocker: gravcomp lifts it by -5 x its weight",
     ),
     "a limit that is hit": (
-        rocker('limited="true" range="-0.2 0.2"'),
-        "joint D is led past its limit by 32.8 deg",
+        rocker('limited="true" range="-0.2 0.2"'), "joint D is led past its limit by 32.8 deg"
     ),
     "a limit of the driven joint": (
         ('<joint name="A"/>', '<joint name="A" limited="true" range="-3.1416 3.1416"/>'),
         "joint A is led past its limit by 18",
     ),
     "gravity across the plane": (
-        ('gravity="0 0 0"', 'gravity="0 -9.81 0"'),
-        "gravity of 9.81 m/s^2 across the plane",
+        ('gravity="0 0 0"', 'gravity="0 -9.81 0"'), "gravity of 9.81 m/s^2 across the plane"
     ),
     "a ref that opens a keyframe": (
-        ('<joint name="B"/>', '<joint name="B" ref="0.5"/>', "</equality>",
-         '</equality><keyframe><key name="home" qpos="0 0 0"/></keyframe>'),
+        ('<joint name="B"/>', '<joint name="B" ref="0.5"/>', "</equality>", f"</equality>{HOME}"),
         "keyframe home: loop C is open by 0.124 m",
     ),
     "a ref outside the limits": (
@@ -99,39 +95,36 @@ def test_it_is_named_with_its_joint(fault: str, tmp_path: Path) -> None:
         (),
         ('<body name="rocker"', '<body name="rocker" gravcomp="1"'),
         # MuJoCo replaces what is half of each kind, and says so of its own accord.
-        ('solref="0.005 0.6"', 'solref="0.05 -1"'),
-        ('solref="0.005 0.6"', 'solref="-2500 -100"'),
+        (SOLREF, 'solref="0.05 -1"'),
+        (SOLREF, 'solref="-2500 -100"'),
     ],
     ids=["plain", "no gravity to lift", "neither kind of solref", "its own, written directly"],
 )
 def test_what_disturbs_nothing_is_not_named(edits: tuple[str, ...], tmp_path: Path) -> None:
-    assert not read(tmp_path, *edits).disturbances
-
-
-def test_a_healthy_model_is_within(tmp_path: Path) -> None:
-    account = read(tmp_path)
-    assert checked_line(Line(account, "as-written")).verdict == "within"
+    account = read(tmp_path, *edits)
+    assert not account.disturbances
     assert account.profiles == ["as-written", "contacts-off", "recommended"]
 
 
-REFUSED = {
-    "axis 1 degree off the plane": (
-        rocker('axis="0 -0.99985 0.01745"'),
-        "joint D of body rocker: its axis is 1 deg off that of the driven hinge",
-    ),
-    "weld where a pin is meant": (
-        (CLOSED, '<weld name="C" body1="coupler" body2="rocker"/>'),
-        "a weld makes two bodies one: coupler and rocker; use <connect> for a pin",
-    ),
-}
-
-
-@pytest.mark.parametrize("fault", REFUSED)
-def test_it_is_refused_with_its_joint(fault: str, tmp_path: Path) -> None:
-    edits, words = REFUSED[fault]
-    with pytest.raises(CrankcheckError) as refused:
+@pytest.mark.parametrize(
+    ("edits", "words"),
+    [
+        (
+            rocker('axis="0 -0.99985 0.01745"'),
+            "joint D of body rocker: its axis is 1 deg off that of the driven hinge",
+        ),
+        (rocker('axis="0 -1 3.5e-4"'), r"its axis is 0\.02\d* deg off"),
+        (
+            (CLOSED, '<weld name="C" body1="coupler" body2="rocker"/>'),
+            "a weld makes two bodies one: coupler and rocker; use <connect> for a pin",
+        ),
+    ],
+)
+def test_an_axis_that_is_off_and_a_weld_are_refused_with_their_joint(
+    edits: tuple[str, str], words: str, tmp_path: Path
+) -> None:
+    with pytest.raises(CrankcheckError, match=words):
         read(tmp_path, *edits)
-    assert words in str(refused.value)
 
 
 def test_sites_that_do_not_meet_are_told_by_the_pose(tmp_path: Path) -> None:
@@ -153,12 +146,74 @@ def test_the_verdict_shows_it_and_the_line_without_it_does_not(
 ) -> None:
     account = read(tmp_path, *edits)
     assert off in account.profiles
-    written = checked_line(Line(account, "as-written"))
-    assert written.verdict == "out"
-    assert checked_line(Line(account, off)).verdict == "within"
+    assert line(account, "as-written").verdict == "out"
+    assert line(account, off).verdict == "within"
 
 
-def test_an_axis_within_rounding_is_taken(tmp_path: Path) -> None:
-    read(tmp_path, *rocker('axis="0 -1 8.7e-5"'))  # 0.005 deg
-    with pytest.raises(CrankcheckError, match=r"its axis is 0\.02\d* deg off"):
-        read(tmp_path, *rocker('axis="0 -1 3.5e-4"'))
+def test_a_healthy_model_and_one_whose_axis_is_off_within_rounding_are_within(
+    tmp_path: Path,
+) -> None:
+    for edits in ((), rocker('axis="0 -1 8.7e-5"')):  # 0.005 deg
+        assert line(read(tmp_path, *edits), "as-written").verdict == "within"
+
+
+STIFF = 'solref="0.005 0.6" solimp="0.9999 0.9999 0.001 0.5 2"/>'
+SOFT = (' tolerance="1e-16"', "", f"<equality {STIFF}", "")
+RK4 = ' integrator="RK4"'
+PENDULUM = '<body pos="0 3 0"><joint damping="50"/><geom fromto="0 0 0 0.1 0 0"/></body>'
+
+
+def of(*edits: str) -> JudgedModel:
+    return judged(planted(*SOFT, *edits), "A")
+
+
+def test_the_integrator_stays_where_another_one_diverges() -> None:
+    """RK4 can not hold a body beside the linkage that implicitfast damps."""
+    fast = (RK4, ' integrator="implicitfast"', ' gravity="0 0 0"', "")
+    one = of(*fast, "</worldbody>", PENDULUM + "</worldbody>")
+    assert not one.account.recommended.advised.integrator
+    assert 'integrator="RK4"' not in one.patch
+    assert one.lines[-1].status == "ok"
+    assert one.gains(one.lines[-1])[0] > 1.0
+
+
+@pytest.mark.parametrize(
+    ("soft", "off"), [('solref="100 1" solimp="1e-4 1e-4 1"', False), ('solref="0.02 1"', True)]
+)
+def test_contacts_are_off_only_where_that_gains(soft: str, off: bool) -> None:
+    """A ball in the way of the rocker that pushes it, or gives way."""
+    ball = (
+        '<geom name="ball" type="sphere" size="0.02" pos="0.3 0 0.2" contype="1" conaffinity="1" '
+        f'priority="1" {soft}/>'
+    )
+    hit = ('name="rocker-bar"', 'name="rocker-bar" contype="1" conaffinity="1"')
+    one = of("<worldbody>", f"<worldbody>{ball}", *hit)
+    assert "contacts" in {each.kind for each in one.account.disturbances}
+    assert one.account.recommended.advised.contacts_off == off
+    assert ('contact="disable"' in one.patch) == off
+
+
+def test_where_nothing_helps_nothing_is_recommended() -> None:
+    """RK4 is refused beside a flag, and the loops are as stiff as they can be."""
+    stiff = CLOSED.replace("/>", f" {STIFF}")
+    flags = '<flag fwdinv="enable" invdiscrete="enable"/>'
+    option = f' gravity="0 0 0" tolerance="1e-16" iterations="99">{flags}</option>'
+    one = of(CLOSED, stiff, RK4, "", ' gravity="0 0 0"/>', option)
+    assert not one.account.helps
+    assert one.patch == ""
+    assert verdict_text(one).endswith(NO_HELP)
+    stream = io.StringIO()
+    show(Console(file=stream, width=200), one, FACTS)
+    assert "Recommended" not in stream.getvalue()
+    assert NO_HELP.capitalize() in stream.getvalue()
+    page = model_page(one, FACTS)
+    assert "No settings help" in page
+    assert "With them the model" not in page
+
+
+@pytest.mark.parametrize("solver", ['solver="CG" iterations="1"', 'solver="PGS" iterations="2"'])
+def test_the_solver_is_newton_with_iterations_enough(solver: str) -> None:
+    again = CLOSED.replace('name="C"', 'name="again"')
+    one = of(' gravity="0 0 0"/>', f' gravity="0 0 0" {solver}/>', CLOSED, CLOSED + again)
+    assert one.lines[-1].verdict == "within"
+    assert 'solver="Newton" iterations="100"' in one.patch
