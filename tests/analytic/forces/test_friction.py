@@ -17,32 +17,24 @@ from models.errors import CrankcheckError
 from models.files import load_scene, parse_scene, shipped
 from models.forces import Forces
 from models.friction import ConstantFriction, CoulombFriction
+from models.motion import Motion
 from models.scene import Scene
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.analytic.forces.beside import AGREED, apart, out_of_balance, series, turn
-from tests.worlds.loading import loaded
+from tests.worlds.loading import loaded, massless
 from tests.worlds.rubbing import rubbed, rubbed_mechanism
 from tests.worlds.tiers import slowly
 
 PRESS = """
 name = "press"
 source = "a test"
-[ground]
-points = { A = [0.0, 0.0] }
+ground = { points = { A = [0.0, 0.0] } }
+sliders = { piston = { point = "C", on = "ground", mass_kg = 1e-9 } }
+driver = { link = "crank", speed_rad_s = 1.0 }
+loads = { work = { block = "piston", direction_deg = 0.0, force_n = 1000.0 } }
 [links]
 crank = { bar = ["A", "B"], length_m = 0.1, mass_kg = 0.0, inertia_kg_m2 = 0.0 }
 rod = { bar = ["B", "C"], length_m = 0.3, mass_kg = 0.0, inertia_kg_m2 = 0.0 }
-[sliders.piston]
-point = "C"
-on = "ground"
-mass_kg = 1e-9
-[driver]
-link = "crank"
-speed_rad_s = 1.0
-[loads.work]
-block = "piston"
-direction_deg = 0.0
-force_n = 1000.0
 """
 """While the crank turns from 0 to 180 deg the piston comes back against the load."""
 
@@ -51,13 +43,9 @@ def press(**friction: CoulombFriction | ConstantFriction) -> Scene:
     return replace(parse_scene(PRESS, "press"), friction=friction)
 
 
-def at(scene: Scene, phi_deg: float) -> Forces:
-    theta = np.radians([phi_deg])
-    return kinetostatics.forces(scene, solve_driven(scene, theta, np.array(1.0), np.array(0.0)))
-
-
-def lean(phi_deg: float) -> float:
-    return math.asin(0.1 * math.sin(math.radians(phi_deg)) / 0.3)
+def at(scene: Scene, *phi_rad: float, rate: float = 1.0) -> Motion:
+    """The motion of a crank of one speed through angles."""
+    return solve_driven(scene, np.array(phi_rad), np.array(rate), np.array(0.0))
 
 
 @pytest.mark.parametrize("phi_deg", [20.0, 75.0, 90.0, 140.0])
@@ -65,9 +53,11 @@ def lean(phi_deg: float) -> float:
 def test_a_slider_rubs_as_the_textbook_has_it(phi_deg: float, mu: float) -> None:
     """With the rod's lean psi and its force S along it: S cos psi = F + mu S sin psi, so
     S = F / (cos psi - mu sin psi), and the torque is S r sin(phi + psi)."""
-    psi, phi = lean(phi_deg), math.radians(phi_deg)
+    phi = math.radians(phi_deg)
+    psi = math.asin(0.1 * math.sin(phi) / 0.3)
     rod = 1000.0 / (math.cos(psi) - mu * math.sin(psi))
-    found = at(press(piston=CoulombFriction("piston", mu)), phi_deg)
+    scene = press(piston=CoulombFriction("piston", mu))
+    found = kinetostatics.forces(scene, at(scene, phi))
     assert found.torque[0] == pytest.approx(rod * 0.1 * math.sin(phi + psi), rel=1e-12)
     assert abs(found.sliders["piston"].normal[0]) == pytest.approx(rod * math.sin(psi), rel=1e-12)
     assert found.friction["piston"][0] == pytest.approx(mu * rod * math.sin(psi), rel=1e-12)
@@ -81,11 +71,10 @@ def test_the_rod_is_pulled_along_the_tangent_of_two_friction_circles(phi_deg: fl
     mu, radius = 0.2, 0.02
     circle = radius * math.sin(math.atan(mu))
     scene = press(B=CoulombFriction("B", mu, radius), C=CoulombFriction("C", mu, radius))
-    found = at(scene, phi_deg)
-    force = math.hypot(*found.pins["C"]["rod"][0])
     # crank 1 rad/s, rod slower than it: rod turns against the crank, block against the rod
-    motion = solve_driven(scene, np.radians([phi_deg]), np.array(1.0), np.array(0.0))
-    turning = motion.links["rod"].omega[0]
+    motion = at(scene, math.radians(phi_deg))
+    found, turning = kinetostatics.forces(scene, motion), motion.links["rod"].omega[0]
+    force = math.hypot(*found.pins["C"]["rod"][0])
     at_b, at_c = -math.copysign(circle, turning - 1.0), math.copysign(circle, 0.0 - turning)
     # Moments on the rod about B: l x S + couple at B + couple at C = 0.
     span = motion.points["C"].position[0] - motion.points["B"].position[0]
@@ -101,7 +90,7 @@ def test_the_rod_is_pulled_along_the_tangent_of_two_friction_circles(phi_deg: fl
 def test_constant_friction_of_the_drive_adds_to_its_torque() -> None:
     scene = press(A=ConstantFriction("A", 2.0))
     for rate in (1.0, -1.0):
-        motion = solve_driven(scene, np.radians([40.0]), np.array(rate), np.array(0.0))
+        motion = at(scene, math.radians(40.0), rate=rate)
         found = kinetostatics.forces(scene, motion)
         bare = kinetostatics.forces(replace(scene, friction={}), motion)
         assert found.torque[0] - bare.torque[0] == pytest.approx(2.0 * rate, rel=1e-12)
@@ -121,8 +110,7 @@ def test_three_computations_agree_with_friction(name: str) -> None:
     found = kinetostatics.forces(scene, time_s, skip_dead_points=True)
     kept = found.bound is not None and np.isfinite(found.bound.torque)
     some = time_s[kept][::5]
-    found = kinetostatics.forces(scene, some)
-    motion = solve(scene, some)
+    found, motion = kinetostatics.forces(scene, some), solve(scene, some)
     assert len(some) >= 5
     assert apart(found, multipliers.forces(scene, motion)) <= AGREED
     assert out_of_balance(scene, some, found) <= AGREED
@@ -153,8 +141,7 @@ def test_random_mechanisms_agree_with_the_multipliers() -> None:
 
 
 def test_a_fault_in_friction_makes_them_disagree() -> None:
-    scene = press(piston=CoulombFriction("piston", 0.2))
-    scene = replace(scene, gravity_m_s2=(0.0, -9.81))
+    scene = replace(press(piston=CoulombFriction("piston", 0.2)), gravity_m_s2=(0.0, -9.81))
     time_s = np.linspace(0.2, 2.9, 7)
     found = kinetostatics.forces(scene, time_s)
     more = replace(scene, friction={"piston": CoulombFriction("piston", 0.2 + 1e-9)})
@@ -183,8 +170,7 @@ def test_without_a_coefficient_the_forces_are_those_without_friction(every: int)
 def test_a_joint_that_does_not_move_may_rub_either_way() -> None:
     """At the inner dead centre the piston stands: its friction is taken as 0, bounded by mu N."""
     scene = press(piston=ConstantFriction("piston", 50.0))
-    motion = solve_driven(scene, np.array([0.0, 1.0]), np.array(1.0), np.array(0.0))
-    found = kinetostatics.forces(scene, motion)
+    found = kinetostatics.forces(scene, at(scene, 0.0, 1.0))
     assert found.friction["piston"].tolist() == [0.0, 50.0]
     assert found.bound.friction["piston"][0] >= 50.0
     assert found.bound.friction["piston"][1] < 1e-9
@@ -195,7 +181,7 @@ def test_rounding_is_no_motion() -> None:
     """In the outer dead centre the piston moves at 1e-17 m/s, because pi is no float."""
     scene = replace(press(piston=CoulombFriction("piston", 0.2)), gravity_m_s2=(0.0, -9.81))
     heavy = replace(scene.sliders["piston"], mass_kg=10.0)
-    motion = solve_driven(scene, np.array([math.pi]), np.array(1.0), np.array(0.0))
+    motion = at(scene, math.pi)
     assert 0.0 < abs(motion.sliders["piston"].speed[0]) < 1e-15
     found = kinetostatics.forces(replace(scene, sliders={"piston": heavy}), motion)
     assert found.friction["piston"][0] == 0.0
@@ -203,18 +189,14 @@ def test_rounding_is_no_motion() -> None:
 
 
 def test_friction_alone_asks_for_a_torque() -> None:
-    scene = press(A=ConstantFriction("A", 2.0))
-    sliders = {"piston": replace(scene.sliders["piston"], mass_kg=0.0)}
-    links = {n: replace(k, mass_kg=0.0, inertia_kg_m2=0.0) for n, k in scene.links.items()}
-    scene = replace(scene, links=links, sliders=sliders, loads={})
+    scene = replace(massless(press(A=ConstantFriction("A", 2.0))), loads={})
     assert kinetostatics.forces(scene, [0.3]).torque == pytest.approx([2.0])
 
 
 def test_in_a_dead_point_friction_is_no_number() -> None:
     scene = load_scene("fourbar-double-rocker")
     scene = replace(scene, friction={"C": ConstantFriction("C", 1.0)})
-    end = solve_driven(scene, np.array([reach(scene)[0][0]]), np.array(1.0), np.array(0.0))
-    found = kinetostatics.forces(scene, end, skip_dead_points=True)
+    found = kinetostatics.forces(scene, at(scene, reach(scene)[0][0]), skip_dead_points=True)
     assert np.isnan(found.friction["C"]).all()
     assert np.isinf(found.bound.friction["C"]).all()
 
@@ -233,13 +215,10 @@ def test_redundant_links_take_constant_friction_alone() -> None:
         kinetostatics.forces(rubbing, [0.1])
 
 
-@pytest.mark.parametrize(
-    ("joint", "words"),
-    [("Q", "friction.Q: 0 bodies meet there, and two rub .* use one of A, B, C, piston")],
-)
-def test_friction_that_is_not_there_is_refused(joint: str, words: str) -> None:
+def test_friction_that_is_not_there_is_refused() -> None:
+    words = "friction.Q: 0 bodies meet there, and two rub .* use one of A, B, C, piston"
     with pytest.raises(CrankcheckError, match=words):
-        kinetostatics.forces(press(**{joint: ConstantFriction(joint, 1.0)}), [0.1])
+        kinetostatics.forces(press(Q=ConstantFriction("Q", 1.0)), [0.1])
 
 
 def test_stretches_joined_are_the_whole_friction_too() -> None:

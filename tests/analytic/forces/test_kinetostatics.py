@@ -109,23 +109,6 @@ def test_a_hanging_weight_pulls_its_pin_down() -> None:
     np.testing.assert_array_equal(found.pins["A"]["ground"], -found.pins["A"]["crank"])
 
 
-def test_force_on_a_central_slider_crank_is_that_of_the_textbook() -> None:
-    """Massless rod, a force on the piston: side thrust F tan(psi), torque F r sin(phi + psi) /
-    cos(psi), with the rod's lean psi (Shigley and Uicker, Theory of Machines, slider-crank)."""
-    sliders = {n: replace(s, mass_kg=1e-9) for n, s in CENTRAL.sliders.items()}
-    gas = Load("gas", "block C", "C", Constant(1000.0), direction_rad=np.pi)
-    scene = replace(massless(CENTRAL), sliders=sliders, loads={"gas": gas})
-    phi = np.radians(np.linspace(10.0, 350.0, 18))
-    found = forces(scene, at(scene, *phi, speed=1e-3))
-    r, length = scene.links["crank"].points["B"][0], scene.links["rod"].points["C"][0]
-    psi = np.arcsin(r * np.sin(phi) / length)
-    torque = -1000.0 * r * np.sin(phi + psi) / np.cos(psi)
-    thrust = 1000.0 * np.abs(np.tan(psi))
-    np.testing.assert_allclose(found.torque, torque, atol=1e-9)
-    np.testing.assert_allclose(np.abs(found.sliders["C"].normal), thrust, atol=1e-9)
-    np.testing.assert_allclose(found.sliders["C"].moment, 0.0, atol=1e-9)
-
-
 def test_a_scene_without_mass_has_the_forces_of_its_loads() -> None:
     push = Load("push", "rocker", "C", Constant(1.0))
     scene = replace(massless(load_scene("fourbar-lecture-1")), loads={"push": push})

@@ -65,6 +65,13 @@ def steep(mu: float = 0.5) -> Scene:
     return parse_scene(STEEP.replace("mu = 0.5", f"mu = {mu}"), "steep")
 
 
+def helped(scene: Scene) -> Scene:
+    """Its loads with the motion."""
+    turned = {n: replace(one, direction_rad=one.direction_rad + math.pi)
+              for n, one in scene.loads.items()}  # fmt: skip
+    return replace(scene, loads=turned)
+
+
 def limit(mu: float) -> float:
     """The crank angle from the dead point at which psi = 90 deg - atan(mu), sin psi = r sin / l."""
     return math.asin(0.11 / 0.1 * math.sin(math.pi / 2 - math.atan(mu)))
@@ -72,12 +79,11 @@ def limit(mu: float) -> float:
 
 @pytest.mark.parametrize("mu", [0.4591, 0.5, 1.0])
 def test_a_slider_crank_locks_where_the_rod_leans_by_the_complement(mu: float) -> None:
-    found = self_locking(steep(mu))
-    begin = limit(mu)
-    told = [(each.begin_rad, each.end_rad) for each in found]
-    wanted = [(begin, math.pi - begin), (math.pi + begin, math.tau - begin)]
+    found, begin = self_locking(steep(mu)), limit(mu)
+    told = [end for each in found for end in (each.begin_rad, each.end_rad)]
+    wanted = [begin, math.pi - begin, math.pi + begin, math.tau - begin]
     assert all(each.locks for each in found)
-    assert np.ravel(told) == pytest.approx(np.ravel(wanted), abs=1e-13)
+    assert told == pytest.approx(wanted, abs=1e-13)
     ends = math.degrees(begin), 180.0 - math.degrees(begin)
     assert found[0].words == f"locks itself from {ends[0]:.6g} to {ends[1]:.6g} deg"
 
@@ -112,12 +118,10 @@ def test_pins_that_rub_move_the_limit_by_the_lean_of_the_tangent(
 
 def test_inertia_moves_no_limit() -> None:
     """Which is the rod's angle as long as the load decides the sign of the normal force."""
-    scene = parse_scene(HEAVY, "heavy")
-    begin = limit(0.5)
-    found = self_locking(scene)
+    found = self_locking(parse_scene(HEAVY, "heavy"))
     assert [each.locks for each in found] == [True, True]
-    assert found[0].begin_rad == pytest.approx(begin, abs=1e-12)
-    assert found[1].end_rad == pytest.approx(math.tau - begin, abs=1e-12)
+    assert found[0].begin_rad == pytest.approx(limit(0.5), abs=1e-12)
+    assert found[1].end_rad == pytest.approx(math.tau - limit(0.5), abs=1e-12)
 
 
 def test_with_less_friction_it_never_locks() -> None:
@@ -129,19 +133,15 @@ def test_with_less_friction_it_never_locks() -> None:
 
 
 def test_with_a_load_that_helps_it_may_jam() -> None:
-    scene = steep()
-    loads = {n: replace(one, direction_rad=one.direction_rad + math.pi)
-             for n, one in scene.loads.items()}  # fmt: skip
-    found = self_locking(replace(scene, loads=loads))
+    found = self_locking(helped(steep()))
     assert [each.locks for each in found] == [False, False]
     assert found[0].begin_rad == pytest.approx(limit(0.5), abs=1e-13)
     assert found[0].words.startswith("may jam from 79.69")
 
 
 def test_a_range_goes_on_over_the_start_of_the_cycle() -> None:
-    scene = steep()
-    law = replace(scene.driver.law, start_rad=math.radians(90.0))
-    found = self_locking(replace(scene, driver=Driver("crank", law)))
+    law = replace(steep().driver.law, start_rad=math.radians(90.0))
+    found = self_locking(replace(steep(), driver=Driver("crank", law)))
     ends = sorted((each.begin_rad, each.end_rad) for each in found)
     begin = limit(0.5)
     assert ends[0] == pytest.approx((math.pi + begin, math.tau - begin), abs=1e-13)
@@ -149,9 +149,8 @@ def test_a_range_goes_on_over_the_start_of_the_cycle() -> None:
 
 
 def test_what_locks_everywhere_is_one_range() -> None:
-    scene = steep(5.0)
     law = Oscillating(math.radians(90.0), math.radians(20.0), 2.0)
-    found = self_locking(replace(scene, driver=Driver("crank", law)))
+    found = self_locking(replace(steep(5.0), driver=Driver("crank", law)))
     assert found
     assert all(each.locks for each in found)
 
@@ -162,32 +161,30 @@ def test_locked_instants_are_refused_by_their_angle_or_left_out() -> None:
         kinetostatics.forces(scene, [math.radians(75.0)])
     time_s = np.radians([0.0, 75.0])
     found = kinetostatics.forces(scene, time_s, skip_dead_points=True)
-    assert np.isnan(found.torque).tolist() == [False, True]
-    assert np.isnan(found.friction["piston"]).tolist() == [False, True]
-    assert np.isinf(found.bound.torque).tolist() == [False, True]
-    assert np.isinf(found.bound.friction["piston"]).tolist() == [False, True]
+    for value, bound in (
+        (found.torque, found.bound.torque),
+        (found.friction["piston"], found.bound.friction["piston"]),
+    ):
+        assert np.isnan(value).tolist() == np.isinf(bound).tolist() == [False, True]
     assert found.friction_solution.solutions.tolist() == [1, 0]
 
 
 def test_beside_locking_the_torque_grows_past_all_bounds_and_so_does_its_own() -> None:
-    scene = steep()
-    time_s = limit(0.5) - math.radians(10.0) - np.array([1e-2, 1e-5, 1e-8])
-    found = kinetostatics.forces(scene, time_s)
+    phi = limit(0.5) - np.array([1e-2, 1e-5, 1e-8])
+    found = kinetostatics.forces(steep(), phi - math.radians(10.0))
     assert np.all(np.diff(np.abs(found.torque)) > 0.0)
     assert np.all(np.diff(found.bound.torque) > 0.0)
     assert np.all(found.bound.torque < 1e-3 * np.abs(found.torque))
-    psi = np.arcsin(np.sin(time_s + math.radians(10.0)) / 1.1)
+    psi = np.arcsin(np.sin(phi) / 1.1)
     rod = 100.0 / (np.cos(psi) - 0.5 * np.sin(psi))
-    turned = rod * 0.1 * np.sin(time_s + math.radians(10.0) + psi)
-    assert np.abs(found.torque) == pytest.approx(turned, rel=1e-4)
+    assert np.abs(found.torque) == pytest.approx(rod * 0.1 * np.sin(phi + psi), rel=1e-4)
 
 
 def test_efficiency_of_a_press_lies_between_0_and_1() -> None:
-    scene = steep(0.1)
     rubs = {"A": 0.02, "B": 0.015, "C": 0.01}
     pins = {joint: CoulombFriction(joint, 0.1, radius) for joint, radius in rubs.items()}
-    scene = replace(scene, friction={**scene.friction, **pins})
-    found = efficiency(scene)
+    scene = steep(0.1)
+    found = efficiency(replace(scene, friction={**scene.friction, **pins}))
     assert found.locked == ()
     assert 0.5 < found.cycle < 1.0
     assert found.put_in == pytest.approx(found.useful + found.wasted, rel=1e-12)
@@ -207,23 +204,17 @@ def test_without_friction_nothing_is_lost() -> None:
 
 def test_an_instantaneous_efficiency_is_that_of_the_textbook() -> None:
     """Torque without friction over that with it: 1 - mu tan psi, psi the rod's lean."""
-    scene = steep(0.1)
-    found = efficiency(scene, 90)
-    psi = np.arcsin(np.sin(found.theta) / 1.1)
-    wanted = 1.0 - 0.1 * np.abs(np.tan(psi))
+    found = efficiency(steep(0.1), 90)
+    wanted = 1.0 - 0.1 * np.abs(np.tan(np.arcsin(np.sin(found.theta) / 1.1)))
     assert found.instantaneous == pytest.approx(wanted, abs=2e-4)
 
 
 def test_where_its_loads_drive_it_a_machine_has_no_efficiency() -> None:
-    scene = steep(0.1)
-    loads = {n: replace(one, direction_rad=one.direction_rad + math.pi)
-             for n, one in scene.loads.items()}  # fmt: skip
-    found = efficiency(replace(scene, loads=loads))
+    found = efficiency(helped(steep(0.1)))
     assert math.isnan(found.cycle)
     assert found.useful < 0.0
     assert found.put_in == pytest.approx(found.useful + found.wasted, rel=1e-12)
-    idle = efficiency(replace(scene, loads={}))
-    assert math.isnan(idle.cycle)
+    assert math.isnan(efficiency(replace(steep(0.1), loads={})).cycle)
 
 
 def test_of_a_machine_that_locks_no_work_is_told() -> None:
