@@ -32,41 +32,26 @@ ODD: list[object] = [
 """Values that hardly any argument takes."""
 
 
-def calls(
-    ran: crankcheck.Simulation, folder: Path
-) -> dict[str, tuple[Callable[..., object], dict]]:
+def calls(ran: crankcheck.Simulation, folder: Path) -> Mapping[str, tuple[Callable, dict]]:
     """Each function with arguments that are right."""
     coarse = {"turns": 1, "steps_per_turn": 90}
+    one = {**coarse, "scene": SCENE, "engine": "mujoco", "profile": "tuned", "settings": None}
     grid = {**coarse, "scenes": SCENE, "folder": folder / "study", "engines": "mujoco",
             "profiles": "tuned", "timing": False, "jobs": 1}  # fmt: skip
     told = {"scene": SCENE, "target": 10.0, "step_s": None, "map": None, "require": ()}
     return {
         "solve": (crankcheck.solve, {"scene": SCENE, "time_s": 0.1, "links": (), "bound": True}),
-        "solve_driven": (
-            crankcheck.solve_driven,
-            {"scene": SCENE, "theta": 1.0, "omega": 1.0, "alpha": 0.0, "time_s": 0.0},
-        ),
-        "run": (
-            crankcheck.run,
-            {**coarse, "scene": SCENE, "engine": "mujoco", "profile": "tuned", "every": 1,
-             "drive": "servo", "settings": None},
-        ),
-        "check": (
-            crankcheck.check,
-            {**coarse, "scene": SCENE, "engine": "mujoco", "profile": "tuned", "settings": None,
-             "tolerance": None, "converge": False},
-        ),
-        "compare": (
-            crankcheck.compare,
-            {"scene": SCENE, "what": LOG, "step_s": None, "drive": "scene", "map": None},
-        ),
+        "solve_driven": (crankcheck.solve_driven, {
+            "scene": SCENE, "theta": 1.0, "omega": 1.0, "alpha": 0.0, "time_s": 0.0}),
+        "run": (crankcheck.run, {**one, "every": 1, "drive": "servo"}),
+        "check": (crankcheck.check, {**one, "tolerance": None, "converge": False}),
+        "compare": (crankcheck.compare, {
+            "scene": SCENE, "what": LOG, "step_s": None, "drive": "scene", "map": None}),
         "judge": (crankcheck.judge, {**told, "log": LOG, "drive": "scene"}),
         "judge a run": (crankcheck.judge, {**told, "log": ran, "drive": "scene"}),
         "assert_within": (assert_within, {**told, "log": LOG, "angle": 10.0}),
-        "sweep": (
-            crankcheck.sweep,
-            {**grid, "settings": None, "study": None, "limit_s": 60.0, "memory_gb": 2.0},
-        ),
+        "sweep": (crankcheck.sweep, {
+            **grid, "settings": None, "study": None, "limit_s": 60.0, "memory_gb": 2.0}),
         "report": (crankcheck.report, {"folder": folder / "none", "output": folder / "a.md"}),
     }  # fmt: skip
 
@@ -122,8 +107,8 @@ def error_of(call: Callable[[], object]) -> crankcheck.CrankcheckError | None:
 @pytest.mark.parametrize(
     ("call", "told"),
     [
-        (lambda: crankcheck.load_scene(None), "scene: found None; give a shipped name"),  # type: ignore[arg-type]
-        (lambda: crankcheck.solve(7), "scene: found 7; give a shipped name, the path"),  # type: ignore[arg-type]
+        (lambda: crankcheck.load_scene(None), "scene: found None; give a shipped name"),
+        (lambda: crankcheck.solve(7), "scene: found 7; give a shipped name, the path"),
         (lambda: crankcheck.solve(SCENE, links="rockr"), "link 'rockr' is not in the scene"),
         (lambda: crankcheck.solve(SCENE, [[0.0]]), r"time_s of shape \(1, 1\); give one dimension"),
         (lambda: crankcheck.run(SCENE, "mujocco"), "engine 'mujocco': unknown; did you mean"),
@@ -136,13 +121,13 @@ def error_of(call: Callable[[], object]) -> crankcheck.CrankcheckError | None:
             "^dt_s and steps_per_turn: both set the step; give one of them$",
         ),
         (lambda: crankcheck.run(SCENE, turns=-1), "^turns -1: give a number above 0, in turns"),
-        (lambda: crankcheck.run(SCENE, turns="2"), "^turns: found '2'; give a number above 0"),  # type: ignore[arg-type]
+        (lambda: crankcheck.run(SCENE, turns="2"), "^turns: found '2'; give a number above 0"),
         (lambda: crankcheck.run(SCENE, every=0), "every: found 0; give a whole number, at least 1"),
         (lambda: crankcheck.run(SCENE, dt_s=1.0), "^dt_s 1: 0.628 steps in a turn of fourbar"),
         (lambda: crankcheck.check(SCENE, drive="free"), "^drive 'free': unknown; use prescribed"),
         (lambda: crankcheck.check(SCENE, turns=0.01), "^steps_per_turn 720 turns 0.01: 8 steps"),
         (lambda: crankcheck.check(SCENE, tolerance={"angel": 1}), "did you mean angle?"),
-        (lambda: crankcheck.check(SCENE, tolerance=1e-3), "tolerance: found 0.001; give a dict"),  # type: ignore[arg-type]
+        (lambda: crankcheck.check(SCENE, tolerance=1e-3), "tolerance: found 0.001; give a dict"),
         (lambda: crankcheck.judge(SCENE, LOG), "no limit for angle: .* give target 1e-3"),
         (lambda: crankcheck.judge(SCENE, LOG, target=0), "^target 0: give a number above 0"),
         (lambda: crankcheck.judge(SCENE, LOG, target=1, require="x"), "^require 'x': neither"),
@@ -150,7 +135,7 @@ def error_of(call: Callable[[], object]) -> crankcheck.CrankcheckError | None:
         (lambda: crankcheck.judge(SCENE, LOG, target=1, map={"time": 1}), "^map: time: found 1"),
         (lambda: crankcheck.judge(SCENE, "log.xml", target=1), "log log.xml: found '.xml'; use"),
         (lambda: assert_within(SCENE, LOG, angel=1e-3), "^angel: it is no quantity; did you mean"),
-        (lambda: crankcheck.judge(SCENE, LOG, map=[], target=1), "^map: found a list; .* a dict"),  # type: ignore[call-overload]
+        (lambda: crankcheck.judge(SCENE, LOG, map=[], target=1), "^map: found a list; .* a dict"),
         (lambda: crankcheck.judge(SCENE, {}, target=1), "^the log: found no columns; give times"),
         (lambda: crankcheck.judge(SCENE, LOG, target={"x": 1}), "^target 'x': it is no quantity"),
         (lambda: crankcheck.sweep(SCENE, __file__), "^folder .*.py is a file; name a folder"),
@@ -161,20 +146,17 @@ def error_of(call: Callable[[], object]) -> crankcheck.CrankcheckError | None:
         (lambda: crankcheck.report("x", "a.pdf"), "^output a.pdf: found '.pdf'; use .html"),
     ],
 )
-def test_messages_say_what_was_found_and_what_would_work(
-    call: Callable[[], object], told: str
-) -> None:
+def test_messages_say_what_was_found_and_what_would_work(call: Callable, told: str) -> None:
     with pytest.raises(crankcheck.CrankcheckError, match=told):
         call()
 
 
 def test_numbers_of_numpy_and_paths_are_taken(tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"
-    home = shipped()[SCENE]
-    path.write_bytes(home.read_bytes())
+    path.write_bytes(shipped()[SCENE].read_bytes())
     options = {"turns": np.float32(0.5), "steps_per_turn": np.int64(90), "every": np.uint8(2)}
-    settings: Mapping[str, object] = {"iterations": np.int32(50), "tolerance": np.float64(1e-10)}
-    done = crankcheck.run(path, settings=settings, **options)  # type: ignore[arg-type]
+    settings = {"iterations": np.int32(50), "tolerance": np.float64(1e-10)}
+    done = crankcheck.run(path, settings=settings, **options)
     assert (done.status, done.steps, done.every) == ("ok", 45, 2)
     assert done.asked["iterations"] == 50
     assert crankcheck.compare(crankcheck.load_scene(path), done).worst("angle") is not None
@@ -183,16 +165,11 @@ def test_numbers_of_numpy_and_paths_are_taken(tmp_path: Path) -> None:
 def test_what_is_of_another_scene_is_refused(
     ran: crankcheck.Simulation, lagging: crankcheck.Simulation
 ) -> None:
-    for call in (
-        partial(crankcheck.compare, SCENE, lagging),
-        partial(crankcheck.judge, SCENE, lagging),
-        partial(assert_within, SCENE, lagging),
-    ):
+    for call in (crankcheck.compare, crankcheck.judge, assert_within):
         with pytest.raises(crankcheck.CrankcheckError, match="is of slotted-lever, not of four"):
-            call()
-    scene = ran.mechanism
-    law = scene.driver.law.turned(0.1)
-    other = replace(scene, driver=replace(scene.driver, law=law))
+            call(SCENE, lagging)
+    driver = ran.mechanism.driver
+    other = replace(ran.mechanism, driver=replace(driver, law=driver.law.turned(0.1)))
     with pytest.raises(crankcheck.CrankcheckError, match=f"is of another {SCENE}, not"):
         crankcheck.judge(other, ran)
     with pytest.raises(crankcheck.CrankcheckError, match=f"motion is of {SCENE}, not of"):
@@ -202,18 +179,16 @@ def test_what_is_of_another_scene_is_refused(
 def test_a_run_says_itself_what_a_log_has_to_be_told(ran: crankcheck.Simulation) -> None:
     for option, value in {"step_s": 1e-3, "drive": "fitted", "map": {}, "require": "angle"}.items():
         with pytest.raises(crankcheck.CrankcheckError, match=f"^{option}: it is of logs, and this"):
-            crankcheck.judge(SCENE, ran, **{option: value})  # type: ignore[call-overload]
+            crankcheck.judge(SCENE, ran, **{option: value})
 
 
 def spoilt(motion: crankcheck.Motion, **change: object) -> crankcheck.Motion:
     """A motion, as a caller may have made it, with something of its rocker or its times changed."""
-    links = dict(motion.links)
-    if "theta" in change:
-        links["rocker"] = replace(links["rocker"], theta=change["theta"])  # type: ignore[arg-type]
-    if "name" in change:
-        links[str(change["name"])] = links["rocker"]
+    rocker = motion.links["rocker"]
+    rocker = replace(rocker, theta=change.get("theta", rocker.theta))
+    links = {**motion.links, "rocker": rocker, change.get("name", "rocker"): rocker}
     time_s = change.get("time_s", motion.time_s)
-    return crankcheck.Motion(time_s, links, motion.points, motion.sliders)  # type: ignore[arg-type]
+    return crankcheck.Motion(time_s, links, motion.points, motion.sliders)
 
 
 @pytest.mark.parametrize(
@@ -232,9 +207,3 @@ def test_a_motion_of_other_shapes_is_refused(change: dict[str, object], told: st
     motion = spoilt(crankcheck.solve(SCENE), **change)
     with pytest.raises(crankcheck.CrankcheckError, match=told):
         crankcheck.judge(SCENE, motion, target=1e-3)
-
-
-@pytest.mark.parametrize("far_s", [1e300, -1e8])
-def test_times_that_have_lost_their_place_in_a_turn_are_refused(far_s: float) -> None:
-    with pytest.raises(crankcheck.CrankcheckError, match=f"time_s: t = .* turns of {SCENE}"):
-        crankcheck.solve(SCENE, [0.0, far_s])

@@ -1,0 +1,155 @@
+"""`crankcheck.solve`: of what is driven, of what is let go, and of elastic links."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import crankcheck
+from analytic.free.release import release
+from models.files import shipped
+
+SCENE, FREE, ELASTIC = "fourbar-lecture-1", "fourbar-swing", "fourbar-elastic"
+
+
+def test_a_solution_is_a_motion_of_the_times_asked_for() -> None:
+    solution = crankcheck.solve(SCENE, [0.2, 0.1])
+    assert isinstance(solution, crankcheck.Motion)
+    assert solution.time_s.tolist() == [0.2, 0.1]
+    assert crankcheck.solve(SCENE).time_s.size == 361
+    assert solution.scene is crankcheck.solve(SCENE).scene
+    one = crankcheck.solve_driven(SCENE, np.float64(0.5), 1, 0)
+    assert one.state().theta["crank"] == pytest.approx(0.5)
+    assert "theta" in str(one)
+    assert "rocker" in str(crankcheck.solve(SCENE, [0, 0.1], links="rocker", points=(), sliders=()))
+    assert "mobility 1" in str(crankcheck.solve(SCENE, 0.0, links=(), points="C"))
+
+
+def test_arrays_are_the_callers_own() -> None:
+    """Nothing that is worked out later looks at them, and they are not those that were given."""
+    time_s = np.array([0.1, 0.2])
+    first = crankcheck.solve(SCENE, time_s)
+    kept = first.links["rocker"].theta.copy()
+    first.links["rocker"].theta[:] = first.points["C"].position[:] = first.time_s[:] = 0.0
+    assert time_s.tolist() == [0.1, 0.2]
+    assert crankcheck.solve(SCENE, time_s).links["rocker"].theta.tolist() == kept.tolist()
+    log = {"time_s": time_s, "rocker_rad": kept}
+    assert crankcheck.judge(SCENE, log, target=1e-12).verdict == "within"
+
+
+def test_names_from_files_are_no_html(tmp_path: Path) -> None:
+    path, name = tmp_path / "own.toml", "<b onclick=alert(1)>[red]x[/red]</b>"
+    text = shipped()[SCENE].read_text(encoding="utf-8")
+    path.write_text(re.sub("^source.*", f'source = "{name}"', text, flags=re.M), encoding="utf-8")
+    solution = crankcheck.solve(path, [0.0, 0.1])
+    assert "<b onclick" not in solution._repr_html_()
+    assert name in str(solution).replace("\n", "")
+
+
+def test_of_what_is_let_go_it_is_the_free_motion_over_the_scenes_duration() -> None:
+    solution = crankcheck.solve("fourbar-pulse")
+    assert isinstance(solution, crankcheck.FreeSolution)
+    assert np.array_equal(solution.time_s, np.linspace(0.0, 5.0, 361))
+    free = release(crankcheck.load_scene("fourbar-pulse"), 5.0).at(solution.time_s)
+    assert np.array_equal(solution.links["crank"].omega, free.links["crank"].omega)
+    assert solution.bound is not None
+    assert solution.sensitivity[-1] == pytest.approx(12.5, rel=0.01)
+    assert np.all(solution.error_rad < 1e-10)
+    frame = solution.frame()
+    assert len(frame) == 361
+    assert frame["kinetic_j"].iloc[-1] == pytest.approx(frame["work_j"].iloc[-1], rel=1e-9)
+    assert "13 of 361 samples" in str(solution)
+    assert "<svg" in solution._repr_html_()
+
+
+def test_of_free_motion_there_is_what_was_asked_for_from_the_start_on() -> None:
+    solution = crankcheck.solve(FREE, [0.2, 0.1], links="rocker", points=(), bound=False)
+    assert list(solution.links) == ["rocker"]
+    assert not solution.points
+    assert solution.bound is None
+    whole = crankcheck.solve(FREE, [0.1, 0.2]).links["rocker"].theta
+    assert solution.links["rocker"].theta == pytest.approx(whole[::-1], abs=1e-11)
+    scene = crankcheck.load_scene(FREE)
+    law = replace(scene.driver.law, duration_s=0.1)
+    start = crankcheck.solve(replace(scene, driver=replace(scene.driver, law=law)), 0.0)
+    assert start.links["crank"].omega[0] == pytest.approx(0.0, abs=1e-15)
+    assert start.links["crank"].alpha[0] == pytest.approx(-77.20667, rel=1e-6)
+
+
+def test_of_elastic_links_it_is_the_elastic_motion_beside_the_rigid_one() -> None:
+    solution = crankcheck.solve(ELASTIC)
+    assert isinstance(solution, crankcheck.ElasticSolution)
+    assert solution.time_s.size == 361
+    middle = solution.elastic["coupler"].middle
+    assert np.max(np.abs(middle)) == pytest.approx(1.05e-3, rel=0.01)
+    assert middle[-1] == pytest.approx(middle[0], abs=1e-13)  # it comes back
+    apart = solution.links["rocker"].theta - solution.rigid.links["rocker"].theta
+    assert 1e-6 < np.max(np.abs(apart)) < 1e-5
+    assert solution.forces is None
+    assert "coupler_deflection_m" in solution.frame()
+    assert "13 of 361 samples" in str(solution)
+    assert "<svg" in solution._repr_html_()
+
+
+def test_of_elastic_motion_there_is_what_was_asked_for() -> None:
+    forces = crankcheck.solve(ELASTIC, [0.2, -0.1], links="coupler", points=(), forces=True)
+    assert list(forces.links) == list(forces.elastic) == ["coupler"]
+    assert not forces.points
+    assert forces.forces is not None
+    assert not crankcheck.solve(ELASTIC, 0.1, links="rocker", modes=1).elastic
+    linear = crankcheck.solve(ELASTIC, [0.2], elements=2, linear=True)
+    assert linear.elastic["coupler"].extension == pytest.approx(0.0, abs=1e-15)
+
+
+def test_a_straight_start_rings() -> None:
+    """On one mode, and a tenth of a turn: a few tenths of a second."""
+    solution = crankcheck.solve(ELASTIC, np.linspace(0.0, 0.085, 50), shape="straight", modes=1)
+    middle = solution.elastic["coupler"].middle
+    assert abs(middle[0]) < 1e-18
+    assert np.max(np.abs(middle)) > 1.2e-3
+    assert "Starts straight: it rings" in " ".join(str(solution).split())
+
+
+@pytest.mark.parametrize(
+    ("name", "asked"),
+    [(ELASTIC, {"elements": 1, "shape": "straight"}), ("fourbar-elastic-pulse", {"modes": 1})],
+)
+def test_the_coarsest_of_all_descriptions_is_not_held_to_itself(
+    name: str, asked: dict[str, object]
+) -> None:
+    (told,) = crankcheck.solve(name, [0.0, 0.02], **asked).certainty
+    found = re.search(r"next finer description.*deflections are off by about (\S+) of", told)
+    assert found, told
+    assert float(found[1]) > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("name", "asked", "said"),
+    [
+        (FREE, {"time_s": [-0.1, 0.1]}, "it was let go at 0"),
+        (FREE, {"time_s": 0.1, "forces": True}, "forces=True: fourbar-swing is let go"),
+        (FREE, {"time_s": 0.1, "links": "rokcer"}, "rokcer"),
+        (FREE, {"time_s": np.nan}, "finite"),
+        (FREE, {"shape": "straight"}, "shape: fourbar-swing has no elastic"),
+        (SCENE, {"modes": 3}, "modes: fourbar-lecture-1 has no elastic"),
+        (ELASTIC, {"shape": "straight", "time_s": [-0.1, 0.1]}, "starts at 0, straight"),
+        (ELASTIC, {"modes": 2.5}, "modes: found"),
+        (ELASTIC, {"modes": 2, "elements": 2}, "elements with modes"),
+        (ELASTIC, {"shape": 3}, "shape 3: unknown"),
+        (ELASTIC, {"linear": "yes"}, "linear: found"),
+        (ELASTIC, {"links": "rokcer"}, "rokcer"),
+    ],
+)
+def test_what_can_not_be_asked_is_refused(name: str, asked: dict[str, object], said: str) -> None:
+    with pytest.raises(crankcheck.CrankcheckError, match=said):
+        crankcheck.solve(name, **asked)
+
+
+@pytest.mark.parametrize("far_s", [1e300, -1e8])
+def test_times_that_have_lost_their_place_in_a_turn_are_refused(far_s: float) -> None:
+    with pytest.raises(crankcheck.CrankcheckError, match=f"time_s: t = .* turns of {SCENE}"):
+        crankcheck.solve(SCENE, [0.0, far_s])
