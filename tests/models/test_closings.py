@@ -33,18 +33,15 @@ def closed(scene: Scene, *close: str) -> list[str]:
     return [closure.point for closure in plan(scene, start_of(scene), close).closures]
 
 
-@pytest.mark.parametrize(
-    ("name", "masses", "point"),
-    [
-        ("slider-crank-offset", {}, "C"),
-        ("slider-crank-offset", {"rod": 1e3}, "B"),  # between the crank, which is driven, and it
-        ("slider-crank-offset", {"C": 1e3}, "B"),
-        ("slider-crank-offset", {"crank": 1e3}, "B"),
-        ("fourbar-lecture-1", {"rocker": 1e3}, "D"),
-        ("fourbar-lecture-1", {"coupler": 1e3}, "B"),
-        ("fourbar-lecture-1", {"coupler": 1e3, "rocker": 1e4}, "D"),
-    ],
-)
+@pytest.mark.parametrize(("name", "masses", "point"), [
+    ("slider-crank-offset", {}, "C"),
+    ("slider-crank-offset", {"rod": 1e3}, "B"),  # between the crank, which is driven, and it
+    ("slider-crank-offset", {"C": 1e3}, "B"),
+    ("slider-crank-offset", {"crank": 1e3}, "B"),
+    ("fourbar-lecture-1", {"rocker": 1e3}, "D"),
+    ("fourbar-lecture-1", {"coupler": 1e3}, "B"),
+    ("fourbar-lecture-1", {"coupler": 1e3, "rocker": 1e4}, "D"),
+])  # fmt: skip
 def test_a_loop_closes_where_its_bodies_are_heaviest(
     name: str, masses: dict[str, float], point: str
 ) -> None:

@@ -35,15 +35,12 @@ def numbered(branch: str) -> str:
     return re.sub(r"\[branch\]\n.*\n", "", TRIAD) + f"\n[branch]\n{branch}\n"
 
 
-@pytest.mark.parametrize(
-    "driver",
-    [
-        f'slider = "C"\n{STROKE}',
-        f'slider = "C"\n{WAY}',
-        'slider = "C"\nlaw = "from-rest"\nrise_s = 0.1\n' + WAY,
-        'slider = "C"\nlaw = "accelerating"\nacceleration_m_s2 = 0.1\n' + WAY,
-    ],
-)
+@pytest.mark.parametrize("driver", [
+    f'slider = "C"\n{STROKE}',
+    f'slider = "C"\n{WAY}',
+    'slider = "C"\nlaw = "from-rest"\nrise_s = 0.1\n' + WAY,
+    'slider = "C"\nlaw = "accelerating"\nacceleration_m_s2 = 0.1\n' + WAY,
+])  # fmt: skip
 def test_a_driven_slider_is_written_as_it_is_read(driver: str) -> None:
     scene = parse_scene(driven(PISTON, driver), "test")
     assert (scene.driver.slider, scene.driver.link, scene.driver.unit) == ("C", "block C", "m")
@@ -60,43 +57,33 @@ def test_a_driven_pin_is_written_as_it_is_read(links: str) -> None:
 REFUSED: dict[str, tuple[str, str]] = {
     "two joints": (
         driven(PISTON, f'slider = "C"\npin = "B"\n{STROKE}'),
-        r"driver.pin: unknown key; known: slider, law",
-    ),
+        r"driver.pin: unknown key; known: slider, law"),
     "no such slider": (driven(PISTON, f'slider = "X"\n{WAY}'), "found X; use one of C"),
     "no way": (
-        driven(PISTON, 'slider = "C"\nstart_m = 0.3\nspeed_m_s = 0.1'),
-        "driver.travel_m: missing",
-    ),
+        driven(PISTON, 'slider = "C"\nstart_m = 0.3\nspeed_m_s = 0.1'), "driver.travel_m: missing"),
     "degrees of a slider": (driven(PISTON, f'slider = "C"\n{TURN}'), "did you mean start_m"),
     "a slider at rest": (
-        driven(PISTON, f'slider = "C"\n{WAY.replace("0.1", "0.0")}'),
-        "its speed is 0",
-    ),
+        driven(PISTON, f'slider = "C"\n{WAY.replace("0.1", "0.0")}'), "its speed is 0"),
     "a slider let go": (
         driven(PISTON, f'slider = "C"\nlaw = "free"\n{WAY}'),
-        "found 'free'; use one of constant, oscillating",
-    ),
+        "found 'free'; use one of constant, oscillating"),
     "no number": (driven(PISTON, f'slider = "C"\n{WAY.replace("0.3", "nan")}'), "found nan"),
     "a pin let go": (
-        driven(COUPLER, f'pin = "B"\nlinks = ["crank", "coupler"]\nlaw = "free"\n{TURN}\n'
-               "duration_s = 1.0"),
-        "nothing drives what is let go: name a link at the ground",
-    ),
+        driven(
+            COUPLER,
+            f'pin = "B"\nlinks = ["crank", "coupler"]\nlaw = "free"\n{TURN}\n' "duration_s = 1.0"),
+        "nothing drives what is let go: name a link at the ground"),
     "a pin of one link": (
         driven(PISTON, f'pin = "A"\nlinks = ["crank", "rod"]\n{TURN}'),
-        "pin A joins ground, crank, not rod",
-    ),
+        "pin A joins ground, crank, not rod"),
     "no such pin": (driven(PISTON, f'pin = "Q"\n{TURN}'), "no body has such a point"),
     "a link twice": (driven(PISTON, f'pin = "B"\nlinks = ["rod", "rod"]\n{TURN}'), "rod twice"),
     "a pin of a block": (driven(PISTON, f'pin = "C"\n{TURN}'), "slider = 'C', or a pin of two"),
     "a link without ground": (
-        driven(PISTON, f'link = "rod"\n{TURN}'),
-        "or drive the pin of two links",
-    ),
+        driven(PISTON, f'link = "rod"\n{TURN}'), "or drive the pin of two links"),
     "beyond the stroke": (
         driven(PISTON, f'slider = "C"\n{STROKE.replace("0.05", "0.12")}'),
-        r"the loop cannot close at B.* can stand at -0.4 to -0.2 m and 0.2 to 0.4 m",
-    ),
+        r"the loop cannot close at B.* can stand at -0.4 to -0.2 m and 0.2 to 0.4 m"),
     "assembly 0": (numbered("plate = 0"), "numbered from 1 to at most 6"),
     "assembly 7": (numbered("plate = 7"), "numbered from 1 to at most 6"),
     "no such assembly": (numbered("plate = 5"), "the group has 2 assemblies; give a number"),
@@ -104,12 +91,10 @@ REFUSED: dict[str, tuple[str, str]] = {
     "a leg's branch": (numbered("leg1 = 1"), "no two assemblies; it has plate"),
     "beyond a limit": (
         TRIAD.replace("E = [0.25, -0.05]", "E = [0.01, -0.05]"),
-        "the group about plate ends in a limit position at 88.2668 deg",
-    ),
+        "the group about plate ends in a limit position at 88.2668 deg"),
     "no assembly": (
         TRIAD.replace("E = [0.25, -0.05]", "E = [9.0, -0.05]"),
-        "the group about plate has no assembly; start elsewhere",
-    ),
+        "the group about plate has no assembly; start elsewhere"),
 }  # fmt: skip
 
 

@@ -178,16 +178,13 @@ def test_all_faults_of_a_file_are_reported_at_once() -> None:
     assert "driver.start: unknown key; did you mean start_deg" in str(error.value)
 
 
-@pytest.mark.parametrize(
-    "table",
-    [
-        '[sliders.C]\non = ["ground"]\npoint = ["C"]',
-        "[sliders.C]\non = 1\nlink = {}",
-        "[branch]\n" + "x" * 10_000 + " = 1",
-        "[sliders]\nC = 3",
-        '[sliders.C]\non = "' + "x" * 10_000 + '"',
-    ],
-)
+@pytest.mark.parametrize("table", [
+    '[sliders.C]\non = ["ground"]\npoint = ["C"]',
+    "[sliders.C]\non = 1\nlink = {}",
+    "[branch]\n" + "x" * 10_000 + " = 1",
+    "[sliders]\nC = 3",
+    '[sliders.C]\non = "' + "x" * 10_000 + '"',
+])  # fmt: skip
 def test_names_of_any_shape_are_faults_with_short_messages(table: str) -> None:
     with pytest.raises(SceneError) as error:
         parse_scene(f"{GOOD}\n{table}\n", "file.toml")
@@ -289,14 +286,10 @@ def test_refused_read_is_reported_with_its_reason(
         read_scene(path)
 
 
-@pytest.mark.parametrize(
-    ("raw", "words"),
-    [
-        (b"\xff\xfe\x00", "not UTF-8"),
-        (b"#" * (MOST_TEXT + 1), "200001 bytes; at most 200000 are read"),
-    ],
-    ids=["not text", "too large"],
-)
+@pytest.mark.parametrize(("raw", "words"), [
+    (b"\xff\xfe\x00", "not UTF-8"),
+    (b"#" * (MOST_TEXT + 1), "200001 bytes; at most 200000 are read"),
+], ids=["not text", "too large"])  # fmt: skip
 def test_file_that_is_no_text_of_a_scene(raw: bytes, words: str, tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"
     path.write_bytes(raw)

@@ -14,19 +14,16 @@ import pytest
 from models.files import load_scene
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        lambda mapping: operator.setitem(mapping, "E", (0.0, 0.0)),
-        lambda mapping: operator.delitem(mapping, next(iter(mapping))),
-        lambda mapping: operator.ior(mapping, {"E": (0.0, 0.0)}),
-        lambda mapping: mapping.update(E=(0.0, 0.0)),
-        lambda mapping: mapping.setdefault("E", (0.0, 0.0)),
-        lambda mapping: mapping.pop(next(iter(mapping))),
-        lambda mapping: mapping.popitem(),
-        lambda mapping: mapping.clear(),
-    ],
-)
+@pytest.mark.parametrize("change", [
+    lambda mapping: operator.setitem(mapping, "E", (0.0, 0.0)),
+    lambda mapping: operator.delitem(mapping, next(iter(mapping))),
+    lambda mapping: operator.ior(mapping, {"E": (0.0, 0.0)}),
+    lambda mapping: mapping.update(E=(0.0, 0.0)),
+    lambda mapping: mapping.setdefault("E", (0.0, 0.0)),
+    lambda mapping: mapping.pop(next(iter(mapping))),
+    lambda mapping: mapping.popitem(),
+    lambda mapping: mapping.clear(),
+])  # fmt: skip
 def test_a_scene_is_not_changed(change: Callable[[Any], object]) -> None:
     scene = load_scene("fourbar-lecture-1")
     for each in (scene, copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):

@@ -165,16 +165,13 @@ def test_enough_files_of_each_kind_run_and_are_refused(kind: str, bench: Bench) 
     assert bench.ends["exit 2"] > 0.2 * 40, bench.report()
 
 
-@pytest.mark.parametrize(
-    ("part", "count"),
-    [
-        slowly(0, 50, reason="every command and not the short ones alone: 10 to 30 s a kind"),
-        *(
-            at_length(part, EACH, reason="ten thousand files find rare ones")
-            for part in range(PARTS)
-        ),
-    ],
-)
+@pytest.mark.parametrize(("part", "count"), [
+    slowly(0, 50, reason="every command and not the short ones alone: 10 to 30 s a kind"),
+    *(
+        at_length(part, EACH, reason="ten thousand files find rare ones")
+        for part in range(PARTS)
+    ),
+])  # fmt: skip
 @pytest.mark.parametrize("kind", KINDS)
 def test_ten_thousand_files_run_or_are_refused(
     kind: str, part: int, count: int, bench: Bench
@@ -183,16 +180,13 @@ def test_ten_thousand_files_run_or_are_refused(
     assert bench.ends["exit 0"] > 0.1 * count, bench.report()
 
 
-@pytest.mark.parametrize(
-    ("part", "parts"),
-    [
-        slowly(3, 240, reason="a few of fifteen thousand: 20 s"),
-        *(
-            at_length(part, 4, reason="each name, each number: fifteen thousand")
-            for part in range(4)
-        ),
-    ],
-)
+@pytest.mark.parametrize(("part", "parts"), [
+    slowly(3, 240, reason="a few of fifteen thousand: 20 s"),
+    *(
+        at_length(part, 4, reason="each name, each number: fifteen thousand")
+        for part in range(4)
+    ),
+])  # fmt: skip
 @pytest.mark.parametrize(
     ("changed", "commands"),
     [(retied, ("solve FILE", VERIFY, "view FILE -o OUT.png")), (stretched, (VERIFY,))],

@@ -85,20 +85,17 @@ def test_a_turn_of_a_steady_acceleration_is_the_first_away_from_the_start(
     )
 
 
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: ConstantSpeed(0.0, 0.0), "drives nothing"),
-        (lambda: ConstantSpeed(math.nan, 1.0), "start_rad is nan"),
-        (lambda: Oscillating(0.0, 0.0, 1.0), "amplitude"),
-        (lambda: Oscillating(0.0, 1.0, math.inf), "frequency_rad_s is inf"),
-        (lambda: FromRest(0.0, 1.0, 0.0), "rise_s"),
-        (lambda: Accelerating(0.0, 1.0, 0.0), 'use law = "constant"'),
-        (lambda: Accelerating(0.0, math.inf, 1.0), "speed_rad_s is inf"),
-        (lambda: SpeedChange(0.0, 1.0, 0.0, 0.1, 0.1), "after_rad_s"),
-        (lambda: SpeedChange(0.0, 1.0, 2.0, 0.1, -0.1), "rise_s"),
-    ],
-)
+@pytest.mark.parametrize(("make", "message"), [
+    (lambda: ConstantSpeed(0.0, 0.0), "drives nothing"),
+    (lambda: ConstantSpeed(math.nan, 1.0), "start_rad is nan"),
+    (lambda: Oscillating(0.0, 0.0, 1.0), "amplitude"),
+    (lambda: Oscillating(0.0, 1.0, math.inf), "frequency_rad_s is inf"),
+    (lambda: FromRest(0.0, 1.0, 0.0), "rise_s"),
+    (lambda: Accelerating(0.0, 1.0, 0.0), 'use law = "constant"'),
+    (lambda: Accelerating(0.0, math.inf, 1.0), "speed_rad_s is inf"),
+    (lambda: SpeedChange(0.0, 1.0, 0.0, 0.1, 0.1), "after_rad_s"),
+    (lambda: SpeedChange(0.0, 1.0, 2.0, 0.1, -0.1), "rise_s"),
+])  # fmt: skip
 def test_law_that_drives_nothing_is_refused(make: object, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         make()  # type: ignore[operator]  # a lambda per case

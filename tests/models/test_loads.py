@@ -126,8 +126,7 @@ FAULTS = {
     "no magnitude": ("force_n = 500.0", "", "loads.work: give force_n or torque_n_m, one"),
     "two magnitudes": ("force_n = 500.0", "force_n = 5.0\ntorque_n_m = 1.0", "one of the two"),
     "torque with a point": (
-        "torque_n_m = [0.0", 'point = "B"\ntorque_n_m = [0.0', "point belongs to a force",
-    ),
+        "torque_n_m = [0.0", 'point = "B"\ntorque_n_m = [0.0', "point belongs to a force"),
     "other law": ('law = "sine"', 'law = "saw"', "loads.hum.law: found 'saw'; use one of constant"),
     "unknown key": ("phase_deg", "fase_deg", "loads.hum.fase_deg: unknown key; did you mean phase"),
     "number as text": ("force_n = 3.0", 'force_n = "3"', "loads.hum.force_n: found '3'"),
@@ -135,37 +134,28 @@ FAULTS = {
     "no places": ("at_m = [0.15, 0.2, 0.45]", "", 'loads.gas: over = "displacement" needs at_m'),
     "other period": ("period_s", "period_m", 'loads.hum: over = "time" takes period_s; found'),
     "period of no angle": (
-        "at_m = [0.15", "period_deg = 90.0\nat_m = [0.15", 'period_deg needs over = "angle"',
-    ),
+        "at_m = [0.15", "period_deg = 90.0\nat_m = [0.15", 'period_deg needs over = "angle"'),
     "no interpolation": ('interpolation = "pchip"', "", "loads.gas.interpolation: missing"),
     "falling places": (
-        "0.2, 0.45]", "0.1, 0.45]", "loads.gas: found 0.1 after 0.15; the places of a table have",
-    ),
+        "0.2, 0.45]", "0.1, 0.45]", "loads.gas: found 0.1 after 0.15; the places of a table have"),
     "equal places": ("0.2, 0.45]", "0.15, 0.45]", "loads.gas: found 0.15 after 0.15"),
     "one row": (
         "[0.15, 0.2, 0.45]\nforce_n = [900.0, 300.0, 0.0]", "[0.15]\nforce_n = [900.0]",
-        "loads.gas: found 1 rows; a table needs two or more",
-    ),
+        "loads.gas: found 1 rows; a table needs two or more"),
     "a rise beyond numbers": (
-        "0.15, 0.2, 0.45]", "0.0, 5e-324, 0.45]", "in rows 4.94e-324 apart, a rise beyond all",
-    ),
+        "0.15, 0.2, 0.45]", "0.0, 5e-324, 0.45]", "in rows 4.94e-324 apart, a rise beyond all"),
     "not a number": ("force_n = 500.0", "force_n = nan", "loads.work.force_n: found nan"),
     "the ground": ('link = "rod"\npoint = "C"', 'link = "ground"\npoint = "A"', "found ground;"),
     "a row too many": (
-        "[0.15, 0.2, 0.45]", f"[{', '.join(f'{k}.0' for k in range(10_001))}]", "at most 10000",
-    ),
+        "[0.15, 0.2, 0.45]", f"[{', '.join(f'{k}.0' for k in range(10_001))}]", "at most 10000"),
     "an odd name": ("[loads.hum]", '[loads."hum \\u202e"]', "loads.hum \\u202e: found 'hum "),
     "a row too few": ("300.0, 0.0]", "300.0]", "loads.gas: found 3 places and 2 values"),
     "longer than the period": ("720.0", "180.0", "loads.valve: found rows over 4.71239, more than"),
     "a period that does not close": (
-        "period_deg = 720.0", "period_deg = 270.0", "found 0 in the first row and -1 in the last",
-    ),
+        "period_deg = 720.0", "period_deg = 270.0", "found 0 in the first row and -1 in the last"),
     "a slider without a block": (
-        "mass_kg = 0.5", 'link = "rod"', "loads.work.block: found C; the scene has none",
-    ),
-    "a list": (
-        '[loads.hum]\nlink = "rod"', '[[loads.hum]]\nlink = "rod"', "loads.hum: found",
-    ),
+        "mass_kg = 0.5", 'link = "rod"', "loads.work.block: found C; the scene has none"),
+    "a list": ('[loads.hum]\nlink = "rod"', '[[loads.hum]]\nlink = "rod"', "loads.hum: found"),
 }  # fmt: skip
 
 
@@ -199,20 +189,16 @@ def test_a_table_does_not_go_on_past_its_ends() -> None:
         gas.magnitude(np.array([0.2, 0.46]))
 
 
-@pytest.mark.parametrize(
-    "own",
-    [
-        Polynomial((1.0, -0.3, 0.07)),
-        Polynomial((4.0,)),
-        Sine(2.0, 0.3, 0.1),
-        Staircase((0.1, 0.7), (1.0, 0.0)),
-        Tabulated((-0.3, 0.1, 0.4, 1.5), (1.0, -2.0, 0.3, 0.7)),
-        Tabulated((-0.3, 0.1, 0.4, 1.5), (1.0, -2.0, 0.3, 0.7), "pchip"),
-        Tabulated((-0.3, 0.1, 0.4, 1.5), (1.0, -2.0, 0.3, 0.7), "pchip", 2.1),
-        Tabulated((0.0, 0.1, 0.4), (1.0, -2.0, 1.0), "linear", 0.4),
-    ],
-    ids=repr,
-)
+@pytest.mark.parametrize("own", [
+    Polynomial((1.0, -0.3, 0.07)),
+    Polynomial((4.0,)),
+    Sine(2.0, 0.3, 0.1),
+    Staircase((0.1, 0.7), (1.0, 0.0)),
+    Tabulated((-0.3, 0.1, 0.4, 1.5), (1.0, -2.0, 0.3, 0.7)),
+    Tabulated((-0.3, 0.1, 0.4, 1.5), (1.0, -2.0, 0.3, 0.7), "pchip"),
+    Tabulated((-0.3, 0.1, 0.4, 1.5), (1.0, -2.0, 0.3, 0.7), "pchip", 2.1),
+    Tabulated((0.0, 0.1, 0.4), (1.0, -2.0, 1.0), "linear", 0.4),
+], ids=repr)  # fmt: skip
 def test_one_value_is_that_of_an_array_to_the_bit(own: Characteristic) -> None:
     reach = 9.0 if getattr(own, "period", None) else 1.5
     chance = np.random.default_rng(1)
@@ -275,33 +261,26 @@ def test_interpolation_rises_only_where_its_table_rises() -> None:
         assert np.all(found <= np.maximum(y[k], y[k + 1]) + 1e-12)
 
 
-@pytest.mark.parametrize(
-    "own",
-    [
-        Sine(3.0, 0.7, 0.2),
-        Polynomial((1.0, -2.0, 0.5, 3.0)),
-        Polynomial((2.0,)),
-        Tabulated((-2.0, -1.0, 0.3, 2.1), (1.0, -4.0, 2.0, 2.0)),
-        Tabulated((-2.0, -1.0, 0.3, 2.1), (1.0, -4.0, 2.0, 2.0), "pchip"),
-        Tabulated((0.0, 0.2, 0.7), (1.0, -4.0, 2.0), "pchip", 1.0),
-        Constant(4.0),
-    ],
-    ids=str,
-)
+@pytest.mark.parametrize("own", [
+    Sine(3.0, 0.7, 0.2),
+    Polynomial((1.0, -2.0, 0.5, 3.0)),
+    Polynomial((2.0,)),
+    Tabulated((-2.0, -1.0, 0.3, 2.1), (1.0, -4.0, 2.0, 2.0)),
+    Tabulated((-2.0, -1.0, 0.3, 2.1), (1.0, -4.0, 2.0, 2.0), "pchip"),
+    Tabulated((0.0, 0.2, 0.7), (1.0, -4.0, 2.0), "pchip", 1.0),
+    Constant(4.0),
+], ids=str)  # fmt: skip
 def test_no_characteristic_is_steeper_than_it_says(own: Characteristic) -> None:
     x = np.linspace(-2.0, 2.0, 4001)
     chord = np.abs(np.diff(own.at(x))) / np.diff(x)
     assert np.all(chord <= np.asarray(own.steepest(x[:-1], 1e-3)) * (1.0 + 1e-9) + 1e-12)
 
 
-@pytest.mark.parametrize(
-    ("make", "words"),
-    [
-        (lambda: Sine(1.0, 0.0), "found a period of 0"),
-        (lambda: Polynomial(()), "found no coefficient"),
-        (lambda: Tabulated((0.0,), (1.0,)), "found 1 rows"),
-    ],
-)
+@pytest.mark.parametrize(("make", "words"), [
+    (lambda: Sine(1.0, 0.0), "found a period of 0"),
+    (lambda: Polynomial(()), "found no coefficient"),
+    (lambda: Tabulated((0.0,), (1.0,)), "found 1 rows"),
+])  # fmt: skip
 def test_a_characteristic_without_magnitude_is_refused(make: object, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         make()  # type: ignore[operator]

@@ -118,18 +118,15 @@ def test_a_massless_block_is_a_slide_and_a_hinge_of_the_link_it_holds() -> None:
     assert plan(scene, start_of(scene)).closures[0].point == "B"
 
 
-@pytest.mark.parametrize(
-    ("name", "closed"),
-    [
-        ("fourbar-lecture-1", ["C"]),
-        ("slider-crank-offset", ["C"]),
-        ("slotted-lever", ["C"]),
-        ("scotch-yoke", ["B"]),
-        ("tangent", ["P"]),
-        ("sixbar-watt", ["C", "F"]),
-        ("sixbar-stephenson", ["C", "F"]),
-    ],
-)
+@pytest.mark.parametrize(("name", "closed"), [
+    ("fourbar-lecture-1", ["C"]),
+    ("slider-crank-offset", ["C"]),
+    ("slotted-lever", ["C"]),
+    ("scotch-yoke", ["B"]),
+    ("tangent", ["P"]),
+    ("sixbar-watt", ["C", "F"]),
+    ("sixbar-stephenson", ["C", "F"]),
+])  # fmt: skip
 def test_loops_close_where_the_documented_rule_says(name: str, closed: list[str]) -> None:
     scene = load_scene(name)
     assert [c.point for c in plan(scene, start_of(scene)).closures] == closed

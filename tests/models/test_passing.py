@@ -44,26 +44,13 @@ def test_the_start_of_an_acceleration_has_the_speed_that_is_stated_to_the_bit() 
         assert passing(Accelerating(0.3, speed, -0.7), 0.3) == (speed, -0.7)
 
 
-@pytest.mark.parametrize(
-    ("law", "theta", "clockwise", "message"),
-    [
-        (Oscillating(0.0, 0.5, 1.0), 0.6, False, r"swings from -28\.6479 to 28\.6479 deg"),
-        (
-            Accelerating(0.0, 2.0, 9.0),
-            -1.0,
-            False,
-            r"comes to the same driver angle at 302\.704 deg",
-        ),
-        (
-            Accelerating(0.0, 2.0, -9.0),
-            1.0,
-            False,
-            r"comes to the same driver angle at -302\.704 deg",
-        ),
-        (Accelerating(0.0, 2.0, 9.0), 1.0, True, "does not turn clockwise there"),
-        (SpeedChange(0.0, 1.0, 2.0, 0.1, 0.1), 1.0, False, "without a speed at an angle"),
-    ],
-)
+@pytest.mark.parametrize(("law", "theta", "clockwise", "message"), [
+    (Oscillating(0.0, 0.5, 1.0), 0.6, False, r"swings from -28\.6479 to 28\.6479 deg"),
+    (Accelerating(0.0, 2.0, 9.0), -1.0, False, r"comes to the same driver angle at 302\.704 deg"),
+    (Accelerating(0.0, 2.0, -9.0), 1.0, False, r"comes to the same driver angle at -302\.704 deg"),
+    (Accelerating(0.0, 2.0, 9.0), 1.0, True, "does not turn clockwise there"),
+    (SpeedChange(0.0, 1.0, 2.0, 0.1, 0.1), 1.0, False, "without a speed at an angle"),
+])  # fmt: skip
 def test_an_angle_that_a_law_does_not_come_to_is_refused(
     law: Law, theta: float, clockwise: bool, message: str
 ) -> None:

@@ -38,10 +38,8 @@ FAULTS = [
     ("coupler", f"positions = [{A}, {B}, {C}]\n{MOVING}\ndistances_m = [0.1, 0.2]", "leave it out"),
     ("coupler", f"positions = [{A}, {B}, {C}]\n{MOVING}\ndriving_dyad = true", "between two"),
     (
-        "coupler",
-        f"positions = [{A}, {{ points = {{ C = [0.0, 0.0], D = [1.0, 0.0] }} }}]",
-        "in the same way",
-    ),
+        "coupler", f"positions = [{A}, {{ points = {{ C = [0.0, 0.0], D = [1.0, 0.0] }} }}]",
+        "in the same way"),
     (
         "coupler",
         "positions = [{ points = { C = [0.0, 0.0], D = [1.0, 0.0] } }, "
@@ -73,17 +71,13 @@ FAULTS = [
     ("stroke", 'stroke_m = 0.1\nform = "offset"\ntime_ratio = 0.9', "greater than 1"),
     ("quick-return", 'mechanism = "whitworth"\ntime_ratio = 2.0', "found no size"),
     (
-        "quick-return",
-        'mechanism = "whitworth"\ntime_ratio = 2.0\ncrank_m = 0.1\npivots_m = 0.1',
-        "crank_m and pivots_m",
-    ),
+        "quick-return", 'mechanism = "whitworth"\ntime_ratio = 2.0\ncrank_m = 0.1\npivots_m = 0.1',
+        "crank_m and pivots_m"),
     (
-        "quick-return",
-        'mechanism = "crank-rocker"\ntime_ratio = 1.2\nrocker_m = 0.1',
-        "swing_deg: a crank-rocker needs it",
-    ),
+        "quick-return", 'mechanism = "crank-rocker"\ntime_ratio = 1.2\nrocker_m = 0.1',
+        "swing_deg: a crank-rocker needs it"),
     ("quick-return", 'mechanism = "shaper"\ntime_ratio = 1.2\ncrank_m = 0.1', "slotted-lever"),
-]
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("kind", "text", "says"), FAULTS)

@@ -285,14 +285,11 @@ def test_the_motor_of_pymunk_is_a_servo_without_lag_but_with_an_error_of_second_
     assert lags[1] > 1e-9
 
 
-@pytest.mark.parametrize(
-    ("engine", "settings", "shift", "order"),
-    [
-        ("pymunk", {}, 0.5, 2),
-        ("mujoco", {"integrator": "Euler"}, -0.5, 2),
-        ("mujoco", {}, 0.0, 1),  # the stages of RK4 open the stiff loop: small, but of first order
-    ],
-)
+@pytest.mark.parametrize(("engine", "settings", "shift", "order"), [
+    ("pymunk", {}, 0.5, 2),
+    ("mujoco", {"integrator": "Euler"}, -0.5, 2),
+    ("mujoco", {}, 0.0, 1),  # the stages of RK4 open the stiff loop: small, but of first order
+])  # fmt: skip
 def test_velocities_belong_to_their_own_instant(
     engine: str, settings: dict[str, SettingValue], shift: float, order: int
 ) -> None:

@@ -51,19 +51,16 @@ def adapter(request: pytest.FixtureRequest, fake_engine: ModuleType) -> Engine:
     return made
 
 
-@pytest.mark.parametrize(
-    ("clause", "scenes"),
-    [
-        *(pytest.param(id, SCENES[2:3] if id in DEAR else FEW, id=id) for id in CLAUSES),
-        *(
-            slowly(
-                id, SCENES, id=f"{id} all", reason="kinds of joints of which others test the parts"
-            )
-            for id, clause in CLAUSES.items()
-            if clause.of_scenes
-        ),
-    ],
-)
+@pytest.mark.parametrize(("clause", "scenes"), [
+    *(pytest.param(id, SCENES[2:3] if id in DEAR else FEW, id=id) for id in CLAUSES),
+    *(
+        slowly(
+            id, SCENES, id=f"{id} all", reason="kinds of joints of which others test the parts"
+        )
+        for id, clause in CLAUSES.items()
+        if clause.of_scenes
+    ),
+])  # fmt: skip
 def test_every_engine_holds_the_contract(
     adapter: Engine, clause: str, scenes: Sequence[str]
 ) -> None:
@@ -103,27 +100,22 @@ def test_two_stretches_equal_one_for_a_solver_that_has_not_converged() -> None:
     np.testing.assert_array_equal(numbers(parts.record(300, 1).poses), numbers(one.poses)[200:])
 
 
-@pytest.mark.parametrize(
-    ("wrong", "named"),
-    [
-        (lambda f: replace(f, mass_kg={**f.mass_kg, "rocker": 7.0}), "rocker has mass_kg 7"),
-        (lambda f: replace(f, mass_kg={}), "rocker has no mass_kg"),
-        (
-            lambda f: replace(f, centre_m={**f.centre_m, "rocker": (0.1, 1e-6)}),
-            r"rocker has centre_m \(0.1, 1e-06\), not \(0.1, 0.0\)",
-        ),
-        (
-            lambda f: replace(f, inertia_kg_m2={**f.inertia_kg_m2, "coupler": 7.0}),
-            "coupler has inertia_kg_m2 7",
-        ),
-        (lambda f: replace(f, gravity_m_s2=(0.0, -9.81)), "gravity is"),
-        (lambda f: with_rocker(f, lambda b: replace(b, theta=b.theta + 1e-6)), "rocker stands at"),
-        (lambda f: with_rocker(f, lambda b: replace(b, origin=b.origin + 1e-6)), "rocker lies at"),
-        (lambda f: with_rocker(f, lambda b: replace(b, omega=b.omega * 1.1)), "rocker turns at"),
-        (lambda f: with_rocker(f, lambda b: replace(b, velocity=b.velocity + 1.0)), "rocker moves"),
-        (lambda f: with_rocker(f, lambda b: replace(b, theta=b.theta * np.nan)), "rocker stands"),
-    ],
-)
+@pytest.mark.parametrize(("wrong", "named"), [
+    (lambda f: replace(f, mass_kg={**f.mass_kg, "rocker": 7.0}), "rocker has mass_kg 7"),
+    (lambda f: replace(f, mass_kg={}), "rocker has no mass_kg"),
+    (
+        lambda f: replace(f, centre_m={**f.centre_m, "rocker": (0.1, 1e-6)}),
+        r"rocker has centre_m \(0.1, 1e-06\), not \(0.1, 0.0\)"),
+    (
+        lambda f: replace(f, inertia_kg_m2={**f.inertia_kg_m2, "coupler": 7.0}),
+        "coupler has inertia_kg_m2 7"),
+    (lambda f: replace(f, gravity_m_s2=(0.0, -9.81)), "gravity is"),
+    (lambda f: with_rocker(f, lambda b: replace(b, theta=b.theta + 1e-6)), "rocker stands at"),
+    (lambda f: with_rocker(f, lambda b: replace(b, origin=b.origin + 1e-6)), "rocker lies at"),
+    (lambda f: with_rocker(f, lambda b: replace(b, omega=b.omega * 1.1)), "rocker turns at"),
+    (lambda f: with_rocker(f, lambda b: replace(b, velocity=b.velocity + 1.0)), "rocker moves"),
+    (lambda f: with_rocker(f, lambda b: replace(b, theta=b.theta * np.nan)), "rocker stands"),
+])  # fmt: skip
 def test_a_model_that_is_not_the_scene_is_refused_by_name(
     adapter: Engine, wrong: object, named: str
 ) -> None:

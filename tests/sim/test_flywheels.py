@@ -66,21 +66,18 @@ def holds(one: Measured, cycle: SteadyCycle) -> None:
         assert abs(off) < WITHIN_DEG
 
 
-@pytest.mark.parametrize(
-    ("name", "engine", "steps"),
-    [
-        ("engine-four-stroke", "mujoco", 1400),
-        *(
-            slowly(*case, 2800, reason="2 s each: other machines, and another engine")
-            for case in (
-                ("engine-four-stroke", "mujoco"),
-                ("compressor", "mujoco"),
-                ("toggle-press", "mujoco"),
-                ("compressor", "pymunk"),
-            )
-        ),
-    ],
-)
+@pytest.mark.parametrize(("name", "engine", "steps"), [
+    ("engine-four-stroke", "mujoco", 1400),
+    *(
+        slowly(*case, 2800, reason="2 s each: other machines, and another engine")
+        for case in (
+            ("engine-four-stroke", "mujoco"),
+            ("compressor", "mujoco"),
+            ("toggle-press", "mujoco"),
+            ("compressor", "pymunk"),
+        )
+    ),
+])  # fmt: skip
 def test_an_engine_runs_the_cycle_that_the_flywheel_is_for(
     name: str, engine: str, steps: int
 ) -> None:

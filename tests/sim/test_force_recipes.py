@@ -120,15 +120,12 @@ def test_that_of_mujoco_is_refused_where_a_file_does_not_hold_what_drives_or_loa
         recipe("mujoco", load_scene("tangent"))
 
 
-@pytest.mark.parametrize(
-    ("name", "steps", "most"),
-    [
-        ("fourbar-lecture-1", 720, 5e-4),
-        ("slider-crank-excel-350", 360, 2e-3),  # a rail
-        ("scotch-yoke", 360, 2e-3),  # a groove in a moving guide, a gear, and a body without turns
-        ("slotted-lever", 360, 2e-3),  # a rail that moves
-    ],
-)
+@pytest.mark.parametrize(("name", "steps", "most"), [
+    ("fourbar-lecture-1", 720, 5e-4),
+    ("slider-crank-excel-350", 360, 2e-3),  # a rail
+    ("scotch-yoke", 360, 2e-3),  # a groove in a moving guide, a gear, and a body without turns
+    ("slotted-lever", 360, 2e-3),  # a rail that moves
+])  # fmt: skip
 def test_that_of_pymunk_holds_every_kind_of_line_from_the_first_step_on(
     name: str, steps: int, most: float
 ) -> None:

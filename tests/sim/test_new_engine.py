@@ -163,16 +163,13 @@ def test_its_name_is_suggested(told: Told) -> None:
     assert told["misspelt"] == (2, "crankcheck: engine 'fak': unknown; did you mean fake?\n")
 
 
-@pytest.mark.parametrize(
-    ("ask", "lacks"),
-    [
-        (lambda: search_space("fake"), "it has no knobs; use mujoco or pymunk or exudyn"),
-        (lambda: snippet("fake", {}, 100), "it has no snippet; use mujoco or pymunk or exudyn"),
-        (lambda: spoiler("fake"), "it has no spoiler; use mujoco or pymunk"),
-        (lambda: registry.capability("pymunk", "viewer"), "it has no viewer; use mujoco"),
-        (lambda: snippet("bullet", {}, 100), "'bullet': unknown; there are mujoco, pymunk, exudyn"),
-    ],
-)
+@pytest.mark.parametrize(("ask", "lacks"), [
+    (lambda: search_space("fake"), "it has no knobs; use mujoco or pymunk or exudyn"),
+    (lambda: snippet("fake", {}, 100), "it has no snippet; use mujoco or pymunk or exudyn"),
+    (lambda: spoiler("fake"), "it has no spoiler; use mujoco or pymunk"),
+    (lambda: registry.capability("pymunk", "viewer"), "it has no viewer; use mujoco"),
+    (lambda: snippet("bullet", {}, 100), "'bullet': unknown; there are mujoco, pymunk, exudyn"),
+])  # fmt: skip
 def test_a_capability_that_is_lacking_is_named_with_who_has_it(
     ask: Callable[[], object], lacks: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

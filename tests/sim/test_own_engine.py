@@ -66,35 +66,29 @@ def test_it_has_its_adapter_alone(folder: Path) -> None:
         capability("penalty", "knobs")
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("penalty_engin:ENGINE", "no module penalty_engin, neither .*mean penalty_engine?"),
-        ("penalty_engine.more:ENGINE", "no module penalty_engine.more, .*penalty_engine"),
-        ("penalty_engine:ENGIN", "penalty_engine has no ENGIN; did you mean ENGINE?"),
-        ("penalty_engine:PROFILES", "found a dict, which lacks name, profiles, version, check"),
-        ("penalty_engine:PenaltySession", "found a class, PenaltySession, which lacks name"),
-        ("penalty_engine:VERSION", "found '1.0', which lacks name"),
-        ("penalty_engine:", "write it package.module:ATTRIBUTE"),
-        ("../penalty_engine.py:ENGINE", "write it package.module:ATTRIBUTE"),
-        ("penalty_engine", "unknown; there are mujoco, pymunk, exudyn; one of your own is written"),
-    ],
-)
+@pytest.mark.parametrize(("text", "words"), [
+    ("penalty_engin:ENGINE", "no module penalty_engin, neither .*mean penalty_engine?"),
+    ("penalty_engine.more:ENGINE", "no module penalty_engine.more, .*penalty_engine"),
+    ("penalty_engine:ENGIN", "penalty_engine has no ENGIN; did you mean ENGINE?"),
+    ("penalty_engine:PROFILES", "found a dict, which lacks name, profiles, version, check"),
+    ("penalty_engine:PenaltySession", "found a class, PenaltySession, which lacks name"),
+    ("penalty_engine:VERSION", "found '1.0', which lacks name"),
+    ("penalty_engine:", "write it package.module:ATTRIBUTE"),
+    ("../penalty_engine.py:ENGINE", "write it package.module:ATTRIBUTE"),
+    ("penalty_engine", "unknown; there are mujoco, pymunk, exudyn; one of your own is written"),
+])  # fmt: skip
 def test_what_is_not_to_be_found_is_told_with_what_would_work(text: str, words: str) -> None:
     with pytest.raises(EngineError, match=words):
         engine(text)
 
 
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("1 / 0", r"ZeroDivisionError: division by zero \(faulty.py, line 2\)"),
-        ("import nothing_there", r"ModuleNotFoundError: No module named 'nothing_there'"),
-        ("def", r"SyntaxError: invalid syntax \(faulty.py, line 2\)"),
-        ("raise SystemExit(3)", r"SystemExit: 3 \(faulty.py, line 2\)"),
-        ("raise ValueError('one\\ntwo')", r"ValueError: one \(faulty.py, line 2\); mend that"),
-    ],
-)
+@pytest.mark.parametrize(("line", "words"), [
+    ("1 / 0", r"ZeroDivisionError: division by zero \(faulty.py, line 2\)"),
+    ("import nothing_there", r"ModuleNotFoundError: No module named 'nothing_there'"),
+    ("def", r"SyntaxError: invalid syntax \(faulty.py, line 2\)"),
+    ("raise SystemExit(3)", r"SystemExit: 3 \(faulty.py, line 2\)"),
+    ("raise ValueError('one\\ntwo')", r"ValueError: one \(faulty.py, line 2\); mend that"),
+])  # fmt: skip
 def test_a_module_that_fails_is_told_in_one_line(folder: Path, line: str, words: str) -> None:
     (folder / "faulty.py").write_text(f"\n{line}\n")
     with pytest.raises(EngineError, match=words) as raised:
@@ -103,27 +97,22 @@ def test_a_module_that_fails_is_told_in_one_line(folder: Path, line: str, words:
     assert str(folder) not in sys.path[:1]
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ('*("penalty"', '*("a/b"', "name is 'a/b'; give letters, digits"),
-        ('*("penalty"', '*("mujoco.mine"', "name is 'mujoco.mine'"),
-        ('*("penalty"', '*("MuJoCo"', "calls itself MuJoCo, as the mujoco that crankcheck has"),
-        (", PROFILES, lambda", ", [], lambda", "profiles is a list; give a dict of Profile"),
-        ("lambda: VERSION", "VERSION", "version is '1.0'; give a function"),
-        ("cc.Setting(c, why)", "c", "'damping' is 0.1; give a Setting"),
-        (
-            "reports_accelerations=False",
-            "placing=lambda settings: 'cast'",
-            "placing of profile 'tuned' gives 'cast'; give integrated",
-        ),
-        ("reports_accelerations=False", "order=0", "order is 0; give a whole number above 0"),
-        ("reports_accelerations=False", "reports_accelerations=0", "give True or False"),
-        ("reports_accelerations=False", "applies_loads=1", "applies_loads is 1; give True or"),
-        ("reports_accelerations=False", "applies_springs=None", "applies_springs is None; give"),
-        ("reports_accelerations=False", "forces_of='all'", "forces_of is 'all'; give nothing or s"),
-    ],
-)
+@pytest.mark.parametrize(("old", "new", "words"), [
+    ('*("penalty"', '*("a/b"', "name is 'a/b'; give letters, digits"),
+    ('*("penalty"', '*("mujoco.mine"', "name is 'mujoco.mine'"),
+    ('*("penalty"', '*("MuJoCo"', "calls itself MuJoCo, as the mujoco that crankcheck has"),
+    (", PROFILES, lambda", ", [], lambda", "profiles is a list; give a dict of Profile"),
+    ("lambda: VERSION", "VERSION", "version is '1.0'; give a function"),
+    ("cc.Setting(c, why)", "c", "'damping' is 0.1; give a Setting"),
+    (
+        "reports_accelerations=False", "placing=lambda settings: 'cast'",
+        "placing of profile 'tuned' gives 'cast'; give integrated"),
+    ("reports_accelerations=False", "order=0", "order is 0; give a whole number above 0"),
+    ("reports_accelerations=False", "reports_accelerations=0", "give True or False"),
+    ("reports_accelerations=False", "applies_loads=1", "applies_loads is 1; give True or"),
+    ("reports_accelerations=False", "applies_springs=None", "applies_springs is None; give"),
+    ("reports_accelerations=False", "forces_of='all'", "forces_of is 'all'; give nothing or s"),
+])  # fmt: skip
 def test_an_object_that_is_no_engine_is_told_all_that_is_wrong(
     folder: Path, old: str, new: str, words: str
 ) -> None:
@@ -175,33 +164,24 @@ def test_nothing_is_looked_up_for_an_engine_of_ours(monkeypatch: pytest.MonkeyPa
 READ = "return self._poses([self._row()])"
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ("    def facts(self):", "    def fact(self):", "open gave a session that lacks facts"),
-        ("self.names, crank = cc", "1 / 0; self.names, crank = cc", "open raised ZeroDivisionErr"),
-        (
-            "return cc.Facts(",
-            "return None and cc.Facts(",
-            "facts gave None, and has to give a Facts",
-        ),
-        ("velocity_shift=SHIFT", "velocity_shift=None", "facts gave None for velocity_shift"),
-        ("gravity_m_s2=self.scene", "gravity_m_s2=[0.0] or self.scene", "gravity_m_s2, and has to"),
-        (
-            "settings={**self",
-            "springs={'s': (1.0, None, 0.0)}, settings={**self",
-            r"gave \(1.0, None, 0.0\) for spring s, and has to give \(rate, damping, free\)",
-        ),
-        ("settings={**self", "springs=[], settings={**self", r"gave \[\] for springs, and has"),
-        (READ, "return None", "facts gave None for poses, and has to give Poses"),
-        (", omega, none, none[:, 0].copy())", ", omega, none, none)", r"alpha as float64 of shape"),
-        ("theta, speed, omega", "theta.astype('f'), speed, omega", "crank theta as float32"),
-        ("poses[name] = ", "poses[name + '!'] = ", "gave no pose of crank; it has crank!"),
-        ("rows.append(self._row())", "pass", "record gave 1 samples, and has to give 21"),
-        ("return cc.Log(", "return (", r"record gave .* and has to give a Log"),
-        ("lambda: VERSION", "lambda: 1", "version gave 1, and has to give a str"),
-    ],
-)
+@pytest.mark.parametrize(("old", "new", "words"), [
+    ("    def facts(self):", "    def fact(self):", "open gave a session that lacks facts"),
+    ("self.names, crank = cc", "1 / 0; self.names, crank = cc", "open raised ZeroDivisionErr"),
+    ("return cc.Facts(", "return None and cc.Facts(", "facts gave None, and has to give a Facts"),
+    ("velocity_shift=SHIFT", "velocity_shift=None", "facts gave None for velocity_shift"),
+    ("gravity_m_s2=self.scene", "gravity_m_s2=[0.0] or self.scene", "gravity_m_s2, and has to"),
+    (
+        "settings={**self", "springs={'s': (1.0, None, 0.0)}, settings={**self",
+        r"gave \(1.0, None, 0.0\) for spring s, and has to give \(rate, damping, free\)"),
+    ("settings={**self", "springs=[], settings={**self", r"gave \[\] for springs, and has"),
+    (READ, "return None", "facts gave None for poses, and has to give Poses"),
+    (", omega, none, none[:, 0].copy())", ", omega, none, none)", r"alpha as float64 of shape"),
+    ("theta, speed, omega", "theta.astype('f'), speed, omega", "crank theta as float32"),
+    ("poses[name] = ", "poses[name + '!'] = ", "gave no pose of crank; it has crank!"),
+    ("rows.append(self._row())", "pass", "record gave 1 samples, and has to give 21"),
+    ("return cc.Log(", "return (", r"record gave .* and has to give a Log"),
+    ("lambda: VERSION", "lambda: 1", "version gave 1, and has to give a str"),
+])  # fmt: skip
 def test_what_breaks_the_contract_at_run_is_told_with_its_place(
     folder: Path, old: str, new: str, words: str
 ) -> None:
@@ -230,21 +210,14 @@ FORCES = """
     def read(self):"""
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ("record_forces", "record_force", "open gave a session that lacks record_forces"),
-        ("forces=forces)", "forces=None)", "record_forces gave None for forces, and has to give F"),
-        ("pins, {}, none", "{}, {}, none", r"gave \[\] for pins, and the scene has A, D, B, C, in"),
-        ("for b in names}", "for b in names[::-1]}", "its bodies are ground, crank, in this order"),
-        (
-            "b: none for",
-            "b: none[:, 0] for",
-            r"pin A on ground as float64 of shape \(21,\), and has",
-        ),
-        ("none[:, 0])", "[0.0])", r"gave torque as \[0.0\], and has to give float64 of shape"),
-    ],
-)
+@pytest.mark.parametrize(("old", "new", "words"), [
+    ("record_forces", "record_force", "open gave a session that lacks record_forces"),
+    ("forces=forces)", "forces=None)", "record_forces gave None for forces, and has to give F"),
+    ("pins, {}, none", "{}, {}, none", r"gave \[\] for pins, and the scene has A, D, B, C, in"),
+    ("for b in names}", "for b in names[::-1]}", "its bodies are ground, crank, in this order"),
+    ("b: none for", "b: none[:, 0] for", r"pin A on ground as float64 of shape \(21,\), and has"),
+    ("none[:, 0])", "[0.0])", r"gave torque as \[0.0\], and has to give float64 of shape"),
+])  # fmt: skip
 def test_forces_of_a_wrong_kind_are_told_with_what_they_have_to_be(
     folder: Path, old: str, new: str, words: str
 ) -> None:

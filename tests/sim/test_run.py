@@ -139,15 +139,12 @@ def apart(fake: ModuleType, from_s: float) -> dict[str, object]:
     return {"disturb": fake.turned_link("rocker", lambda t: np.where(t > from_s, 3.0, 0.0))}
 
 
-@pytest.mark.parametrize(
-    ("given", "apart_s", "stopped_s", "reason"),
-    [
-        ({"diverges_after": 120}, None, 0.12, "came apart at 0.12 s"),
-        (STOPPED, None, 0.12, "stopped after 0.12 s: no step was small enough"),
-        (STOPPED, 0.1, 0.1, "came apart at 0.10"),  # which was first
-        ({}, 0.2, 0.2, "came apart at 0.20"),
-    ],
-)
+@pytest.mark.parametrize(("given", "apart_s", "stopped_s", "reason"), [
+    ({"diverges_after": 120}, None, 0.12, "came apart at 0.12 s"),
+    (STOPPED, None, 0.12, "stopped after 0.12 s: no step was small enough"),
+    (STOPPED, 0.1, 0.1, "came apart at 0.10"),  # which was first
+    ({}, 0.2, 0.2, "came apart at 0.20"),
+])  # fmt: skip
 def test_a_run_that_ends_too_early_says_when_and_why(
     given: dict[str, object],
     apart_s: float | None,
@@ -211,30 +208,27 @@ def test_a_model_that_is_not_the_scene_raises(fake_engine: ModuleType) -> None:
         ran(engine=fake_engine.FakeEngine(solve, changes=heavier))
 
 
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"dt_s": 0.0}, "dt: found 0 s; it takes a step above 0"),
-        ({"dt_s": -1e-3}, "dt: found -0.001 s"),
-        ({"dt_s": float("nan")}, "dt: found nan s"),
-        ({"dt_s": 0.1}, r"dt: 0.1 s leaves 6.3 steps in a period .* dt up to 0.0785 s"),
-        ({"steps": 0}, "steps: found 0"),
-        ({"every": 0}, "logged every 0"),
-        ({"engine": "mujocco"}, "engine 'mujocco': unknown; did you mean mujoco"),
-        ({"engine": "x"}, "engine 'x': unknown; there are mujoco, pymunk"),
-        ({"profile": "best"}, "profile 'best': mujoco has none .* as-shipped or tuned"),
-        ({"settings": {"iteration": 3}}, "setting 'iteration': .* did you mean iterations"),
-        ({"settings": {"iterations": "many"}}, "setting iterations: found 'many'; .* whole number"),
-        ({"settings": {"iterations": 1.5}}, "setting iterations: found 1.5"),
-        ({"settings": {"tolerance": ""}}, "setting tolerance: found ''; it takes a number"),
-        ({"settings": {"integrator": "rk5"}}, "setting integrator: found 'rk5'; use Euler or RK4"),
-        ({"settings": {"close": "Q"}}, "close = Q: not a pin"),
-        ({"settings": {"close": "A"}}, "close = A: not a pin .* one of D, B, C; by default C"),
-        ({"settings": {"close": "C,D"}}, "close = D: no loop of fourbar-lecture-1 closes there"),
-        ({"settings": {"islands": "no"}}, "setting islands: found 'no'; use enable or disable"),
-        ({"engine": "pymunk", "settings": {"lines": "x"}}, "setting lines: found 'x'"),
-    ],
-)
+@pytest.mark.parametrize(("given", "message"), [
+    ({"dt_s": 0.0}, "dt: found 0 s; it takes a step above 0"),
+    ({"dt_s": -1e-3}, "dt: found -0.001 s"),
+    ({"dt_s": float("nan")}, "dt: found nan s"),
+    ({"dt_s": 0.1}, r"dt: 0.1 s leaves 6.3 steps in a period .* dt up to 0.0785 s"),
+    ({"steps": 0}, "steps: found 0"),
+    ({"every": 0}, "logged every 0"),
+    ({"engine": "mujocco"}, "engine 'mujocco': unknown; did you mean mujoco"),
+    ({"engine": "x"}, "engine 'x': unknown; there are mujoco, pymunk"),
+    ({"profile": "best"}, "profile 'best': mujoco has none .* as-shipped or tuned"),
+    ({"settings": {"iteration": 3}}, "setting 'iteration': .* did you mean iterations"),
+    ({"settings": {"iterations": "many"}}, "setting iterations: found 'many'; .* whole number"),
+    ({"settings": {"iterations": 1.5}}, "setting iterations: found 1.5"),
+    ({"settings": {"tolerance": ""}}, "setting tolerance: found ''; it takes a number"),
+    ({"settings": {"integrator": "rk5"}}, "setting integrator: found 'rk5'; use Euler or RK4"),
+    ({"settings": {"close": "Q"}}, "close = Q: not a pin"),
+    ({"settings": {"close": "A"}}, "close = A: not a pin .* one of D, B, C; by default C"),
+    ({"settings": {"close": "C,D"}}, "close = D: no loop of fourbar-lecture-1 closes there"),
+    ({"settings": {"islands": "no"}}, "setting islands: found 'no'; use enable or disable"),
+    ({"engine": "pymunk", "settings": {"lines": "x"}}, "setting lines: found 'x'"),
+])  # fmt: skip
 def test_bad_input_raises_with_the_cure(given: dict[str, Any], message: str) -> None:
     with pytest.raises(EngineError, match=message):
         ran(**given)

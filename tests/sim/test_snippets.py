@@ -94,26 +94,18 @@ def test_box_and_free_body_do_beside_a_snippet_what_they_did(
 
 HARMS = {
     "contacts off": (
-        "mujoco",
-        {},
-        lambda text: text + '<option><flag contact="disable"/></option>',
-    ),
+        "mujoco", {}, lambda text: text + '<option><flag contact="disable"/></option>'),
     "stiffness for all connects": (
-        "mujoco",
-        {},
-        lambda text: text + '<default><equality solref="0.005 1"/></default>',
-    ),
+        "mujoco", {}, lambda text: text + '<default><equality solref="0.005 1"/></default>'),
     "few iterations for all": ("mujoco", {"iterations": 1}, measured_as_we_did),
     "all that we measure with": ("mujoco", None, measured_as_we_did),
     "bias for all joints": (
-        "pymunk",
-        {"error_bias": 0.0},
-        lambda text: text.replace("in joints", "in space.constraints"),
-    ),
+        "pymunk", {"error_bias": 0.0},
+        lambda text: text.replace("in joints", "in space.constraints")),
     "few passes for all": ("pymunk", {"iterations": 5}, measured_as_we_did),
     "damping for all": ("pymunk", {"damping": 0.9}, measured_as_we_did),
     "an early end for all": ("exudyn", {"relative_tolerance": 1e-3}, measured_in_exudyn),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("harm", HARMS)

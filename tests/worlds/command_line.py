@@ -30,3 +30,10 @@ def refused(result: Result, *parts: str) -> None:
     assert "Traceback" not in result.output
     message = flat(result.stderr)
     assert [part for part in parts if part not in message] == [], message
+
+
+def told(line: str, *more: object, code: int = 0) -> str:
+    """What the command of a line, with more arguments, prints before it ends with this code."""
+    result = crank(*line.split(), *more)
+    assert result.exit_code == code, result.output
+    return result.output

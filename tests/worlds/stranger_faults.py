@@ -39,17 +39,12 @@ def _pin(name: str) -> list[Column]:
 COLUMNS: dict[str, list[Column]] = {
     "fourbar-lecture-1": [*_bar("crank"), *_bar("coupler"), *_bar("rocker"), *_pin("C")],
     "slider-crank-central": [
-        *_bar("crank"),
-        *_bar("rod"),
-        *_pin("B"),
-        Column("C_slider_displacement_mm", "C", "x", MM),
-        Column("C_slider_speed_m_s", "C", "vx"),
-    ],
+        *_bar("crank"), *_bar("rod"), *_pin("B"), Column("C_slider_displacement_mm", "C", "x", MM),
+        Column("C_slider_speed_m_s", "C", "vx")],
     "sixbar-watt": [
         *(column for bar in ("crank", "coupler", "rod", "lever") for column in _bar(bar)),
-        *_pin("F"),
-    ],
-}
+        *_pin("F")],
+}  # fmt: skip
 """A plain log of each linkage, whose headers say it all."""
 
 

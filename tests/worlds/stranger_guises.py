@@ -111,29 +111,23 @@ GUISES = {
     "dots": Guise(DOTTED, ("time_ms", "ms")),
     "units in brackets": Guise(BRACKETS, ("t [s]", "s"), uneven),
     "tabs and remarks": Guise(
-        SHORT,
-        dress=Dress(separator="\t", comments=("# rig 3", "# 1,2;3", "#"), newline="\r\n"),
-        name="log.tsv",
-    ),
+        SHORT, dress=Dress(separator="\t", comments=("# rig 3", "# 1,2;3", "#"), newline="\r\n"),
+        name="log.tsv"),
     "tabs in a .txt": Guise(SHORT, dress=Dress(separator="\t"), name="log.txt"),
     "a row of units": Guise(
-        UNITLESS,
-        ("time", "ms"),
-        dress=Dress(separator=";", units=("ms", "deg", "deg", "mm", "m/s")),
-    ),
+        UNITLESS, ("time", "ms"),
+        dress=Dress(separator=";", units=("ms", "deg", "deg", "mm", "m/s"))),
     "decimal commas": Guise(SHORT, dress=GERMAN, file='decimal = ","'),
     "decimal commas between tabs": Guise(
-        SHORT, dress=Dress(separator="\t", point=","), file='decimal = ","'
-    ),
+        SHORT, dress=Dress(separator="\t", point=","), file='decimal = ","'),
     "names that say nothing": Guise(
-        SENSORS, ("Zeit", "us"), uneven, Dress(quoted=True), mapped=True
-    ),
+        SENSORS, ("Zeit", "us"), uneven, Dress(quoted=True), mapped=True),
     "wrapped": Guise(WRAPPED, times=uneven),
     "wrapped, said": Guise(WRAPPED, times=uneven, mapped=True),
     "joints' angles": Guise(RELATIVE, times=uneven),
     "copies of a pin": Guise(COPIES),
     "few digits": Guise(SHORT, ("time_ms", "ms"), dress=Dress(digits=6)),
-}
+}  # fmt: skip
 """Of the four-bar."""
 
 

@@ -165,15 +165,12 @@ def test_a_spring_that_turns_a_beam_is_refused() -> None:
     assert "coupler-node-4: something turns it" in done.reason
 
 
-@pytest.mark.parametrize(
-    ("key", "said"),
-    [
-        ("flexural_n_m2", "element 1 of coupler has flexural_n_m2"),
-        ("axial_n", "element 1 of coupler has axial_n"),
-        ("damping_s", "element 1 of coupler has damping_s"),
-        ("density_kg_m", "element 1 of coupler has density_kg_m"),
-    ],
-)
+@pytest.mark.parametrize(("key", "said"), [
+    ("flexural_n_m2", "element 1 of coupler has flexural_n_m2"),
+    ("axial_n", "element 1 of coupler has axial_n"),
+    ("damping_s", "element 1 of coupler has damping_s"),
+    ("density_kg_m", "element 1 of coupler has density_kg_m"),
+])  # fmt: skip
 def test_a_beam_that_is_not_that_of_the_scene_is_refused(
     key: str, said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

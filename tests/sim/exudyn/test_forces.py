@@ -159,17 +159,12 @@ def test_what_acts_on_a_block_without_mass_goes_to_its_pin_and_its_guide() -> No
     assert np.nanmax(wrong[SETTLED:]) < 2.5e-4
 
 
-@pytest.mark.parametrize(
-    ("name", "sizes"),
-    [
-        ("fourbar-lecture-1", {"A": 0.01, "B": 0.01, "C": 0.02}),
-        slowly(
-            "shaper", {"B": 5.0, "F": 3.0, "E": 0.3}, reason="joints of the others, half a second"
-        ),
-        ("slotted-lever", {"B": 1.0, "C": 0.1}),
-        ("slider-crank-excel-210", {"C": 50.0}),
-    ],
-)
+@pytest.mark.parametrize(("name", "sizes"), [
+    ("fourbar-lecture-1", {"A": 0.01, "B": 0.01, "C": 0.02}),
+    slowly("shaper", {"B": 5.0, "F": 3.0, "E": 0.3}, reason="joints of the others, half a second"),
+    ("slotted-lever", {"B": 1.0, "C": 0.1}),
+    ("slider-crank-excel-210", {"C": 50.0}),
+])  # fmt: skip
 def test_constant_friction_takes_the_power_that_it_has_to(
     name: str, sizes: Mapping[str, float]
 ) -> None:

@@ -51,49 +51,30 @@ def torque(characteristic: Pulse | Staircase) -> Load:
 SCENES = {
     "gravity": let_go("fourbar-lecture-1", 0.3),
     "springs": let_go(
-        "fourbar-lecture-1",
-        0.3,
-        2.0,
-        LineSpring("line", 50.0, 0.5, 0.1, ("B", "D")),
+        "fourbar-lecture-1", 0.3, 2.0, LineSpring("line", 50.0, 0.5, 0.1, ("B", "D")),
         LineSpring("slack at nothing", 20.0, 0.1, 0.0, ("A", "C")),
         PinSpring("knee", 0.3, 0.01, 0.5, "C", ("coupler", "rocker")),
-        PinSpring("wound", 0.1, 0.0, 7.0, "A", (GROUND, "crank")),
-    ),
+        PinSpring("wound", 0.1, 0.0, 7.0, "A", (GROUND, "crank"))),
     "spring of a block": let_go(
-        "slider-crank-offset", 1.0, 0.0, SlideSpring("line", 900.0, 5.0, 0.3, "C")
-    ),
+        "slider-crank-offset", 1.0, 0.0, SlideSpring("line", 900.0, 5.0, 0.3, "C")),
     "spring of a block without mass": let_go(
-        "slider-crank-excel-210", 0.5, 1.0, SlideSpring("line", 300.0, 5.0, 2.0, "C")
-    ),
+        "slider-crank-excel-210", 0.5, 1.0, SlideSpring("line", 300.0, 5.0, 2.0, "C")),
     "spring of a moving line": let_go(
-        "slotted-lever", 0.5, 1.0, SlideSpring("line", 300.0, 5.0, 0.2, "B")
-    ),
+        "slotted-lever", 0.5, 1.0, SlideSpring("line", 300.0, 5.0, 0.2, "B")),
     "pulse": let_go("fourbar-lecture-1", 0.3, 0.0, torque(Pulse(2.0, 0.1, 0.05))),
     "jumps": let_go(
-        "fourbar-lecture-1",
-        -1.2,
-        0.0,
-        torque(Staircase((-1.0, 0.0, 0.05, 0.0503, 0.25), (0.1, 0.3, 0.8, -0.5, 0.0))),
-    ),
+        "fourbar-lecture-1", -1.2, 0.0,
+        torque(Staircase((-1.0, 0.0, 0.05, 0.0503, 0.25), (0.1, 0.3, 0.8, -0.5, 0.0)))),
     "motor": let_go(
-        "fourbar-lecture-1",
-        0.3,
-        1.0,
-        Load("motor", "crank", None, Polynomial((2.0, -0.2)), "omega"),
-    ),
+        "fourbar-lecture-1", 0.3, 1.0,
+        Load("motor", "crank", None, Polynomial((2.0, -0.2)), "omega")),
     "steep motor": let_go(
-        "fourbar-lecture-1",
-        0.3,
-        10.0,
-        Load("motor", "crank", None, Polynomial((30.0, -3.0)), "omega"),
-    ),
+        "fourbar-lecture-1", 0.3, 10.0,
+        Load("motor", "crank", None, Polynomial((30.0, -3.0)), "omega")),
     "drag": let_go(
-        "slider-crank-offset",
-        1.0,
-        4.0,
-        Load("drag", "block C", "C", Polynomial((0.0, -2.0, 0.0, -0.5)), "speed", "C"),
-    ),
-}
+        "slider-crank-offset", 1.0, 4.0,
+        Load("drag", "block C", "C", Polynomial((0.0, -2.0, 0.0, -0.5)), "speed", "C")),
+}  # fmt: skip
 
 
 @cache

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,14 +13,15 @@ from analytic.kinematics import solve
 from models.errors import EngineError
 from models.files import load_scene
 from models.hard import double_parallelogram
-from models.laws import FromRest, Law, Oscillating, SpeedChange
+from models.laws import FromRest, Oscillating, SpeedChange
 from models.scene import Scene
-from sim.engine import Drive, Run, Settings
+from sim.engine import Run, Settings
 from sim.exudyn.crank import CrankCourse, speeds
 from sim.exudyn.engine import ENGINE
 from sim.exudyn.session import ExudynSession
 from sim.run import run
-from sim.settings import resolved
+from tests.worlds import runs
+from tests.worlds.runs import driven_by, start_of
 
 FOURBAR = load_scene("fourbar-lecture-1")
 REDUNDANT = double_parallelogram("double-parallelogram", source="test")
@@ -31,35 +33,21 @@ LAWS = {
 TRAPEZOIDAL: Settings = {"integrator": "TrapezoidalIndex2"}
 
 
-def driven_by(law: Law) -> Scene:
-    return replace(FOURBAR, driver=replace(FOURBAR.driver, law=law))
-
-
 def opened(scene: Scene = FOURBAR, profile: str = "tuned", **settings: object) -> ExudynSession:
-    asked = resolved(ENGINE.profiles[profile], settings)  # type: ignore[arg-type]  # values
-    state = solve(scene, np.zeros(1)).state()
-    return ENGINE.open(scene, state, asked, 1e-3, "prescribed")
+    return runs.opened(scene, ENGINE, settings, profile=profile, dt_s=1e-3)
 
 
 def ran(
-    scene: Scene = FOURBAR,
-    profile: str = "tuned",
-    settings: Settings | None = None,
-    per_turn: int = 400,
-    drive: Drive = "prescribed",
+    scene: Scene = FOURBAR, profile: str = "tuned", *, per_turn: int = 400, **given: Any
 ) -> Run:
-    """A turn."""
-    state = solve(scene, np.zeros(1)).state()
+    """A turn, however it ends."""
     dt_s = scene.driver.law.period_s / per_turn
-    return run(
-        scene, state, ENGINE, profile, dt_s=dt_s, steps=per_turn, drive=drive, settings=settings
-    )
+    return run(scene, start_of(scene), ENGINE, profile, dt_s=dt_s, steps=per_turn, **given)
 
 
 def threads() -> int:
     """Of this process, where the system tells."""
-    tasks = Path("/proc/self/task")
-    return len(list(tasks.iterdir())) if tasks.exists() else 0
+    return len(list(Path("/proc/self/task").glob("*")))
 
 
 def off(scene: Scene, done: Run, link: str, what: str) -> np.ndarray:
@@ -71,20 +59,16 @@ def off(scene: Scene, done: Run, link: str, what: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize("adaptive", ["enable", "disable"])
-def test_the_clock_does_not_add_up_its_steps(adaptive: str) -> None:
-    """Late by 1e-10 s after some ten thousand steps, exudyn would do that as one more."""
+def test_clock_and_sensors_do_not_add_up_over_stretches(adaptive: str) -> None:
+    """Late by 1e-10 s after some ten thousand steps, exudyn would do that as one more. Sensors keep
+    each step once and begin anew at each stretch."""
     session = opened(adaptive_step=adaptive)
-    session.step(3000)
-    assert session._solver.it.currentTime == pytest.approx(3.0, abs=1e-15)
-    assert session._system.systemData.GetTime() == session._solver.it.currentTime
-
-
-@pytest.mark.parametrize("adaptive", ["enable", "disable"])
-def test_the_sensors_keep_each_step_once_and_begin_anew_at_each_stretch(adaptive: str) -> None:
-    session = opened(adaptive_step=adaptive)
+    session.step(2850)
     for steps in (100, 50):
         session.record(steps, 5)
         assert len(session._system.GetSensorStoredData(session._sensors[0])) == steps + 1
+    assert session._solver.it.currentTime == pytest.approx(3.0, abs=1e-15)
+    assert session._system.systemData.GetTime() == session._solver.it.currentTime
 
 
 def test_two_stretches_in_one_go_are_one() -> None:
@@ -132,9 +116,8 @@ def test_stepping_where_exudyn_goes_no_further_is_an_error_in_its_words() -> Non
 
 
 def test_a_step_too_short_for_its_clock_is_refused() -> None:
-    state = solve(FOURBAR, np.zeros(1)).state()
     with pytest.raises(EngineError, match=r"dt: found 1e-10 s; exudyn .* takes 1e-09 s or"):
-        ENGINE.open(FOURBAR, state, resolved(ENGINE.profiles["tuned"], None), 1e-10, "prescribed")
+        runs.opened(FOURBAR, ENGINE, dt_s=1e-10)
 
 
 def test_all_errors_of_the_trapezoidal_rule_are_of_second_order() -> None:
@@ -159,8 +142,7 @@ def test_accelerations_are_off_by_a_step_at_the_start_and_settle_sooner_where_tu
 
 
 @pytest.mark.parametrize(
-    ("law", "settings"),
-    [("oscillating", {}), ("oscillating", TRAPEZOIDAL), ("from rest", {})],
+    ("law", "settings"), [("oscillating", {}), ("oscillating", TRAPEZOIDAL), ("from rest", {})]
 )
 def test_a_law_that_starts_accelerating_leaves_nothing_that_rings(
     law: str, settings: Settings

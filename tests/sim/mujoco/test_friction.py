@@ -31,17 +31,14 @@ def rubbing(scene: Scene, **sizes: float) -> Scene:
     return replace(scene, friction={k: ConstantFriction(k, size) for k, size in sizes.items()})
 
 
-@pytest.mark.parametrize(
-    ("name", "sizes"),
-    [
-        ("fourbar-lecture-1", {"A": 0.05}),
-        ("fourbar-lecture-1", {"D": 0.05}),
-        ("fourbar-lecture-1", {"C": 0.05, "B": 0.03}),
-        ("slider-crank-offset", {"C": 10.0}),
-        ("slotted-lever", {"B": 1.0}),
-        ("whitworth", {"B": 1.0}),
-    ],
-)
+@pytest.mark.parametrize(("name", "sizes"), [
+    ("fourbar-lecture-1", {"A": 0.05}),
+    ("fourbar-lecture-1", {"D": 0.05}),
+    ("fourbar-lecture-1", {"C": 0.05, "B": 0.03}),
+    ("slider-crank-offset", {"C": 10.0}),
+    ("slotted-lever", {"B": 1.0}),
+    ("whitworth", {"B": 1.0}),
+])  # fmt: skip
 def test_friction_costs_the_torque_of_the_reference(name: str, sizes: dict[str, float]) -> None:
     """At 720 steps a turn, but for the samples about a turning point: there friction goes from one
     side to the other, in MuJoCo over some steps."""
@@ -99,16 +96,12 @@ def turned(scene: Scene) -> Scene:
     return replace(scene, driver=replace(driver, link=driver.base, base=driver.link, law=law))
 
 
-@pytest.mark.parametrize(
-    ("scene", "joint", "size"),
-    [
-        (load_scene("slider-crank-by-piston"), "C", 0.5),
-        (load_scene("fourbar-by-coupler"), "B", 0.02),
-        (turned(load_scene("fourbar-by-coupler")), "B", 0.02),
-        (load_scene("fourbar-lecture-1"), "A", 0.02),
-    ],
-    ids=["slider", "pin", "pin, links in the other order", "crank"],
-)
+@pytest.mark.parametrize(("scene", "joint", "size"), [
+    (load_scene("slider-crank-by-piston"), "C", 0.5),
+    (load_scene("fourbar-by-coupler"), "B", 0.02),
+    (turned(load_scene("fourbar-by-coupler")), "B", 0.02),
+    (load_scene("fourbar-lecture-1"), "A", 0.02),
+], ids=["slider", "pin", "pin, links in the other order", "crank"])  # fmt: skip
 def test_friction_of_the_driven_joint_is_not_taken_for_the_drive(
     scene: Scene, joint: str, size: float
 ) -> None:

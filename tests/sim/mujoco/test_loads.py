@@ -47,34 +47,24 @@ def test_random_mechanisms_under_random_loads_have_the_reactions_of_the_referenc
         assert "massless block cannot be held here" in str(error)  # noqa: PT017  # or it is right
 
 
-@pytest.mark.parametrize(
-    "load",
-    [
-        Load(
-            "push", block_name(load_scene("slider-crank-excel-210").sliders["C"]), "C", Constant(30)
-        ),
-        Load("tilt", "block C", "C", Constant(20.0), direction_rad=1.0, frame="body"),
-        Load("twist", "block C", None, Constant(0.7)),
-        Load("pulse", "block C", "C", Sine(20.0, 0.3, 0.4), direction_rad=2.0),
-        Load("gas", "block C", "C", Sine(20.0, 0.1, 0.4), "displacement", "C", "forward"),
-    ],
-    ids=lambda load: load.name,
-)
+@pytest.mark.parametrize("load", [
+    Load("push", block_name(load_scene("slider-crank-excel-210").sliders["C"]), "C", Constant(30)),
+    Load("tilt", "block C", "C", Constant(20.0), direction_rad=1.0, frame="body"),
+    Load("twist", "block C", None, Constant(0.7)),
+    Load("pulse", "block C", "C", Sine(20.0, 0.3, 0.4), direction_rad=2.0),
+    Load("gas", "block C", "C", Sine(20.0, 0.1, 0.4), "displacement", "C", "forward"),
+], ids=lambda load: load.name)  # fmt: skip
 def test_loads_on_a_block_without_mass_go_where_they_belong(load: Load) -> None:
     scene = load_scene("slider-crank-excel-210")
     light = replace(scene.sliders["C"], mass_kg=0.0, inertia_kg_m2=0.0)
     assert off(with_loads(replace(scene, sliders={"C": light}), load)) < 2e-4
 
 
-@pytest.mark.parametrize(
-    ("load", "works"),
-    [
-        (Load("push", "block B", "B", Constant(5.0), direction_rad=1.0), True),
-        (Load("twist", "block B", None, Constant(0.7)), True),
-        (Load("along", "block B", "B", Constant(5.0), frame="body"), False),
-    ],
-    ids=lambda given: getattr(given, "name", None),
-)
+@pytest.mark.parametrize(("load", "works"), [
+    (Load("push", "block B", "B", Constant(5.0), direction_rad=1.0), True),
+    (Load("twist", "block B", None, Constant(0.7)), True),
+    (Load("along", "block B", "B", Constant(5.0), frame="body"), False),
+], ids=lambda given: getattr(given, "name", None))  # fmt: skip
 def test_loads_on_a_block_without_mass_on_a_guide_that_moves(load: Load, works: bool) -> None:
     scene = with_loads(load_scene("slotted-lever"), load)
     if works:

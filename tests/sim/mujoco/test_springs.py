@@ -52,11 +52,9 @@ SCENES = {
     "between points": let_go(FOURBAR, LineSpring("l", 300.0, 4.0, 0.1, ("B", "D"))),
     "of the ground": let_go(FOURBAR, LineSpring("l", 300.0, 40.0, 0.0, ("C", "A"))),
     "where a loop closes": let_go(
-        FOURBAR, PinSpring("p", 2.0, 0.1, 0.3, "C", ("coupler", "rocker"))
-    ),
+        FOURBAR, PinSpring("p", 2.0, 0.1, 0.3, "C", ("coupler", "rocker"))),
     "seen from the other": let_go(
-        FOURBAR, PinSpring("p", 2.0, 0.1, -1, "C", ("rocker", "coupler"))
-    ),
+        FOURBAR, PinSpring("p", 2.0, 0.1, -1, "C", ("rocker", "coupler"))),
     "of the crank": let_go(FOURBAR, PinSpring("p", 2.0, 0.1, 5.0, "A", (GROUND, "crank"))),
     "at a pin": let_go(FOURBAR, PinSpring("p", 2.0, 0.1, 0.3, "B", ("coupler", "crank"))),
     "at the rocker": let_go(FOURBAR, PinSpring("p", 2.0, 0.1, -9.0, "D", ("rocker", GROUND))),
@@ -65,18 +63,13 @@ SCENES = {
     "of no mass": massless(let_go(CRANK, SlideSpring("s", 3e3, 30.0, 0.1, "C"))),
     "on a link": let_go("slotted-lever", SlideSpring("s", 3e2, 3.0, 0.1, "B")),
     "two of one": let_go(
-        FOURBAR,
-        PinSpring("p", 2.0, 0.0, 0.3, "A", (GROUND, "crank")),
-        PinSpring("q", 3.0, 0.1, 0.9, "A", ("crank", GROUND)),
-    ),
+        FOURBAR, PinSpring("p", 2.0, 0.0, 0.3, "A", (GROUND, "crank")),
+        PinSpring("q", 3.0, 0.1, 0.9, "A", ("crank", GROUND))),
     "all kinds": let_go(
-        CRANK,
-        SlideSpring("s", 3e3, 30.0, 0.1, "C"),
-        LineSpring("l", 3e3, 4.0, 0.1, ("B", "C")),
+        CRANK, SlideSpring("s", 3e3, 30.0, 0.1, "C"), LineSpring("l", 3e3, 4.0, 0.1, ("B", "C")),
         LineSpring("m", 3e3, 4.0, 0.1, ("A", "C")),
-        PinSpring("p", 20.0, 0.1, 0.3, "B", ("crank", "rod")),
-    ),
-}
+        PinSpring("p", 20.0, 0.1, 0.3, "B", ("crank", "rod"))),
+}  # fmt: skip
 
 
 def opened(scene: Scene) -> MujocoSession:

@@ -68,14 +68,10 @@ def in_pins(**bodies: tuple[str, str]) -> dict[str, Spring]:
     return {pin: PinSpring(pin, 1.0, 0.01, 0.3, pin, pair) for pin, pair in bodies.items()}
 
 
-@pytest.mark.parametrize(
-    "springs",
-    [
-        in_pins(A=(GROUND, "crank"), D=(GROUND, "rocker")),
-        in_pins(B=("crank", "coupler"), C=("coupler", "rocker")),
-    ],
-    ids=["in the ground", "of a link"],
-)
+@pytest.mark.parametrize("springs", [
+    in_pins(A=(GROUND, "crank"), D=(GROUND, "rocker")),
+    in_pins(B=("crank", "coupler"), C=("coupler", "rocker")),
+], ids=["in the ground", "of a link"])  # fmt: skip
 def test_two_springs_in_pins_of_rigid_links_are_no_chain(springs: dict[str, Spring]) -> None:
     """With a light coupler and a heavy rocker, for which a chain would be given 343 iterations."""
     scene = load_scene("fourbar-lecture-1")

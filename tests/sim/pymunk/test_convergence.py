@@ -146,14 +146,11 @@ def test_a_chain_is_given_what_it_needs_and_a_run_tells_both_numbers() -> None:
     assert needed == pytest.approx(HALVINGS * 18.0, rel=0.1)
 
 
-@pytest.mark.parametrize(
-    ("name", "asked"),
-    [
-        ("shaper", {"iterations": 10}),  # no chain
-        ("fourbar-elastic", {"iterations": 400}),  # enough of them
-        ("fourbar-elastic", {"iterations": 10, "error_bias": 0.5}),  # mends little at a time
-    ],
-)
+@pytest.mark.parametrize(("name", "asked"), [
+    ("shaper", {"iterations": 10}),  # no chain
+    ("fourbar-elastic", {"iterations": 400}),  # enough of them
+    ("fourbar-elastic", {"iterations": 10, "error_bias": 0.5}),  # mends little at a time
+])  # fmt: skip
 def test_all_else_has_the_iterations_that_were_asked_for(
     name: str, asked: dict[str, float]
 ) -> None:

@@ -69,18 +69,15 @@ def misses(found: Forces, exact: Forces, longest_m: float) -> dict[str, Array]:
     }
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "fourbar-lecture-1",
-        "sixbar-stephenson",  # a pin of three bodies
-        "slider-crank-excel-350",  # a block without mass, on a rail
-        "slider-crank-offset",  # one with mass, in a groove
-        "scotch-yoke",  # a gear on a moving guide
-        "slotted-lever",  # a block without mass on a moving guide
-        "slider-crank-by-piston",  # a slider that drives
-    ],
-)
+@pytest.mark.parametrize("name", [
+    "fourbar-lecture-1",
+    "sixbar-stephenson",  # a pin of three bodies
+    "slider-crank-excel-350",  # a block without mass, on a rail
+    "slider-crank-offset",  # one with mass, in a groove
+    "scotch-yoke",  # a gear on a moving guide
+    "slotted-lever",  # a block without mass on a moving guide
+    "slider-crank-by-piston",  # a slider that drives
+])  # fmt: skip
 def test_forces_are_the_reference_s_to_the_second_order(name: str) -> None:
     of_second_order(load_scene(name), 5e-4)
 
@@ -156,28 +153,20 @@ def loaded(name: str, *loads: Load) -> Scene:
 TURN = Sine(2.0, math.tau, 0.3)
 LOADED = {
     "in the frame of a link": loaded(
-        "fourbar-lecture-1", Load("a", "rocker", "C", Sine(3.0, 0.3), frame="body")
-    ),
+        "fourbar-lecture-1", Load("a", "rocker", "C", Sine(3.0, 0.3), frame="body")),
     "over the crank's angle, and on the crank": loaded(
-        "fourbar-lecture-1",
-        Load("a", "coupler", None, Sine(0.5, math.tau), over="angle"),
-        Load("b", "crank", "B", TURN, direction_rad=1.0),
-    ),
+        "fourbar-lecture-1", Load("a", "coupler", None, Sine(0.5, math.tau), over="angle"),
+        Load("b", "crank", "B", TURN, direction_rad=1.0)),
     "over a displacement, on a block without mass": loaded(
         "slider-crank-excel-350",
-        Load("a", "block C", "C", Sine(9.0, 4.0), over="displacement", slider="C"),
-    ),
+        Load("a", "block C", "C", Sine(9.0, 4.0), over="displacement", slider="C")),
     "on a block without mass on a moving guide": loaded(
-        "slotted-lever",
-        Load("a", "block B", "B", TURN, direction_rad=0.5, frame="body"),
-        Load("b", "block B", None, Constant(0.7)),
-    ),
+        "slotted-lever", Load("a", "block B", "B", TURN, direction_rad=0.5, frame="body"),
+        Load("b", "block B", None, Constant(0.7))),
     "on a block with mass": loaded(
-        "slider-crank-offset",
-        Load("a", "block C", "C", TURN, direction_rad=0.5),
-        Load("b", "block C", None, Constant(0.7)),
-    ),
-}
+        "slider-crank-offset", Load("a", "block C", "C", TURN, direction_rad=0.5),
+        Load("b", "block C", None, Constant(0.7))),
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("where", LOADED)

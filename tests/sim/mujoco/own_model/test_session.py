@@ -41,15 +41,12 @@ CRANKS = {
     "a disc": {"crank": DISC},
     "balanced": {"crank": '<geom type="box" size="0.1 0.01 0.01"/>'},
     "cut off by a weld": {
-        "crank": '<geom size="0.02"/>',
-        "beside": CUT,
-        "weld": '<weld body1="half" body2="crank"/>',
-        "crank_end": "half",
-    },
+        "crank": '<geom size="0.02"/>', "beside": CUT, "weld": '<weld body1="half" body2="crank"/>',
+        "crank_end": "half"},
     "no mean inertia": {"crank": DISC, "more": '<statistic meaninertia="1e-30"/>'},
     "much mean inertia": {"crank": DISC, "more": '<statistic meaninertia="1e30"/>'},
     "a heavy body beside": {"crank": DISC, "beside": HEAVY},
-}
+}  # fmt: skip
 BARE = {"beside": "", "weld": "", "more": "", "crank_end": "crank"}
 
 
