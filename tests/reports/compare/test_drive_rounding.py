@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -15,11 +16,11 @@ from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.drive_rounding import summed
 from reports.compare.errors import Errors
-from reports.judge.cell import Cell, check
+from reports.judge.cell import check
 from reports.judge.tolerance import limits
-from sim.engine import Poses
 from sim.run import run
 from tests.worlds.tiers import slow, slowly
+from tests.worlds.turns import of_turns
 
 ENGINES = ("mujoco", "pymunk")
 LAWS = {
@@ -29,16 +30,19 @@ LAWS = {
 }
 
 
+def share(scene: Scene, errors: Errors) -> float:
+    """The drive error over its limit."""
+    return errors.worst("drive").pure / limits(scene, errors, {})["drive"].number
+
+
 def drive_share(scene: Scene, engine: str, law: Law, steps_per_turn: float, steps: int) -> float:
-    """The drive error over its limit in a run that keeps some 2000 of its samples."""
+    """That of a run that keeps some 2000 of its samples."""
     scene = replace(scene, driver=replace(scene.driver, law=law))
     state = solve(scene, np.zeros(1)).state()
     dt_s = law.period_s / steps_per_turn
     done = run(scene, state, engine, dt_s=dt_s, steps=steps, every=max(steps // 2000, 1))
-    errors = compare(Beside.of(Truth(scene), done))
     assert done.status == "ok"
-    worst = errors.worst("drive")
-    return worst.pure / limits(scene, errors, {})["drive"].number
+    return share(scene, compare(Beside.of(Truth(scene), done)))
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -67,8 +71,7 @@ def test_the_drive_of_ten_thousand_turns_is_within_what_rounding_explains(
 def test_a_thousand_turns_are_within_tolerance_as_one_turn_is(
     turns: int, least: float, engine: str, fourbar: Scene
 ) -> None:
-    dt_s = fourbar.driver.law.period_s / 90
-    found = check(Cell(fourbar, engine, "tuned", dt_s, 90 * turns, converge=False))
+    found = check(of_turns(fourbar, engine, 90, turns))
     assert found.failures == ()
     assert found.limits["drive"].number > least
 
@@ -89,24 +92,11 @@ def test_every_limit_leaves_room_for_what_the_driver_passes_on(name: str, fourba
     assert grown >= 1e-4
 
 
-def late(poses: Poses) -> Poses:
-    """The crank 1e-5 rad behind throughout."""
-    crank = poses.bodies["crank"]
-    bodies = {**poses.bodies, "crank": replace(crank, theta=crank.theta - 1e-5)}
-    return replace(poses, bodies=bodies)
-
-
-def slow(poses: Poses) -> Poses:
-    """The crank slower by a part in 1e5."""
-    crank = poses.bodies["crank"]
-    theta = crank.theta - 1e-5 * (crank.theta - crank.theta[0])
-    return replace(poses, bodies={**poses.bodies, "crank": replace(crank, theta=theta)})
-
-
-@pytest.mark.parametrize("fault", [late, slow])
+@pytest.mark.parametrize("slower", [False, True])
 def test_a_part_in_a_hundred_thousand_is_seen_in_the_drive_of_a_turn(
-    fault: Callable[[Poses], Poses], fourbar: Scene, errors_of: Callable[..., Errors]
+    slower: bool, fourbar: Scene, errors_of: Callable[..., Errors], fake_engine: ModuleType
 ) -> None:
-    errors = errors_of(fourbar, fault)
-    worst = errors.worst("drive")
-    assert worst.pure > 5_000 * limits(fourbar, errors, {})["drive"].number
+    """The crank is behind by so much throughout, or slower by that."""
+    rate = fourbar.driver.law.peak_speed_rad_s
+    behind = fake_engine.turned_link("crank", lambda t: -1e-5 * (rate * t if slower else 1.0))
+    assert share(fourbar, errors_of(fourbar, behind)) > 5_000
