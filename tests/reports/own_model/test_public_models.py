@@ -11,11 +11,10 @@ from pathlib import Path
 import pytest
 
 from models.errors import CrankcheckError
-from reports.judge.cell import Checked
 from reports.judge.halving import worst_place
-from reports.own_model.account import Account, Line, checked_line, read_here
+from reports.own_model.account import Account, read_here
 from reports.own_model.request import ModelRequest
-from tests.worlds.own_models import texts
+from tests.worlds.own_models import line, read_text, texts
 
 FOLDER = Path(__file__).parents[2] / "worlds" / "public_models"
 
@@ -27,38 +26,28 @@ def read(name: str, joint: str, **more: object) -> Account:
 
 def error_of(account: Account, profile: str) -> float:
     """The largest error of place of a line."""
-    worst = worst_place(done(account, profile).errors)  # type: ignore[arg-type]
-    return float(worst.pure)
+    return float(worst_place(line(account, profile).errors).pure)  # type: ignore[arg-type]
 
 
-def done(account: Account, profile: str) -> Checked:
-    return checked_line(Line(account, profile))
-
-
-RUNS: Mapping[str, tuple[str, str, dict[str, object], tuple[float, float, float]]] = {
+QUARTER: Mapping[str, object] = {"start_deg": -90.0, "turns": 0.26}
+LESS: Mapping[str, object] = {"start_deg": -70.0, "turns": 0.19, "dt_s": 1e-3}
+RUNS: Mapping[str, tuple[str, Mapping[str, object], tuple[float, float, float]]] = {
     # As written, with contacts off, recommended.
-    "rhombus": ("rhombus", "drive", {}, (1.7, 2.2e-2, 8.8e-5)),
-    "slider-crank": ("slider-crank", "shaft", {}, (6.4e-3, 1.4e-3, 8.7e-7)),
-    "open-four-bar": (
-        "open-four-bar", "j0", {"branch": {"coupler-tip": 1}}, (4.3e-3, 4.3e-3, 3.6e-5)
-    ),
-    "chebyshev": (
-        "chebyshev", "left-pivot", {"start_deg": -90.0, "turns": 0.26}, (1.2e-1, 3.0e-2, 9.2e-5)
-    ),
-    "watt": (
-        "watt", "left-pivot", {"start_deg": -70.0, "turns": 0.19, "dt_s": 1e-3},
-        (9.3e-2, 2.5e-2, 8.7e-6),
-    ),
-}  # fmt: skip
+    "rhombus": ("drive", {}, (1.7, 2.2e-2, 8.8e-5)),
+    "slider-crank": ("shaft", {}, (6.4e-3, 1.4e-3, 8.7e-7)),
+    "open-four-bar": ("j0", {"branch": {"coupler-tip": 1}}, (4.3e-3, 4.3e-3, 3.6e-5)),
+    "chebyshev": ("left-pivot", QUARTER, (1.2e-1, 3.0e-2, 9.2e-5)),
+    "watt": ("left-pivot", LESS, (9.3e-2, 2.5e-2, 8.7e-6)),
+}
 
 
-@pytest.mark.parametrize("case", RUNS)
-def test_its_lines_are_as_measured(case: str) -> None:
-    name, joint, more, (written, off, recommended) = RUNS[case]
+@pytest.mark.parametrize("name", RUNS)
+def test_its_lines_are_as_measured(name: str) -> None:
+    joint, more, (written, off, recommended) = RUNS[name]
     account = read(name, joint, **more)
     assert error_of(account, "as-written") == pytest.approx(written, rel=0.5)
     assert error_of(account, "contacts-off") == pytest.approx(off, rel=0.5)
-    best = done(account, "recommended")
+    best = line(account, "recommended")
     assert best.verdict == "within", best.failures
     assert error_of(account, "recommended") < 2.0 * recommended
 
@@ -66,8 +55,8 @@ def test_its_lines_are_as_measured(case: str) -> None:
 def test_the_rhombus_touches_the_floor_and_itself_and_passes_change_points() -> None:
     account = read("rhombus", "drive")
     told = "\n".join(texts(account))
-    assert "a geom of lower touches floor" in told
-    assert "a geom of lower touches a geom of upper" in told
+    for words in ("floor", "a geom of upper"):
+        assert f"a geom of lower touches {words}" in told
     for name in ("motor", "position-servo", "velocity-servo"):
         assert f"actuator {name} acts on joint drive" in told
     assert "change points of far-corner at driver 90, 270 deg" in account.notes[-1]
@@ -109,11 +98,9 @@ def test_its_refusal_says_why(name: str, joint: str) -> None:
 
 def test_a_finger_of_mobility_two_names_what_is_loose(tmp_path: Path) -> None:
     text = (FOLDER / "gripper.xml").read_text(encoding="utf-8")
-    path = tmp_path / "finger.xml"
-    lines = [line for line in text.splitlines() if "<joint joint1" not in line]
-    path.write_text("\n".join(lines), encoding="utf-8")
+    lines = [each for each in text.splitlines() if "<joint joint1" not in each]
     with pytest.raises(CrankcheckError) as refused:
-        read_here(ModelRequest(path, "right-driver", 10.0))
+        read_text(tmp_path, "\n".join(lines), joint="right-driver")
     held = "with right-driver held these still move: right-coupler, right-spring-link"
     assert held in str(refused.value)
     assert "= 2; one driver needs mobility 1" in str(refused.value)
@@ -132,7 +119,7 @@ def test_the_open_four_bar_may_start_from_a_keyframe_or_a_branch() -> None:
 def test_a_part_of_a_turn_runs_both_ways(speed: float) -> None:
     start = -90.0 if speed > 0.0 else 2.0
     account = read("chebyshev", "left-pivot", start_deg=start, turns=0.256, speed_rad_s=speed)
-    assert done(account, "recommended").verdict == "within"
+    assert line(account, "recommended").verdict == "within"
 
 
 WAYS = {

@@ -22,7 +22,6 @@ from models.mjcf import build
 from models.motion import State
 from models.scene import Driver, Scene
 from reports.judge.cell import Cell, check
-from reports.own_model.account import Line, checked_line, read_here
 from reports.own_model.assembly import assembled
 from reports.own_model.request import ModelRequest
 from sim.mujoco.own_model.fault import ModelError
@@ -31,6 +30,7 @@ from sim.mujoco.own_model.read import read_model
 from sim.own_models import Advised
 from tests.worlds.drawn_model import HALF, UPRIGHT, Drawing, drawn, rotation
 from tests.worlds.own_four_bar import planted
+from tests.worlds.own_models import line, read_text
 from tests.worlds.strategies import Designed, mechanisms
 from tests.worlds.tiers import few, slowly
 
@@ -57,15 +57,16 @@ def start_of(scene: Scene) -> State:
     return solve(scene, np.zeros(1), bound=False).state()
 
 
-def request(path: Path, scene: Scene, **more: object) -> ModelRequest:
-    return ModelRequest(
-        path, f"{scene.driver.link}.{scene.driver_pivot}", **{"speed_rad_s": 10.0, **more}
-    )  # type: ignore[arg-type]
+def joint_of(scene: Scene) -> str:
+    return f"{scene.driver.link}.{scene.driver_pivot}"
 
 
-def read_back(path: Path, scene: Scene) -> Scene:
-    """What a model is read as, held in closed-form poses to what MuJoCo makes of it."""
-    asked = request(path, scene)
+def read_back(folder: Path, scene: Scene, drawing: Drawing | None = None) -> Scene:
+    """What a drawing of a scene, or its export, is read as, held in closed-form poses to what
+    MuJoCo makes of it."""
+    path, start = folder / "model.xml", start_of(scene)
+    path.write_text(drawn(scene, start, drawing) if drawing else build(scene, start))
+    asked = ModelRequest(path, joint_of(scene), 10.0)
     own = read_model(path, asked.joint)
     back = assembled(own, asked).scene
     motion = solve(back, np.linspace(0.0, 0.01, 3), bound=False)
@@ -115,29 +116,24 @@ def assert_moves_alike(back: Scene, scene: Scene) -> None:
 @pytest.mark.parametrize("name", sorted(shipped()))
 def test_each_shipped_scene_is_read_back_off_its_export(name: str, tmp_path: Path) -> None:
     scene = load_scene(name)
-    path = tmp_path / "model.xml"
-    path.write_text(build(scene, start_of(scene)), encoding="utf-8")
-    assert_same(read_back(path, scene), scene)
+    assert_same(read_back(tmp_path, scene), scene)
 
 
 RANGES = {"fourbar-double-rocker": {"turns": 0.09, "start_deg": 25.0}, "tangent": {"turns": 0.2}}
 """Where the driver of an export swings, a part of a turn is run at constant speed."""
 
 
-KINDS = {"fourbar-lecture-1", "fourbar-double-rocker", "shaper", "sixbar-watt", "tangent"}
+FIVE = {"fourbar-lecture-1", "fourbar-double-rocker", "shaper", "sixbar-watt", "tangent"}
+OTHER = "a joint, a plate or a law that these five have not"
 
 
-@pytest.mark.parametrize(
-    "name", few(sorted(shipped()), KINDS, "a joint, a plate or a law that these five have not")
-)
+@pytest.mark.parametrize("name", few(sorted(shipped()), FIVE, OTHER))
 def test_its_verdict_is_that_of_the_scene(name: str, tmp_path: Path) -> None:
     scene = load_scene(name)
-    path = tmp_path / "model.xml"
-    path.write_text(build(scene, start_of(scene)), encoding="utf-8")
-    speed = scene.driver.law.peak_speed_rad_s
-    asked = request(path, scene, converge=False, speed_rad_s=speed, **RANGES.get(name, {}))
-    account = read_here(asked)
-    own = checked_line(Line(account, "as-written"))
+    asked = {"speed_rad_s": scene.driver.law.peak_speed_rad_s, **RANGES.get(name, {})}
+    text = build(scene, start_of(scene))
+    account = read_text(tmp_path, text, joint=joint_of(scene), converge=False, **asked)
+    own = line(account, "as-written")
     cell = Cell(scene, "mujoco", "tuned", account.dt_s, account.steps, converge=False)
     assert own.verdict == check(cell).verdict == "within"
     assert own.errors is not None
@@ -147,9 +143,8 @@ def test_its_verdict_is_that_of_the_scene(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["fourbar-lecture-2", "slider-crank-offset"])
 def test_it_is_read_back_however_it_is_drawn(name: str, drawing: Drawing, tmp_path: Path) -> None:
     scene = load_scene(name)
-    path = tmp_path / "model.xml"
-    path.write_text(drawn(scene, start_of(scene), drawing), encoding="utf-8")
-    assert_same(read_back(path, scene), scene, size_m=float(np.linalg.norm(drawing.shift_m)))
+    size_m = float(np.linalg.norm(drawing.shift_m))
+    assert_same(read_back(tmp_path, scene, drawing), scene, size_m)
 
 
 @pytest.mark.parametrize(
@@ -160,46 +155,31 @@ def test_it_is_read_back_however_it_is_drawn(name: str, drawing: Drawing, tmp_pa
 def test_a_link_that_a_weld_cuts_is_one(
     name: str, cut: str, askew: int | None, tmp_path: Path
 ) -> None:
-    scene = load_scene(name)
-    path = tmp_path / "model.xml"
-    drawing = Drawing(cut=cut, sites=False, askew=askew)
-    path.write_text(drawn(scene, start_of(scene), drawing), encoding="utf-8")
-    assert_same(read_back(path, scene), scene)
+    scene, drawing = load_scene(name), Drawing(cut=cut, sites=False, askew=askew)
+    assert_same(read_back(tmp_path, scene, drawing), scene)
 
 
 APART = """<mujoco>
   <compiler angle="radian"/>
   <option gravity="0 0 0"/>
   <default>
-    <geom type="capsule" size="0.004" contype="0" conaffinity="0"/>
-    <joint axis="0 0 1"/>
+    <geom type="capsule" size="0.004" contype="0" conaffinity="0"/><joint axis="0 0 1"/>
   </default>
   <worldbody>
     <body name="near" pos="0.5 0.7 0" euler="0 0 0.4">
-      <joint type="slide" axis="1 0 0"/>
-      <joint type="slide" axis="0 1 0"/>
-      <joint/>
-      {near}
-      <site name="near.C"/>
+      <joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 1 0"/><joint/>
+      {near}<site name="near.C"/>
     </body>
-    <body name="crank">
-      <joint name="A"/>
-      <geom fromto="0 0 0 0.1 0 0"/>
-      <body name="rod" pos="0.1 0 0">
-        <joint name="B"/>
-        <geom fromto="0 0 0 0.3 0 0"/>
+    <body name="crank"><joint name="A"/><geom fromto="0 0 0 0.1 0 0"/>
+      <body name="rod" pos="0.1 0 0"><joint name="B"/><geom fromto="0 0 0 0.3 0 0"/>
         <site name="rod.C" pos="0.3 0 0"/>
       </body>
     </body>
     <body name="far" pos="0.4 0 0" euler="0 0 {turned}">
-      <joint name="S" type="slide" axis="{axis} 0"/>
-      {far}
+      <joint name="S" type="slide" axis="{axis} 0"/>{far}
     </body>
   </worldbody>
-  <equality>
-    <connect site1="rod.C" site2="near.C"/>
-    {weld}
-  </equality>
+  <equality><connect site1="rod.C" site2="near.C"/>{weld}</equality>
 </mujoco>
 """
 """A slider-crank whose sliding link is two bodies, drawn apart, with the slide on the second one;
@@ -216,47 +196,37 @@ def test_bodies_that_a_weld_has_to_pull_together_are_one_link(
     place, turn = (0.1 + 0j, 0.2) if not turned_round else (-0.1 * back, -0.2)
     pose = f"{place.real!r} {place.imag!r} 0 {math.cos(turn / 2)!r} 0 0 {math.sin(turn / 2)!r}"
     names = ("far", "near") if turned_round else ("near", "far")
-    weld = f'<weld body1="{names[0]}" body2="{names[1]}" relpose="{pose}"/>'
     # Both masses are in the pin of a block, which is the origin of the near one.
     pin = -0.1 * back
     ball = '<geom type="sphere" size="0.01" pos="{} {} 0"/>'
     bar = '<geom fromto="0 0 0 0.1 0 0"/>'
-    path = tmp_path / "model.xml"
     text = APART.format(
         turned=0.3,
         axis=f"{math.cos(0.3)!r} {-math.sin(0.3)!r}",
-        weld=weld,
+        weld=f'<weld body1="{names[0]}" body2="{names[1]}" relpose="{pose}"/>',
         near=ball.format(0, 0) if block else bar,
         far=ball.format(pin.real, pin.imag) if block else bar,
     )
-    path.write_text(text, encoding="utf-8")
-    asked = ModelRequest(path, "A", 10.0, converge=False, turns=0.3)
-    account = read_here(asked)
+    account = read_text(tmp_path, text, converge=False, turns=0.3)
     (slider,) = account.scene.sliders.values()
     assert (slider.mass_kg > 0.0) == block
     assert math.sin(slider.direction_rad) == pytest.approx(0.0, abs=1e-12)
-    assert checked_line(Line(account, "recommended")).verdict == "within"
+    assert line(account, "recommended").verdict == "within"
 
 
 @pytest.mark.parametrize(
     ("kind", "error"),
-    [
-        ("tilted", 2e-6),
-        ("far away", 2e-6),
-        ("all bodies free", 5e-6),
-        ("balanced", 5e-6),
-        ("cut", 2e-6),
-    ],
-)
+    [("tilted", 2e-6), ("far away", 2e-6), ("all bodies free", 5e-6), ("balanced", 5e-6),
+     ("cut", 2e-6)],
+)  # fmt: skip
 def test_it_runs_as_recommended_however_it_is_drawn(
     kind: str, error: float, tmp_path: Path
 ) -> None:
     scene = load_scene("fourbar-lecture-1")
     drawing = DRAWINGS.get(kind, Drawing(cut="coupler", sites=False))
-    path = tmp_path / "model.xml"
-    path.write_text(drawn(scene, start_of(scene), drawing), encoding="utf-8")
-    account = read_here(request(path, scene, converge=False, turns=0.5))
-    done = checked_line(Line(account, "recommended"))
+    text = drawn(scene, start_of(scene), drawing)
+    account = read_text(tmp_path, text, joint=joint_of(scene), converge=False, turns=0.5)
+    done = line(account, "recommended")
     assert done.verdict == "within", done.failures
     assert done.errors.worst("angle").pure < error
 
@@ -272,12 +242,12 @@ def test_any_mechanism_is_read_back_off_any_drawing(
     @settings(max_examples=examples, deadline=None, suppress_health_check=[HealthCheck.too_slow])
     @given(mechanisms() | mechanisms(LINES_ONLY), st.integers(0, 10**6), st.booleans())
     def drawn_anyhow(designed: Designed, seed: int, sites: bool) -> None:
-        check_read_back(tmp_path_factory.mktemp("drawn") / "model.xml", designed, seed, sites)
+        check_read_back(tmp_path_factory.mktemp("drawn"), designed, seed, sites)
 
     drawn_anyhow()
 
 
-def check_read_back(path: Path, designed: Designed, seed: int, sites: bool) -> None:
+def check_read_back(folder: Path, designed: Designed, seed: int, sites: bool) -> None:
     scene, chance = designed.scene, random.Random(seed)
     drawing = Drawing(
         turn=rotation(chance),
@@ -287,8 +257,7 @@ def check_read_back(path: Path, designed: Designed, seed: int, sites: bool) -> N
         reads=chance.uniform(-1.0, 1.0),
     )
     try:
-        path.write_text(drawn(scene, start_of(scene), drawing), encoding="utf-8")
-        back = read_back(path, scene)
+        back = read_back(folder, scene, drawing)
     except (EngineError, ModelError) as error:
         # Loops that no engine can close without a mass, and links that are all one point.
         assume(not any(words in str(error) for words in ("mass_kg above 0", "have no length")))
@@ -297,14 +266,12 @@ def check_read_back(path: Path, designed: Designed, seed: int, sites: bool) -> N
 
 
 def test_the_patched_file_runs_as_the_line_recommended(tmp_path: Path) -> None:
-    path = tmp_path / "model.xml"
-    path.write_text(planted('solref="0.005 0.6"', 'solref="0.05 1"'), encoding="utf-8")
-    asked = ModelRequest(path, "A", 10.0, converge=False, turns=0.3)
-    account = read_here(asked)
-    own = read_model(path, "A")
+    text = planted('solref="0.005 0.6"', 'solref="0.05 1"')
+    account = read_text(tmp_path, text, converge=False, turns=0.3)
+    own = read_model(tmp_path / "model.xml", "A")
     advised = advice(own.planar.model, account.dt_s, Advised())
-    recommended = checked_line(Line(account, "recommended"))
-    path.write_bytes(patched(path.read_bytes(), [0], 1, advised))
-    written = checked_line(Line(read_here(asked), "as-written"))
+    better = patched(text.encode(), [0], 1, advised)
+    again = read_text(tmp_path, better, converge=False, turns=0.3)
+    recommended, written = line(account, "recommended"), line(again, "as-written")
     for quantity in ("angle", "gap", "acceleration"):
         assert written.errors.worst(quantity) == recommended.errors.worst(quantity)
