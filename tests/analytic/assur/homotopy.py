@@ -136,11 +136,7 @@ def equations_of(row: LegRow) -> list[Equation]:
         return [total(product(own, conjugate(own)), {ONE: -(row.length**2)})]
     across = complex(*row.normal).conjugate()
     if isinstance(row, LineRow):
-        own = {
-            Z: across,
-            TAU: across * complex(*row.a),
-            ONE: -across * complex(*row.through),
-        }
+        own = {Z: across, TAU: across * complex(*row.a), ONE: -across * complex(*row.through)}
     else:
         seen = {Z: -1.0, ONE: complex(*row.pin)}
         own = product({(0, 0, 0, 1): across}, seen)
