@@ -1,24 +1,37 @@
-"""`crankcheck export` of what is let go, or bends: a model that runs as it is."""
+"""`crankcheck export`, of what is let go or bends as well: a model that runs as it is; and `view`,
+`scenes` and `engines`."""
 
 from __future__ import annotations
+
+import io
+import math
+from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
+from PIL import Image
 
 from analytic.elastic.discretisation import Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.free.release import release
-from models.files import load_scene
+from models.files import kinds, load_scene, shipped
+from models.laws import Oscillating
 from models.motion import Motion
-from tests.worlds.command_line import crank
+from reports.cli.commands import listing
+from reports.drawing import gif
+from reports.drawing.shape import COLOURS
+from sim.registry import Availability
+from tests.worlds.command_line import told
+from tests.worlds.tiers import few
+
+SOME = ["fourbar-lecture-1", "slider-crank-offset", "shaper", "scotch-yoke", "tangent", "whitworth"]
 
 
 def exported(name: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
     """The model that is printed, as its keyframe has it."""
-    told = crank("export", name)
-    assert told.exit_code == 0
-    model = mujoco.MjModel.from_xml_string(told.output)
+    model = mujoco.MjModel.from_xml_string(told(f"export {name}"))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     return model, data
@@ -55,3 +68,99 @@ def test_elastic_links_that_are_let_go_are_exported_as_segments_at_rest() -> Non
     assert model.nbody == 1 + 2 + 16
     mujoco.mj_step(model, data, 20)
     assert np.abs(data.qvel).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", few(shipped(), SOME, "the other scenes are of the same joints"))
+def test_the_exported_model_compiles_alone_and_its_keyframe_closes_the_loops(name: str) -> None:
+    model, data = exported(name)
+    mujoco.mj_forward(model, data)
+    assert np.max(np.abs(data.efc_pos[: data.ne]), initial=0.0) < 1e-12
+
+
+def test_a_model_may_be_written_and_its_loop_closed_where_it_is_told(tmp_path: Path) -> None:
+    told("export fourbar-lecture-1 -o", tmp_path / "scene.xml")
+    model = (tmp_path / "scene.xml").read_text(encoding="utf-8")
+    assert model == told("export fourbar-lecture-1")
+    assert 'site1="coupler.C"' in model
+    other = told("export fourbar-lecture-1 --close B")
+    assert 'site1="crank.B"' in other
+    assert 'site1="coupler.C"' not in other
+
+
+def test_scenes_lists_every_shipped_scene_under_its_kind_with_its_groups() -> None:
+    output = told("scenes")
+    places = [output.index(f"{kind}: ") for kind in kinds()]
+    for kind, start, end in zip(kinds(), places, [*places[1:], None], strict=True):
+        assert all(f"\n{name} " in output[start:end] for name in shipped(kind))
+    assert "RPR + RRP" in output
+
+
+def test_engines_lists_versions_profiles_and_settings_with_reasons_and_what_is_missing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    plain, full = told("engines"), told("engines --settings")
+    assert [word for word in ("mujoco", "tuned", "as-shipped") if word not in plain] == []
+    assert len(full.splitlines()) > len(plain.splitlines()) + 5
+    missing = (Availability("mujoco", None, "pip install mujoco"),)
+    monkeypatch.setattr(listing, "available", lambda: missing)
+    assert "not installed: pip install mujoco" in told("engines")
+
+
+def test_view_with_a_screen_opens_the_assembled_model(monkeypatch: pytest.MonkeyPatch) -> None:
+    viewer = pytest.importorskip("sim.mujoco.viewer")
+    shown: list[int] = []
+    monkeypatch.setattr(viewer.mujoco.viewer, "launch", lambda model, _: shown.append(model.nkey))
+    monkeypatch.setattr("reports.cli.commands.view.has_screen", lambda: True)
+    told("view tangent")
+    assert shown == [1]
+
+
+def test_view_without_a_screen_draws_an_animation_that_moves(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.setattr("reports.cli.commands.view.sys.platform", "linux")
+    monkeypatch.setattr(gif, "FRAMES", 4)
+    assert "scotch-yoke.gif" in told("view scotch-yoke")
+    frames = []
+    with Image.open(tmp_path / "scotch-yoke.gif") as film:
+        assert film.n_frames == 4
+        for index in range(4):
+            film.seek(index)
+            frames.append(film.convert("RGB").tobytes())
+    assert len(set(frames)) > 1
+
+
+def test_what_a_slider_drives_is_drawn_with_its_forces(tmp_path: Path) -> None:
+    told("view slider-crank-by-piston --forces -o", tmp_path / "motion.png")
+
+
+STRIP = "half a second for the same drawing of other links"
+
+
+@pytest.mark.parametrize("name", few(["shaper", "tangent", "sixbar-stephenson"], ["shaper"], STRIP))
+def test_a_strip_shows_every_link_in_its_colour(name: str) -> None:
+    scene = load_scene(name)
+    with Image.open(io.BytesIO(gif.strip(scene))) as image:
+        pixels = np.asarray(image.convert("RGB")).reshape(-1, 3)
+    for colour in COLOURS[: len(scene.links)]:
+        rgb = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
+        assert np.any(np.all(pixels == rgb, axis=1)), colour
+
+
+@pytest.mark.parametrize("name", few(["tangent", "fourbar-double-rocker"], ["tangent"], STRIP))
+def test_a_strip_of_a_swinging_driver_shows_both_ends_of_its_swing(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    titles: list[str] = []
+    monkeypatch.setattr(Axes, "set_title", lambda _, text, **__: titles.append(text))
+    scene = load_scene(name)
+    law = scene.driver.law
+    assert isinstance(law, Oscillating)
+    gif.strip(scene)
+    shown = [float(title.split()[-2]) for title in titles]
+    for side in (-1.0, 1.0):
+        end = math.degrees(law.centre_rad + side * law.amplitude_rad)
+        assert min(abs(angle - end) for angle in shown) <= 0.5

@@ -1,4 +1,5 @@
-"""`crankcheck structure`, `chains` and `rotatability`: their tables, sheets and JSON."""
+"""`crankcheck structure`, `chains`, `rotatability`, `joint` and `mobility`: tables, sheets, JSON,
+and which schemes and joints are refused. More of what they tell is in `test_told.py`."""
 
 from __future__ import annotations
 
@@ -9,95 +10,114 @@ import pytest
 
 from analytic.structure.mobility import analyse
 from models.files import load_scene
+from models.scheme_files import SCHEMES, shipped_schemes
+from models.touching import CONTACTS, shipped_contacts
 from reports.face.assemblies import all_assemblies
-from tests.worlds.command_line import crank
+from tests.worlds.command_line import crank, flat, refused, told
 from tests.worlds.without_pdf import without_pdf
-
-
-def test_groups_classes_and_assemblies_are_told() -> None:
-    told = crank("structure", "sixbar-stephenson").output
-    assert "the mechanism is of class II" in told
-    assert "4 assemblies with crank at 90 deg" in told
-    lines = told.splitlines()
-    assert next(line for line in lines if "pin G of" in line).split()[6] == "III"
-    assert next(line for line in lines if "pin A of" in line).startswith("*")
 
 
 @pytest.mark.parametrize("name", ["fourbar-lecture-1", "shaper", "tangent", "fourbar-crossed"])
 def test_one_assembly_is_the_scenes_own(name: str) -> None:
     scene = load_scene(name)
-    own = [one for one in all_assemblies(scene, analyse(scene), 0.6) if one.is_own]
-    assert len(own) == 1
-    assert all(scene.branch.get(key, 1) == number for key, number in own[0].branch.items())
-
-
-def test_an_angle_out_of_reach_has_no_assembly() -> None:
-    told = crank("structure", "fourbar-double-rocker", "--at-deg", "170")
-    assert told.exit_code == 0
-    assert "no assemblies with driver at 170 deg" in told.output
+    (own,) = (one for one in all_assemblies(scene, analyse(scene), 0.6) if one.is_own)
+    assert all(scene.branch.get(key, 1) == number for key, number in own.branch.items())
 
 
 def test_assemblies_are_drawn(tmp_path: Path) -> None:
-    file = tmp_path / "all.svg"
-    assert crank("structure", "fourbar-lecture-1", "-o", str(file)).exit_code == 0
-    drawn = file.read_text(encoding="utf-8")
+    told("structure fourbar-lecture-1 -o", tmp_path / "all.svg")
+    drawn = (tmp_path / "all.svg").read_text(encoding="utf-8")
     assert "branch: C +1; this scene's" in drawn
     assert "branch: C -1" in drawn
-
-
-def test_chains_are_listed_with_their_assortments() -> None:
-    told = crank("chains", "--links", "8").output
-    assert told.startswith("16 chains of 8 links with mobility 1")
-    assert [line.split()[-1] for line in told.splitlines()[-3:]] == ["9", "5", "2"]
-
-
-def test_mechanisms_are_listed_with_their_class() -> None:
-    told = crank("chains", "--inversions").output
-    assert "2 chains of 6 links with mobility 1, 5 mechanisms" in told
-    line = next(line for line in told.splitlines() if line.startswith("Stephenson II "))
-    assert "class III or IV" in line
-
-
-def test_types_are_listed() -> None:
-    told = crank("chains", "--links", "4", "--sliders", "4").output
-    assert [line.split()[0] for line in told.splitlines()[2:]] == ["RRRR", "RRRP", "RRPP", "RPRP"]
 
 
 @pytest.mark.parametrize("ending", ["svg", "pdf"])
 def test_a_sheet_of_chains_is_written(tmp_path: Path, ending: str) -> None:
     file = tmp_path / f"chains.{ending}"
     with without_pdf():
-        result = crank("chains", "--links", "4", "--sliders", "2", "--inversions", "-o", file)
-    assert result.exit_code == 0
-    assert "7 mechanisms" in result.output
+        said = told("chains --links 4 --sliders 2 --inversions -o", file)
+    assert "7 mechanisms" in said
     raw = file.read_bytes()
     assert b"layer-chains" in raw if ending == "svg" else raw.startswith(b"%PDF")
 
 
 def test_json_holds_what_the_tables_say() -> None:
-    table = crank("rotatability", "fourbar-lecture-1")
-    assert "Grashof crank-rocker, margin 0.05 m" in table.output
-    assert "60.0323" in table.output
-    told = json.loads(crank("rotatability", "whitworth", "--json").output)
-    assert told["rotations"][1]["turns"] == 1
-    assert [branch["scene"] for branch in told["branches"]].count(True) == 1
+    found = json.loads(told("rotatability whitworth --json"))
+    assert found["rotations"][1]["turns"] == 1
+    assert [branch["scene"] for branch in found["branches"]].count(True) == 1
+    assert json.loads(told("rotatability triad-platform --json"))["ends"] == []
 
 
-@pytest.mark.parametrize(
-    ("positions", "code", "word"),
-    [(("30", "90"), 0, "led through"), (("30:+", "90:-"), 1, "a circuit defect")],
+def test_all_that_ships_is_listed() -> None:
+    assert set(shipped_contacts()) <= set(flat(told("joint")).split())
+    assert set(shipped_schemes()) <= set(flat(told("mobility")).split())
+
+
+def test_a_scheme_with_lower_pairs_alone_is_shown_and_written(tmp_path: Path) -> None:
+    path = tmp_path / "lower.toml"
+    said = flat(told("mobility cam-flat-follower --replace -o", path))
+    assert "replaced B by pin B-1 (cam, B-link) at (0.02, 0.01) m, slider B-2" in said
+    assert "= 3*3 - 2*4 - 1*0 = 1; mobility 1" in said
+    assert "mobility W = 1" in flat(told("mobility", path))
+    assert "no higher pair" in told("mobility --replace", path, code=2)
+
+
+FOURBAR, GEARS, CAM, HOOKE, SHAFTS = (
+    (SCHEMES / f"{name}.toml").read_text(encoding="utf-8")
+    for name in ("four-bar", "gear-pair", "cam-flat-follower", "hooke", "cardan-shaft")
 )
-def test_the_exit_code_tells_a_defect(positions: tuple[str, str], code: int, word: str) -> None:
-    options = [part for position in positions for part in ("--position", position)]
-    result = crank("rotatability", "fourbar-lecture-1", *options)
-    assert result.exit_code == code
-    assert word in result.output
+LINE = (CONTACTS / "line-contact.toml").read_text(encoding="utf-8")
 
 
-def test_the_branch_of_what_has_no_circuits_is_told_with_its_ends() -> None:
-    told = crank("rotatability", "slider-crank-by-piston")
-    assert told.exit_code == 0
-    assert told.output.startswith("slider-crank-by-piston: the branch that it is on alone\n")
-    assert "slider C ends at 0.2 m: crank and rod in line" in told.output
-    told = crank("rotatability", "triad-platform", "--json")
-    assert json.loads(told.output)["ends"] == []
+def test_what_the_file_says_of_the_mobility_is_held_against_it(tmp_path: Path) -> None:
+    path = tmp_path / "wrong.toml"
+    path.write_text(FOURBAR.replace("mobility = 1", "mobility = 2"), encoding="utf-8")
+    assert "mobility W = 1; the file says 2" in flat(told("mobility", path))
+
+
+OF_SCHEMES = [
+    (FOURBAR.replace('kind = "pin"', 'kind = "pim"', 1), "found 'pim'; did you mean pin?"),
+    (FOURBAR.replace('"pin"', '"revolute"', 1), "joints.A: axis: missing; a revolute joint"),
+    (FOURBAR.replace('"rocker"], kind', '"roker"], kind', 1), "no link roker; did you mean"),
+    (FOURBAR.replace('["ground", "crank"]', '["crank", "crank"]'), "found crank twice"),
+    (FOURBAR.replace("at_m = [0.0, 0.0]", "at_m = [0.0]"), "joints.A.at_m: found [0.0]"),
+    (FOURBAR.replace("at_m = [0.0, 0.0]", "at_m = [0.0, 0.0, 0.0]"), "planar schemes have 2"),
+    (FOURBAR.replace("at_m = [0.0, 0.0]", "at_m = [nan, 0.0]"), "found nan"),
+    (FOURBAR.replace("[0.0, 0.0]", "[0.0, 0.0], axis = [0, 1]"), "axis: not of a pin joint"),
+    (FOURBAR.replace('"rocker"]', '"rocker", "rod"]', 1), "leads from ground to rod; join it"),
+    (FOURBAR.replace('"rocker"]', '"crank"]', 1), "a name stands there twice"),
+    (FOURBAR.replace('"rocker"]', '"ground"]', 1), "ground is always there"),
+    (FOURBAR.replace('"planar"', '"flat"'), "space: found 'flat'; input should be 'planar' or"),
+    (FOURBAR.replace("mobility = 1", "weight = 1"), "weight: unknown key"),
+    (FOURBAR.partition("[joints]")[0], "joints: missing"),
+    (FOURBAR + "?", "not valid TOML"),
+    (HOOKE.replace("axis = [1.0, 0.0, 0.0]", "axis = [0, 0, 0]"), "of length 0; give a direct"),
+    (SHAFTS.replace("[-0.1, 0.3, 0.0]", "[0.0, 0.0, -3.0]", 1), "axes: the two are parallel"),
+    (GEARS.replace("[0.05, 0.1]", "[0.05, 0.2]"), "0.15 m apart, where the pitch circles"),
+    (GEARS.replace("[0.05, 0.1]", "[0.05, -0.04]"), "with a smaller radius"),
+    (GEARS.replace("[0.05, 0.1]", "[0.0, 0.15]"), "give the radii of two pitch circles"),
+    (GEARS.replace("radii_m", "pressure_deg = 90.0, radii_m"), "found 90; use 5 to 45"),
+    (CAM.replace("[0.04, inf]", "[inf, inf]"), "that is a slider"),
+    (CAM.replace("[0.04, inf]", "[0.04, -0.04]"), "that is a pin"),
+    (CAM.replace("[0.04, inf]", "[0.04, nan]"), "radii_m"),
+]
+OF_JOINTS = [
+    (LINE.replace('"line"', '"lines"'), "found 'lines'; did you mean line?"),
+    (LINE.replace("normal = [0.0, 1.0, 0.0]", "normal = [0.0, 0.0, 0.0]"), "of length 0"),
+    (LINE.replace("along = [1.0, 0.0, 0.0]", "along = [1.0, 1.0, 0.0]"), "not across the norm"),
+    (LINE.replace("along", "axis"), "along: missing"),
+    (LINE + "lead_m = 0.1", "lead_m: not of a line contact"),
+    (LINE + '[guided.here]\nleaves = ["Qq"]', "guided.here.leaves.0: found 'Qq'"),
+    (LINE.partition("[[")[0], "contacts: missing"),
+]
+
+
+@pytest.mark.parametrize(("text", "says"), [*OF_SCHEMES, *OF_JOINTS])
+def test_a_faulty_scheme_or_joint_is_refused_with_one_message(
+    tmp_path: Path, text: str, says: str
+) -> None:
+    path = tmp_path / "faulty.toml"
+    path.write_text(text, encoding="utf-8")
+    result = crank("joint" if (text, says) in OF_JOINTS else "mobility", path)
+    refused(result, says)
+    assert len(result.output.splitlines()) <= 3
