@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
 
-from analytic.check.moved_scene import scaled
+from analytic.check.moved_scene import mirrored, moved, rotated, scaled
 from analytic.kinematics import solve
 from models.array import Array
 from models.files import load_scene
@@ -21,10 +22,13 @@ from reports.compare.beside import SETTLING, Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.completeness import incomplete
 from reports.compare.errors import ErrorKind, Errors
+from reports.judge.cell import check
 from reports.judge.tolerance import limits
 from reports.quantities.quantity import Source
 from sim.engine import Poses, Run
 from sim.run import run as run_scene
+from tests.worlds.other_way import sped_up
+from tests.worlds.turns import of_turns
 
 Find = Callable[..., Errors]
 ROUNDING = 1e-12
@@ -288,3 +292,45 @@ def test_the_pure_numbers_do_not_depend_on_the_size_of_the_scene(
     for quantity in ("angle", "position", "gap", "velocity"):
         expected = pytest.approx(pure(small, quantity), rel=1e-6, abs=1e-12)
         assert pure(large, quantity) == expected
+
+
+CHANGES: dict[str, Callable[[Scene], Scene]] = {
+    "none": lambda scene: scene,
+    "rotated by 0.7 rad": lambda scene: rotated(scene, 0.7),
+    "moved by (3, -2) m": lambda scene: moved(scene, (3.0, -2.0)),
+    "mirrored": mirrored,
+    "10 times as large": lambda scene: scaled(scene, 10.0),
+    "a tenth as large": lambda scene: scaled(scene, 0.1),
+    "turning the other way": lambda scene: sped_up(scene, -1.0),
+    "at 500 rad/s": lambda scene: sped_up(scene, 50.0),
+}
+QUANTITIES = ("drive", "angle", "displacement", "position", "gap", "velocity", "acceleration")
+
+
+@cache
+def of_turn(scene: str, engine: str, change: str = "none") -> Errors:
+    return check(of_turns(CHANGES[change](load_scene(scene)), engine, 720)).errors
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
+@pytest.mark.parametrize(
+    ("scene", "change"),
+    [
+        *(("fourbar-lecture-1", change) for change in CHANGES if change != "none"),
+        ("shaper", "rotated by 0.7 rad"),
+    ],
+)
+def test_the_same_mechanism_elsewhere_has_the_same_pure_errors_within_a_factor_of_two(
+    scene: str, change: str, engine: str
+) -> None:
+    before, after = of_turn(scene, engine), of_turn(scene, engine, change)
+    compared = 0
+    for quantity in QUANTITIES:
+        old, new = before.worst(quantity), after.worst(quantity)
+        if old is None or new is None:
+            assert old is new
+            continue
+        assert new.pure <= max(2.0 * old.pure, 1e-10), quantity
+        assert old.pure <= max(2.0 * new.pure, 1e-10), quantity
+        compared += 1
+    assert compared >= 5

@@ -1,39 +1,47 @@
 """Runs of free motion whose errors are known: a phase that lags, a linkage that is open, a truth
-that ends, another assembly."""
+that ends, another assembly; drifts; and loads over time that end with the run."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from analytic.kinematics import solve_driven
-from models.files import load_scene
+from models.characteristics import Constant
+from models.files import load_scene, parse_scene
+from models.loads import Load
 from models.motion import Motion
 from models.scene import Scene
+from models.tabulated import Tabulated
 from reports.compare.compare import compare, places
 from reports.compare.errors import Errors
+from reports.compare.free.energy_drift import drift, window_means, window_s
 from reports.compare.free.free_truth import FreeTruth, free_truth
+from reports.compare.free.kept_motion import kept_motion
+from reports.compare.free.momentum_drift import kept_about, momentum
+from reports.drawing.true_motion import true_motion
+from reports.store.reader import read_store
 from sim.engine import Run
 from sim.run import run
+from tests.worlds.free_store import LASTS_S
+from tests.worlds.tiers import slowly
 
 DT_S, STEPS = 1e-3, 160
+SWING = load_scene("fourbar-swing")
 
 
 @pytest.fixture(scope="module")
-def scene() -> Scene:
-    return load_scene("fourbar-swing")
+def truth() -> FreeTruth:
+    return free_truth(SWING, STEPS, DT_S)
 
 
 @pytest.fixture(scope="module")
-def truth(scene: Scene) -> FreeTruth:
-    return free_truth(scene, STEPS, DT_S)
-
-
-@pytest.fixture(scope="module")
-def done(scene: Scene, truth: FreeTruth) -> Run:
-    return run(scene, truth.start, "pymunk", dt_s=DT_S, steps=STEPS, drive="free")
+def done(truth: FreeTruth) -> Run:
+    return run(SWING, truth.start, "pymunk", dt_s=DT_S, steps=STEPS, drive="free")
 
 
 def found(truth: FreeTruth, of: Run) -> Errors:
@@ -54,15 +62,17 @@ def late(truth: FreeTruth, by_s: float) -> Motion:
 def test_a_phase_that_lags_is_told_from_a_linkage_that_is_open(truth: FreeTruth, done: Run) -> None:
     errors = found(truth, moved(done, late(truth, 2e-4)))
     phase, raw = errors.worst("phase"), errors.worst("phase", kind="raw")
-    geometry = errors.worst("geometry")
-    assert errors.free
-    assert None not in (phase, raw, geometry)
     speed = truth.at(np.array([DT_S * STEPS])).links["crank"].omega[0]
     assert raw.maximum == pytest.approx(2e-4 * abs(speed), rel=1e-2)
-    growth = errors.free.sensitivity
-    assert raw.maximum / growth <= phase.maximum <= raw.maximum
-    assert geometry.maximum < 1e-12
+    assert raw.maximum / errors.free.sensitivity <= phase.maximum <= raw.maximum
+    assert errors.worst("geometry").maximum < 1e-12
     assert errors.departure is None
+    # Horizons are the times to which a class holds.
+    facts = errors.free
+    assert (facts.horizon_s(1.0), facts.horizon_s(0.0)) == (DT_S * STEPS, 0.0)
+    held = facts.horizon_s(1e-4)
+    assert 0.0 < held < DT_S * STEPS
+    assert held < facts.horizon_s(2e-4) <= facts.judged_horizon_s(2e-4)
 
 
 def test_a_linkage_that_is_open_is_told_from_a_phase_that_lags(truth: FreeTruth, done: Run) -> None:
@@ -70,37 +80,39 @@ def test_a_linkage_that_is_open_is_told_from_a_phase_that_lags(truth: FreeTruth,
     rocker = motion.links["rocker"]
     bent = replace(rocker, theta=rocker.theta + 1e-5)
     errors = found(truth, moved(done, replace(motion, links={**motion.links, "rocker": bent})))
-    geometry, phase = errors.worst("geometry"), errors.worst("phase", kind="raw")
-    assert None not in (geometry, phase)
+    geometry = errors.worst("geometry")
     assert (geometry.body, geometry.maximum) == ("rocker", pytest.approx(1e-5, rel=1e-6))
-    assert phase.maximum < 1e-14
+    assert errors.worst("phase", kind="raw").maximum < 1e-14
+
+
+class _Changed:
+    """A free motion of which something else is said."""
+
+    def __init__(self, motion: object, **said: object) -> None:
+        self._motion, self._said = motion, said
+
+    def __getattr__(self, name: str) -> object:
+        return self._said[name] if name in self._said else getattr(self._motion, name)
 
 
 def test_errors_at_the_same_time_are_over_the_growth_of_their_own_time(
     truth: FreeTruth, done: Run
 ) -> None:
-    growing = replace(
-        truth, free=_Steeper(truth.free, lambda time_s: 1.0 + 1e3 * time_s), known_rad=1.0
-    )
+    steeper = _Changed(truth.free, sensitivity=lambda time_s: 1.0 + 1e3 * time_s)
+    growing = replace(truth, free=steeper, known_rad=1.0)
     plain, over = (found(each, moved(done, late(truth, 2e-4))) for each in (truth, growing))
-    assert over.free
     assert over.free.sensitivity == pytest.approx(1.0 + 1e3 * DT_S * STEPS)
     for name in ("phase", "angle", "position", "velocity"):
-        before, after = plain.worst(name), over.worst(name)
-        assert None not in (before, after)
-        assert after.maximum < 0.1 * before.maximum, name
-    for name in ("geometry", "gap"):
-        assert plain.worst(name) == over.worst(name), name
-    raw = [each.worst("phase", kind="raw") for each in (plain, over)]
-    assert raw[0] == raw[1]
+        assert over.worst(name).maximum < 0.1 * plain.worst(name).maximum, name
+    for name, kind in (("geometry", "total"), ("gap", "total"), ("phase", "raw")):
+        assert plain.worst(name, kind=kind) == over.worst(name, kind=kind), name
 
 
 def test_samples_that_the_truth_does_not_know_well_enough_are_left_out_and_counted(
     truth: FreeTruth, done: Run
 ) -> None:
-    unsure = replace(truth, free=_Unsure(truth.free, from_s=0.1))
-    errors = found(unsure, done)
-    assert errors.free
+    unsure = _Changed(truth.free, error_rad=lambda time_s: np.where(time_s < 0.1 - 1e-9, 0.0, 1.0))
+    errors = found(replace(truth, free=unsure), done)
     assert errors.free.until_s == pytest.approx(0.099)
     assert errors.free.left_out == STEPS + 1 - 100
     assert any("truth ends at t = 0.099 s" in note for note in errors.notes)
@@ -108,19 +120,7 @@ def test_samples_that_the_truth_does_not_know_well_enough_are_left_out_and_count
     assert errors.incomplete == ""
 
 
-def test_horizons_are_the_times_to_which_a_class_holds(truth: FreeTruth, done: Run) -> None:
-    facts = found(truth, moved(done, late(truth, 2e-4))).free
-    assert facts
-    assert facts.horizon_s(1.0) == DT_S * STEPS
-    assert facts.horizon_s(0.0) == 0.0
-    held = facts.horizon_s(1e-4)
-    assert 0.0 < held < DT_S * STEPS
-    assert held < facts.horizon_s(2e-4) <= facts.judged_horizon_s(2e-4)
-
-
-def test_an_assembly_that_the_truth_is_not_in_is_a_departure(
-    scene: Scene, truth: FreeTruth, done: Run
-) -> None:
+def test_an_assembly_that_the_truth_is_not_in_is_a_departure(truth: FreeTruth, done: Run) -> None:
     right = late(truth, 0.0)
     theta, still = right.links["crank"].theta, np.zeros(STEPS + 1)
     other = replace(truth.scene, branch={"C": -1})
@@ -132,9 +132,8 @@ def test_an_assembly_that_the_truth_is_not_in_is_a_departure(
     assert errors.departure.time_s == pytest.approx(0.079)
 
 
-def test_velocities_from_before_the_start_have_a_truth(scene: Scene, truth: FreeTruth) -> None:
-    times = DT_S * np.array([-0.5, 0.0, 0.5])
-    motion = truth.at(times)
+def test_velocities_from_before_the_start_have_a_truth(truth: FreeTruth) -> None:
+    motion = truth.at(DT_S * np.array([-0.5, 0.0, 0.5]))
     crank = motion.links["crank"]
     # From rest the motion is the same to both sides.
     assert crank.omega[0] == pytest.approx(-crank.omega[2], rel=2e-5)
@@ -149,26 +148,118 @@ def test_places_alone_have_the_rows_of_the_whole_comparison(truth: FreeTruth, do
     assert all(row in whole for row in alone)
 
 
-class _Changed:
-    """A free motion of which something else is said."""
-
-    def __init__(self, motion: object) -> None:
-        self._motion = motion
-
-    def __getattr__(self, name: str) -> object:
-        return getattr(self._motion, name)
+def test_a_loss_that_goes_on_is_the_drift_and_an_offset_that_swings_is_none() -> None:
+    time_s = np.linspace(0.0, 10.0, 10_001)
+    swinging = 1e-3 * np.sin(2.0 * np.pi * time_s) ** 2
+    assert abs(drift(swinging, time_s, 1.0)) < 1e-8
+    assert drift(swinging - 1e-5 * time_s, time_s, 1.0) == pytest.approx(-9e-5, rel=1e-2)
 
 
-class _Steeper(_Changed):
-    def __init__(self, motion: object, growth: object) -> None:
-        super().__init__(motion)
-        self.sensitivity = growth
+def test_a_window_is_a_tenth_of_the_run_or_a_swing_of_the_longest_link() -> None:
+    swing_s = pytest.approx(2.0 * np.pi * np.sqrt(0.25 / 9.81))
+    assert [window_s(SWING, lasts_s) for lasts_s in (100.0, 4.0, 0.5)] == [10.0, swing_s, 0.25]
+    assert window_s(replace(SWING, gravity_m_s2=(0.0, 0.0)), 4.0) == 0.4
 
 
-class _Unsure(_Changed):
-    def __init__(self, motion: object, from_s: float) -> None:
-        super().__init__(motion)
-        self._from_s = from_s
+def test_means_over_windows_begin_and_end_with_those_of_the_drift() -> None:
+    time_s = np.linspace(0.0, 10.0, 1001)
+    series = 0.1 * time_s + np.sin(7.0 * time_s)
+    means = window_means(SWING, time_s, series)
+    known = means[np.isfinite(means)]
+    of_drift = drift(series, time_s, window_s(SWING, 10.0))
+    assert known[-1] - known[0] == pytest.approx(of_drift, abs=0.02)
+    assert np.isnan(means[[0, -1]]).all()
 
-    def error_rad(self, time_s: np.ndarray) -> np.ndarray:
-        return np.where(time_s < self._from_s - 1e-9, 0.0, 1.0)
+
+BAR = """
+name = "bar"
+source = "ours"
+ground = { points = { A = [0.1, 0.2] } }
+links = { rod = { bar = ["A", "B"], length_m = 0.3, mass_kg = 2.0 } }
+[driver]
+link = "rod"
+law = "free"
+start_deg = 20.0
+speed_rad_s = 3.0
+duration_s = 1.0
+"""
+
+
+def test_a_rod_has_the_momentum_of_its_inertia_about_its_pin_and_keeps_it() -> None:
+    rod, time_s = parse_scene(BAR, "here"), np.linspace(0.0, 1.0, 5)
+    motion = solve_driven(rod, 0.3 + 3.0 * time_s, np.full(5, 3.0), np.zeros(5), time_s)
+    assert momentum(rod, motion, time_s, "A") == pytest.approx(2.0 * 0.3**2 / 3.0 * 3.0)
+    late = momentum(rod, motion, time_s + 1e-4, "A")  # to the second order of the delay
+    assert late == pytest.approx(0.18, rel=1e-6)
+    assert kept_about(rod) == "A"
+    # Only where nothing else acts from outside.
+    assert kept_about(replace(rod, gravity_m_s2=(0.0, -9.81))) is None
+    four = load_scene("fourbar-lecture-1")
+    assert kept_about(four) is None
+    assert not any(four.gravity_m_s2)
+
+
+def test_a_free_run_is_kept_from_its_start_to_its_end(free_store: Path) -> None:
+    stored = read_store(free_store)
+    for row in stored.cells.itertuples():
+        trace = stored.trace(str(row.key))
+        assert (trace["time_s"][0], trace["time_s"][-1]) == (0.0, pytest.approx(LASTS_S))
+        assert {len(each) for each in trace.values()} == {len(trace["time_s"])}
+        judged = np.max(np.abs(trace["phase"] / trace["growth"]))
+        assert judged == pytest.approx(row.phase_pure, rel=0.05)
+        assert trace["energy"][0] == 0.0
+
+
+END_S = DT_S * STEPS
+
+
+def pushed(name: str, link: str, *more: tuple[float, float]) -> Scene:
+    """A scene with a torque over time, whose table ends with the run but for ``more`` rows."""
+    rows = ((0.0, 0.1), (0.5 * END_S, 0.2), (END_S, 0.1), *more)
+    table = Tabulated(*zip(*rows, strict=True))
+    return replace(load_scene(name), loads={"push": Load("push", link, None, table)})
+
+
+@cache
+def truth_to_the_end(name: str, link: str) -> FreeTruth:
+    return free_truth(pushed(name, link), STEPS, DT_S)
+
+
+@pytest.mark.parametrize(
+    ("name", "link"),
+    [
+        ("fourbar-swing", "crank"),
+        slowly("double-pendulum", "upper", reason="two drivers: another truth, the same table"),
+    ],
+)
+def test_what_follows_a_table_that_ends_with_the_run_is_as_if_it_went_on(
+    name: str, link: str
+) -> None:
+    ends = truth_to_the_end(name, link)
+    goes_on = free_truth(pushed(name, link, (2.0 * END_S, -0.1)), STEPS, DT_S)
+    assert ends.free.until_s == END_S < goes_on.free.until_s
+    time_s = DT_S * (np.arange(STEPS + 1.0) + 0.5)  # as some engines have their velocities
+    own, other = (truth.at(time_s).links[link] for truth in (ends, goes_on))
+    np.testing.assert_allclose(own.omega, other.omega, rtol=0, atol=1e-7)
+    np.testing.assert_allclose(own.theta, other.theta, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
+def test_a_run_is_compared_to_the_end_of_the_table(engine: str) -> None:
+    truth = truth_to_the_end("fourbar-swing", "crank")
+    done = run(truth.scene, truth.start, engine, dt_s=DT_S, steps=STEPS, drive="free")
+    assert done.status == "ok"
+    assert found(truth, done).worst("velocity").pure < 1e-3
+
+
+def test_what_is_drawn_is_what_was_compared_to_the_end_of_the_table() -> None:
+    scene, same = (
+        replace(SWING, loads={"push": Load("push", "crank", None, Constant(0.1))}) for _ in range(2)
+    )
+    motion = free_truth(scene, STEPS, DT_S).free
+    assert kept_motion(same, END_S * (1.0 + 1e-15)) is motion
+    time_s = np.linspace(0.0, END_S, 5)
+    theta = true_motion(same, time_s).links["crank"].theta
+    assert np.array_equal(theta, motion.at(time_s).links["crank"].theta)
+    drawn = true_motion(pushed("fourbar-swing", "crank"), np.array([0.0, END_S]))
+    assert np.isfinite(drawn.links["crank"].theta).all()
