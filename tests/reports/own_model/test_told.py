@@ -46,6 +46,11 @@ def printed(one: JudgedModel, width: int = 100) -> list[str]:
     return [line.rstrip() for line in stream.getvalue().splitlines()]
 
 
+def place(lines: list[str], words: str) -> int:
+    """The first line with these words."""
+    return next(number for number, line in enumerate(lines) if words in line)
+
+
 def with_own(one: JudgedModel, status: str) -> JudgedModel:
     """The same, but that nothing came of it as written."""
     lost = without_run(unfinished(one.own.cell, status, "it [red]fell[/] apart"))
@@ -57,39 +62,35 @@ def test_every_line_and_its_gains_are_whole_at_every_width(
     rubbing: JudgedModel, width: int
 ) -> None:
     lines = printed(rubbing, width)
-    start = next(i for i, line in enumerate(lines) if line.startswith("Recommended"))
-    end = next(i for i, line in enumerate(lines) if line.startswith("OUT OF TOLERANCE"))
+    start, end = place(lines, "Recommended"), place(lines, "OUT OF TOLERANCE")
     assert max(len(line) for line in (*lines[:start], *lines[end:])) <= width
     assert "\u2026" not in "\n".join(lines)
     if width >= 60:
-        table = "\n".join(lines[:start])
+        cells = [line.split() for line in lines[:start]]
         for one in rubbing.three:
-            row = next(line for line in lines if line.split()[1:2] == [one.cell.profile])
-            assert [f"{error:.1e}" for error in errors_of(one)] == [
-                f"{float(word):.1e}" for word in row.split()[2:5]
-            ]
+            row = next(words for words in cells if words[1:2] == [one.cell.profile])
+            numbers = [f"{float(word):.1e}" for word in row[2:5]]
+            assert numbers == [f"{error:.1e}" for error in errors_of(one)]
         for one in rubbing.three[1:]:
-            gains = [factor_text(gain) for gain in rubbing.gains(one)]
-            assert any(line.split() == ["gain", *gains] for line in table.split("\n"))
+            assert ["gain", *map(factor_text, rubbing.gains(one))] in cells
 
 
 def test_failures_come_first_and_the_verdict_last(rubbing: JudgedModel) -> None:
     lines = printed(rubbing)
     assert lines[0].startswith("OUT  ")
     assert lines[1].startswith("  CC103 angle: link rod: ")
-    verdict = next(i for i, line in enumerate(lines) if line == verdict_text(rubbing))
+    verdict = lines.index(verdict_text(rubbing))
     order = ["CC103", "read as:", "as-written ", "joints:", "can disturb", "Recommended,", "+++ "]
-    places = [next(i for i, line in enumerate(lines) if word in line) for word in order]
-    assert [*places, verdict] == sorted([*places, verdict])
+    places = [*(place(lines, word) for word in order), verdict]
+    assert places == sorted(places)
     assert "crankcheck 0.0.0" in "\n".join(lines[verdict:])
 
 
 def test_gains_are_the_error_as_written_over_that_of_a_line(rubbing: JudgedModel) -> None:
     last = rubbing.lines[-1]
-    for gain, own, other in zip(
-        rubbing.gains(last), errors_of(rubbing.own), errors_of(last), strict=True
-    ):
-        assert gain == own / other > 100
+    errors = zip(errors_of(rubbing.own), errors_of(last), strict=True)
+    assert list(rubbing.gains(last)) == [own / other for own, other in errors]
+    assert min(rubbing.gains(last)) > 100
     assert rubbing.gains(rubbing.own) == (1.0, 1.0, 1.0)
     assert rubbing.verdict == "out"
     assert "recommended: within, " in verdict_text(rubbing)
@@ -172,31 +173,22 @@ def test_without_finer_steps_there_is_one_column_of_errors(rubbing: JudgedModel)
 
 
 @pytest.mark.parametrize(
-    ("factor", "words"),
+    ("told", "words"),
     [
-        (1.0, "the same error"),
-        (27.3, "27 x less error"),
-        (1.2e5, "1.2e5 x less error"),
-        (0.25, "4 x more error"),
-        (math.inf, "no error at all"),
-        (0.0, "all of the error"),
-        (math.nan, "not to be told"),
+        (factor_words(1.0), "the same error"),
+        (factor_words(27.3), "27 x less error"),
+        (factor_words(1.2e5), "1.2e5 x less error"),
+        (factor_words(0.25), "4 x more error"),
+        (factor_words(math.inf), "no error at all"),
+        (factor_words(0.0), "all of the error"),
+        (factor_words(math.nan), "not to be told"),
+        (share_text(0.0), "below 0.1% of its limit"),
+        (share_text(0.123), "12.3% of its limit"),
+        (share_text(137.2), "137 times its limit"),
     ],
 )
-def test_factors_in_words(factor: float, words: str) -> None:
-    assert factor_words(factor) == words
-
-
-@pytest.mark.parametrize(
-    ("share", "words"),
-    [
-        (0.0, "below 0.1% of its limit"),
-        (0.123, "12.3% of its limit"),
-        (137.2, "137 times its limit"),
-    ],
-)
-def test_shares_of_a_limit_in_words(share: float, words: str) -> None:
-    assert share_text(share) == words
+def test_factors_and_shares_of_a_limit_in_words(told: str, words: str) -> None:
+    assert told == words
 
 
 def test_a_long_course_keeps_its_largest_error(
