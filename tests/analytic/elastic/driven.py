@@ -1,20 +1,21 @@
-"""Driven mechanisms with elastic links that tests share (synthetic)."""
+"""Driven mechanisms with elastic links that tests share (synthetic): at other speeds, with other
+rockers and damping."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
 
+from analytic.elastic.discretisation import Discretisation, Modes
+from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.natural import lowest_rad_s
+from analytic.elastic.reduced import ReducedForm
 from models.files import load_scene
-from models.laws import ConstantSpeed
+from models.laws import ConstantSpeed, Law
 from models.scene import Scene
 
+FEW = Modes(2, 1)
 SHIPPED = ("fourbar-elastic", "slider-crank-elastic", "sixbar-elastic")
-
-
-def at_speed(scene: Scene, speed_rad_s: float) -> Scene:
-    law = ConstantSpeed(scene.driver.law.offset_rad, speed_rad_s)
-    return replace(scene, driver=replace(scene.driver, law=law))
 
 
 def with_elastic(scene: Scene, **changes: float) -> Scene:
@@ -24,6 +25,25 @@ def with_elastic(scene: Scene, **changes: float) -> Scene:
     )
 
 
+def following(scene: Scene, law: Law) -> Scene:
+    return replace(scene, driver=replace(scene.driver, law=law))
+
+
 @cache
 def fourbar(*, axial_n: float = float("inf"), damping_s: float = 0.0) -> Scene:
     return with_elastic(load_scene("fourbar-elastic"), axial_n=axial_n, damping_s=damping_s)
+
+
+def turning(ratio: float = 10.5, rocker: float = 1.0, damping_s: float = 0.0) -> Scene:
+    """The shipped four-bar with its first frequency so many times the crank's speed, a rocker so
+    many times as heavy, and damping."""
+    scene = fourbar(damping_s=damping_s)
+    own = scene.links["rocker"]
+    heavy = replace(own, mass_kg=rocker * own.mass_kg, inertia_kg_m2=rocker * own.inertia_kg_m2)
+    scene = following(scene, ConstantSpeed(1.0, lowest_rad_s(scene) / ratio))
+    return replace(scene, links={**scene.links, "rocker": heavy})
+
+
+def form_of(scene: Scene, by: Discretisation = FEW) -> ReducedForm:
+    """Its equations of motion."""
+    return DrivenElasticMotion(scene, 1.0, by, "periodic", stiffened=True).form

@@ -1,31 +1,37 @@
 """Periodic motions: by three methods that share nothing but the equations, and where there is
-none."""
+none; and Floquet's multipliers of them: against known ones, and integration over many turns."""
 
 from __future__ import annotations
 
 import math
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.special import mathieu_a, mathieu_b  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.elastic import periodic
 from analytic.elastic.discretisation import Discretisation, Elements, Modes, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.linearised import linearise
+from analytic.elastic.floquet import stability, stability_of
+from analytic.elastic.linearised import LinearForm, linearise
 from analytic.elastic.monodromy import by_collocation, by_newmark
 from analytic.elastic.periodic import PeriodicMotion, instants, linear_motion, periodic_motion
+from analytic.elastic.reduced import ReducedForm
 from analytic.elastic.swing import swings
 from analytic.elastic.vibration import vibrate
+from models.array import Array
 from models.characteristics import Sine
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
 from models.laws import ConstantSpeed, FromRest
 from models.loads import Load
 from models.tabulated import Tabulated
-from tests.analytic.elastic.turning import form_of, fourbar
-from tests.worlds.tiers import few, slowly
+from tests.analytic.elastic.driven import following, form_of, turning, with_elastic
+from tests.worlds.tiers import few, slow, slowly
 
+SLOPES = "more slopes, and angles"
 DRIVEN = [n for n in shipped("elastic") if type(load_scene(n).driver.law) is ConstantSpeed]
 
 
@@ -47,7 +53,7 @@ def test_three_methods_start_the_linear_motion_alike(name: str) -> None:
 
 
 def test_newmark_is_of_order_two() -> None:
-    form = form_of(fourbar(3.5))
+    form = form_of(turning(3.5))
     linear = linearise(form, instants(65, form.period_s), 1e-4)
     exact, _ = by_collocation(linear, form.period_s, 64).start
     errors = [
@@ -58,7 +64,7 @@ def test_newmark_is_of_order_two() -> None:
 
 @pytest.mark.parametrize("damping_s", [0.0, 1e-3])
 def test_time_integration_comes_back_after_a_turn(damping_s: float) -> None:
-    form = form_of(fourbar(3.5, damping_s=damping_s))
+    form = form_of(turning(3.5, damping_s=damping_s))
     found = periodic_motion(form)
     z, rates, _ = (own[0] for own in found.at(np.zeros(1)))
     after = vibrate(form, z, rates, form.period_s, 20).at(np.array([form.period_s]))
@@ -68,7 +74,7 @@ def test_time_integration_comes_back_after_a_turn(damping_s: float) -> None:
 def test_small_deflections_are_those_of_the_linear_theory() -> None:
     off = []
     for ratio in (20.5, 10.5):
-        form = form_of(fourbar(ratio))
+        form = form_of(turning(ratio))
         found = periodic_motion(form)
         linear = linear_motion(form, linearise(form, found.time_s, 1e-4))
         off.append(np.abs(found.z - linear.z).max() / np.abs(linear.z).max())
@@ -81,7 +87,7 @@ def test_small_deflections_are_those_of_the_linear_theory() -> None:
 @pytest.mark.parametrize("ratio", [7.0, 5.0, 4.0, 3.0, 2.0])
 def test_a_whole_frequency_ratio_is_refused(ratio: float) -> None:
     with pytest.raises(CrankcheckError) as refused:
-        periodic_motion(form_of(fourbar(ratio)))
+        periodic_motion(form_of(turning(ratio)))
     text = str(refused.value)
     assert f"elastic.coupler vibrates at order {ratio:g} of the driver" in text
     assert f"mode 1 across has 77.3704 rad/s, {ratio:g} times that" in text
@@ -90,57 +96,56 @@ def test_a_whole_frequency_ratio_is_refused(ratio: float) -> None:
 
 
 def test_between_resonances_the_deflection_goes_with_the_compliance() -> None:
-    assert periodic_motion(form_of(fourbar(20.5))).sensitivity.size == pytest.approx(1.0, abs=0.01)
-    near = periodic_motion(form_of(fourbar(5.05))).sensitivity
+    assert periodic_motion(form_of(turning(20.5))).sensitivity.size == pytest.approx(1.0, abs=0.01)
+    near = periodic_motion(form_of(turning(5.05))).sensitivity
     assert near.size > 1.5
     assert near.order == 5
 
 
 def test_damping_takes_the_resonance_away() -> None:
-    found = periodic_motion(form_of(fourbar(5.0, damping_s=1e-3)))
+    found = periodic_motion(form_of(turning(5.0, damping_s=1e-3)))
     assert found.sensitivity.size < 5.0
 
 
 def test_sensitivity_is_the_change_with_the_stiffness() -> None:
-    scene, share = fourbar(5.1), 1e-5
+    scene, share = turning(5.1), 1e-5
+    flexural = (1.0 + share) * scene.elastic["coupler"].flexural_n_m2
     found = periodic_motion(form_of(scene))
-    own = scene.elastic["coupler"]
-    stiffer = replace(own, flexural_n_m2=(1.0 + share) * own.flexural_n_m2)
-    changed = periodic_motion(form_of(replace(scene, elastic={"coupler": stiffer})))
+    changed = periodic_motion(form_of(with_elastic(scene, flexural_n_m2=flexural)))
     change = np.abs(changed.z - found.z).max() / np.abs(found.z).max() / share
     assert found.sensitivity.size == pytest.approx(change, rel=1e-2)
 
 
-def test_another_branch_is_not_taken_for_the_motion() -> None:
-    with pytest.raises(CrankcheckError, match="far from that of small deflections"):
-        periodic_motion(form_of(fourbar(2.9, rocker=30.0)))
-
-
-def test_too_soft_links_are_refused_with_a_cure() -> None:
-    with pytest.raises(CrankcheckError, match=r"bend too far for a beam.*take a lower speed"):
-        periodic_motion(form_of(fourbar(1.1)))
+@pytest.mark.parametrize(
+    ("ratio", "rocker", "words"),
+    [
+        (2.9, 30.0, "far from that of small deflections"),
+        (1.1, 1.0, r"bend too far for a beam.*take a lower speed"),
+    ],
+)
+def test_another_branch_and_too_soft_links_are_refused(
+    ratio: float, rocker: float, words: str
+) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        periodic_motion(form_of(turning(ratio, rocker)))
 
 
 def test_a_drive_that_does_not_repeat_is_refused() -> None:
-    scene = fourbar()
-    law = scene.driver.law
-    assert isinstance(law, ConstantSpeed)
-    from_rest = FromRest(law.start_rad, law.speed_rad_s, 0.3)
+    law = turning().driver.law
+    from_rest = FromRest(law.offset_rad, law.peak_speed_rad_s, 0.3)
     with pytest.raises(CrankcheckError, match="what moves them is not the same"):
-        periodic_motion(form_of(replace(scene, driver=replace(scene.driver, law=from_rest))))
+        periodic_motion(form_of(following(turning(), from_rest)))
 
 
 @pytest.mark.parametrize(("orders", "repeats"), [(2.0, True), (0.7, False)])
 def test_a_load_over_time_has_to_repeat(orders: float, repeats: bool) -> None:
-    scene = fourbar()
+    scene = turning()
     speed = scene.driver.law.peak_speed_rad_s
     load = Load("pull", "rocker", "C", Sine(0.1, math.tau / (orders * speed)), direction_rad=0.3)
     form = form_of(replace(scene, loads={"pull": load}))
-    if repeats:
+    told = pytest.raises(CrankcheckError, match="with loads that repeat each turn")
+    with nullcontext() if repeats else told:
         assert periodic_motion(form).decay < 1e-12
-    else:
-        with pytest.raises(CrankcheckError, match="with loads that repeat each turn"):
-            periodic_motion(form)
 
 
 @pytest.mark.parametrize("most", [65, slowly(129, reason="a longer series leaves out less")])
@@ -150,7 +155,7 @@ def test_what_kinks_leave_out_of_the_series_is_in_the_doubt(
     """A load with kinks has a series without end: two motions that stop at as many of its terms
     leave the same out."""
     hat = Tabulated((0.0, 0.5 * math.pi, math.pi), (0.0, 0.5, 0.0), "linear", math.tau)
-    scene = fourbar(10.5, damping_s=1e-3)
+    scene = turning(10.5, damping_s=1e-3)
     scene = replace(scene, loads={"push": Load("push", "rocker", None, hat, "angle")})
     motion = DrivenElasticMotion(scene, 1.0, Modes(1), "periodic", stiffened=True)
     closely = periodic_motion(motion.form, 4 * most - 3)
@@ -165,18 +170,108 @@ def test_what_kinks_leave_out_of_the_series_is_in_the_doubt(
 
 @pytest.mark.parametrize(
     "by",
-    few(
-        [Elements(3), Elements(4), Segments(8, corrected=True)],
-        {Elements(3)},
-        "more slopes, and angles",
-    ),
+    few([Elements(3), Elements(4), Segments(8, corrected=True)], {Elements(3)}, SLOPES),
 )
 def test_links_swing_alike_by_coefficients_of_any_kind(by: Discretisation) -> None:
     """By slopes and angles as well as by lengths."""
-    scene = fourbar(10.5)
+    scene = turning(10.5)
     known, other = (
         swings(form, periodic_motion(form).z)["coupler"]
         for form in (form_of(scene, Modes(3)), form_of(scene, by))
     )
     assert other.largest_m == pytest.approx(known.largest_m, rel=3e-2)
     assert other.amplitudes[1] == pytest.approx(known.amplitudes[1], rel=3e-2)
+
+
+ONE = Modes(1, 0)
+
+
+def mathieu(a: float, q: float) -> LinearForm:
+    """y'' + (a - 2 q cos 2 t) y = 0 over its period, pi."""
+    time_s = instants(9, math.pi)
+    one, zero = np.ones((9, 1, 1)), np.zeros((9, 1, 1))
+    stiffness = (a - 2.0 * q * np.cos(2.0 * time_s))[:, None, None]
+    return LinearForm(time_s, one, zero, stiffness, zero[:, 0])
+
+
+@pytest.mark.parametrize("q", [0.5, 2.0])
+def test_the_bounds_of_mathieus_equation(q: float) -> None:
+    for bound in (mathieu_a, mathieu_b):
+        for order, multiplier in ((1, -1.0), (2, 1.0)):
+            found = by_collocation(mathieu(bound(order, q), q), math.pi, 24).multipliers
+            assert np.abs(found - multiplier).max() < 1e-5  # a double one: the root of rounding
+    between = 0.5 * (mathieu_a(1, q) + mathieu_b(1, q))
+    unstable = stability(mathieu(between, q), math.pi)
+    assert not unstable.is_stable
+    assert unstable.deviations[0].order == 0.5
+    assert stability(mathieu(0.5 * (mathieu_a(1, q) + mathieu_b(2, q)), q), math.pi).is_stable
+
+
+def test_constant_equations_keep_their_order() -> None:
+    found = stability(mathieu(3.7**2, 0.0), math.pi)
+    assert found.deviations[0].order == pytest.approx(1.85, abs=1e-9)
+    assert found.deviations[0].from_whole == pytest.approx(0.15, abs=1e-9)
+
+
+def about(form: ReducedForm) -> LinearForm:
+    """The equations next to the periodic motion."""
+    found = periodic_motion(form)
+    return linearise(form, found.time_s, 1e-2 * np.abs(found.z).max(), found.at(found.time_s))
+
+
+@pytest.mark.parametrize("ratio", [10.5, 3.5])
+def test_undamped_multipliers_lie_on_the_circle_in_pairs(ratio: float) -> None:
+    form = form_of(turning(ratio))
+    found = by_collocation(about(form), form.period_s, 128)
+    assert np.abs(np.abs(found.multipliers) - 1.0).max() < 1e-9
+    assert np.linalg.det(found.matrix) == pytest.approx(1.0, abs=1e-9)
+    inverse = np.sort_complex(1.0 / found.multipliers)
+    assert np.abs(inverse - np.sort_complex(found.multipliers)).max() < 1e-6
+
+
+def test_damping_takes_what_liouville_says() -> None:
+    form = form_of(turning(3.5, damping_s=1e-3), ONE)
+    linear = about(form)
+    found = by_collocation(linear, form.period_s, 64)
+    assert np.abs(found.multipliers).max() < 1.0
+    rates = np.trace(np.linalg.solve(linear.mass, linear.damping), axis1=1, axis2=2)
+    volume = math.exp(-form.period_s * float(rates.mean()))
+    assert np.linalg.det(found.matrix) == pytest.approx(volume, rel=1e-8)
+
+
+def deviated(form: ReducedForm, turns: int, share: float, windows: int) -> tuple[Array, Array]:
+    """A small deviation from the periodic motion, y and y', and what turns make of it, by the
+    equations of motion: half the difference of two to either side, which leaves squares out."""
+    found = periodic_motion(form)
+    z, rates, _ = (own[0] for own in found.at(np.zeros(1)))
+    by = share * np.abs(found.z).max()
+    until_s = turns * form.period_s
+    runs = [vibrate(form, z + each, rates, until_s, windows) for each in (by, -by)]
+    ends = [np.concatenate([x[0] for x in run.at(np.array([until_s]))[:2]]) for run in runs]
+    return np.repeat([by, 0.0], form.size), 0.5 * (ends[0] - ends[1])
+
+
+def apart_from(expected: Array, end: Array) -> float:
+    """Over the largest, of y, and of y' over the frequency that it is of."""
+    scale = np.repeat([1.0, 77.37], len(end) // 2)
+    return float(np.abs((end - expected) / scale).max() / np.abs(expected / scale).max())
+
+
+@pytest.mark.parametrize("turns", [1, slowly(2, reason="what has grown grows on")])
+def test_an_unstable_motion_grows_as_its_multiplier_says(turns: int) -> None:
+    form = form_of(turning(4.15, rocker=30.0), ONE)
+    found = stability_of(form, periodic_motion(form))
+    assert found.largest == pytest.approx(2.58, abs=0.01)
+    assert not found.is_stable
+    assert found.deviations[0].order == 3.5  # twice that is 7: it feeds on the turning
+    start, end = deviated(form, turns, 1e-6, windows=16 * turns)
+    expected = np.linalg.matrix_power(found.monodromy.matrix, turns) @ start
+    assert apart_from(expected, end) < 1e-6
+
+
+@slow("800 windows, twice: nothing shorter sees a frequency that is off by 1e-7")
+def test_a_hundred_turns_agree_with_the_multipliers() -> None:
+    form = form_of(turning(3.5), ONE)
+    matrix = stability_of(form, periodic_motion(form)).monodromy.matrix
+    start, end = deviated(form, 100, 1e-4, windows=800)
+    assert apart_from(np.linalg.matrix_power(matrix, 100) @ start, end) < 1e-4

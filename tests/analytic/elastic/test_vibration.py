@@ -22,10 +22,10 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from models.laws import FromRest
 from models.scene import Scene
+from tests.analytic.elastic.driven import FEW as TURNING
+from tests.analytic.elastic.driven import form_of as turning_form
 from tests.analytic.elastic.driven import fourbar, with_elastic
-from tests.analytic.elastic.turning import FEW as TURNING
-from tests.analytic.elastic.turning import form_of as turning_form
-from tests.analytic.elastic.turning import fourbar as turning_fourbar
+from tests.analytic.elastic.driven import turning as turning_fourbar
 from tests.worlds.tiers import slowly
 
 STEPS = "many steps of the library: the equations are the same"
