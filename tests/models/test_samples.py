@@ -1,9 +1,12 @@
-"""What is no number is refused in words, by whatever takes times, angles or rates of a caller."""
+"""What callers give: what is no number is refused in words, one name is a name and no collection of
+its letters; and motions one after the other.
+"""
 
 from __future__ import annotations
 
 import datetime
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -13,11 +16,15 @@ from analytic.check import newton
 from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve, solve_driven
 from models.errors import CrankcheckError, EngineError
-from models.files import load_scene
+from models.files import load_scene, scene_texts
 from models.laws import ConstantSpeed
-from models.motion import Motion
+from models.mjcf import build
+from models.mjcf_options import Writing
+from models.motion import Crossing, Motion
+from models.one_or_more import names_in
 from models.samples import numbers, samples
 from models.window_chain import Chain
+from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes
 from sim.run import run
 
 SCENE = load_scene("fourbar-lecture-1")
@@ -116,3 +123,83 @@ def test_a_step_that_is_no_number_is_refused(wrong: dict[str, object]) -> None:
     asked = {"dt_s": 1e-3, "steps": 9, **wrong}
     with pytest.raises(EngineError, match=r"found .*; it takes a number"):
         run(SCENE, START, "pymunk", **asked)
+
+
+SHAPER = load_scene("shaper")
+
+
+@pytest.mark.parametrize("given", [{"links": "crank"}, {"points": "B"}, {"sliders": "F"}])
+def test_one_name_is_one_body(given: dict[str, str]) -> None:
+    ((kind, name),) = given.items()
+    for motion in (solve(SHAPER, 0.1, **given), solve_driven(SHAPER, 1.0, 1.0, 0.0, **given)):
+        assert list(getattr(motion, kind)) == [name]
+    with pytest.raises(CrankcheckError, match=f"{kind[:-1]} 'crunk' is not in the scene; it has"):
+        solve(SHAPER, 0.1, **{kind: "crunk"})
+
+
+def test_several_names_are_several() -> None:
+    motion = solve(SHAPER, np.zeros(1), links=iter(["crank"]), points=(), sliders=["F"])
+    assert (list(motion.links), list(motion.points), list(motion.sliders)) == (["crank"], [], ["F"])
+
+
+def test_a_pin_to_close_a_loop_at_may_have_a_long_name() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    start = solve(scene, 0.0).state()
+    assert build(scene, start, Writing(close="C")) == build(scene, start, Writing(close=("C",)))
+    with pytest.raises(CrankcheckError, match="CD"):
+        build(scene, start, Writing(close="CD"))
+
+
+def test_one_scene_engine_or_profile_is_one() -> None:
+    assert list(scene_texts("shaper")) == ["shaper"]
+    assert [scene.name for scene in chosen_scenes("shaper")] == ["shaper"]
+    assert chosen_engines("pymunk") == ["pymunk"]
+    assert chosen_profiles("tuned", ["pymunk"]) == [("tuned", True)]
+
+
+@pytest.mark.parametrize("given", [1, None, [1], ["a", None]])
+def test_what_is_no_name_is_refused(given: object) -> None:
+    with pytest.raises(CrankcheckError, match=r"links: found .*; give a name, or a list of names"):
+        names_in(given, "links")
+
+
+LATER = np.linspace(0.0, 0.3, 7)
+
+
+def test_parts_of_a_motion_joined_are_the_whole() -> None:
+    scene = load_scene("slider-crank-offset")
+    whole = solve(scene, LATER)
+    parts = [solve(scene, times) for times in (LATER[:2], LATER[2:3], LATER[3:])]
+    joined = Motion.joined(parts)
+    assert (joined.time_s == LATER).all()
+    assert joined.bound is not None
+    assert whole.bound is not None
+    for own, other in ((joined, whole), (joined.bound, whole.bound)):
+        for kind in ("links", "points", "sliders"):
+            assert getattr(own, kind).keys() == getattr(other, kind).keys()
+            for name, body in getattr(own, kind).items():
+                for key, series in vars(body).items():
+                    wanted = getattr(getattr(other, kind)[name], key)
+                    np.testing.assert_allclose(series, wanted, rtol=1e-9, atol=1e-12)
+    assert {name: sine.shape for name, sine in joined.conditioning.items()} == {
+        name: sine.shape for name, sine in whole.conditioning.items()
+    }
+
+
+def test_what_a_part_lacks_is_left_out() -> None:
+    motion = solve(load_scene("fourbar-lecture-1"), LATER)
+    bare = replace(motion, points={}, conditioning={}, bound=None)
+    for parts in ([motion, bare], [bare, motion]):
+        joined = Motion.joined(parts)
+        assert joined.points == {}
+        assert joined.conditioning == {}
+        assert joined.bound is None
+        assert joined.forces is None
+        assert joined.links["crank"].theta.shape == (14,)
+
+
+def test_change_points_of_all_parts_are_kept_once() -> None:
+    motion = solve(load_scene("fourbar-lecture-1"), LATER)
+    one, other = Crossing("C", 0.1), Crossing("C", 3.2)
+    parts = [replace(motion, crossings=seen) for seen in ((one,), (one, other), ())]
+    assert Motion.joined(parts).crossings == (one, other)

@@ -1,15 +1,25 @@
-"""The text of a scene reads as the scene."""
+"""The text of a scene reads as the scene, whatever is driven; what a scene holds is not changed."""
 
 from __future__ import annotations
 
+import copy
 import math
+import operator
+import pickle
+import re
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
+import numpy as np
 import pytest
 
+from analytic.kinematics import solve
+from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError
 from models.files import every_shipped, load_scene, parse_scene
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
+from models.scene import Scene
 from models.scene_text import scene_text
 
 LAWS = [
@@ -67,3 +77,130 @@ def test_a_flywheel_stands_by_itself_and_is_added_when_it_is_read() -> None:
     own = scene.links["crank"].inertia_kg_m2
     assert again.links["crank"].inertia_kg_m2 == pytest.approx(own + 0.25, rel=1e-15)
     assert again.links["rod"] == scene.links["rod"]
+
+
+PISTON, COUPLER, TRIAD = (
+    scene_text(load_scene(name))
+    for name in ("slider-crank-by-piston", "fourbar-by-coupler", "triad-platform")
+)
+STROKE = 'law = "oscillating"\ncentre_m = 0.3\namplitude_m = 0.05\nfrequency_rad_s = 10.0'
+WAY = "start_m = 0.3\nspeed_m_s = 0.1\ntravel_m = 0.05"
+TURN = "start_deg = 30.0\nspeed_rad_s = 1.0"
+
+
+def driven(text: str, driver: str) -> str:
+    """A scene file with another driver."""
+    found, changes = re.subn(r"\[driver\]\n(.+\n)+", f"[driver]\n{driver}\n", text)
+    assert changes == 1
+    return found
+
+
+def numbered(branch: str) -> str:
+    """The triad with another branch."""
+    return re.sub(r"\[branch\]\n.*\n", "", TRIAD) + f"\n[branch]\n{branch}\n"
+
+
+@pytest.mark.parametrize("driver", [
+    f'slider = "C"\n{STROKE}',
+    f'slider = "C"\n{WAY}',
+    'slider = "C"\nlaw = "from-rest"\nrise_s = 0.1\n' + WAY,
+    'slider = "C"\nlaw = "accelerating"\nacceleration_m_s2 = 0.1\n' + WAY,
+])  # fmt: skip
+def test_a_driven_slider_is_written_as_it_is_read(driver: str) -> None:
+    scene = parse_scene(driven(PISTON, driver), "test")
+    assert (scene.driver.slider, scene.driver.link, scene.driver.unit) == ("C", "block C", "m")
+    assert parse_scene(scene_text(scene), "test") == scene
+
+
+@pytest.mark.parametrize("links", ['links = ["crank", "coupler"]', 'links = ["coupler", "crank"]'])
+def test_a_driven_pin_is_written_as_it_is_read(links: str) -> None:
+    scene = parse_scene(driven(COUPLER, f'pin = "B"\n{links}\n{TURN}'), "test")
+    assert scene.driver.is_inner
+    assert parse_scene(scene_text(scene), "test") == scene
+
+
+REFUSED: dict[str, tuple[str, str]] = {
+    "two joints": (
+        driven(PISTON, f'slider = "C"\npin = "B"\n{STROKE}'),
+        r"driver.pin: unknown key; known: slider, law"),
+    "no such slider": (driven(PISTON, f'slider = "X"\n{WAY}'), "found X; use one of C"),
+    "no way": (
+        driven(PISTON, 'slider = "C"\nstart_m = 0.3\nspeed_m_s = 0.1'), "driver.travel_m: missing"),
+    "degrees of a slider": (driven(PISTON, f'slider = "C"\n{TURN}'), "did you mean start_m"),
+    "a slider at rest": (
+        driven(PISTON, f'slider = "C"\n{WAY.replace("0.1", "0.0")}'), "its speed is 0"),
+    "a slider let go": (
+        driven(PISTON, f'slider = "C"\nlaw = "free"\n{WAY}'),
+        "found 'free'; use one of constant, oscillating"),
+    "no number": (driven(PISTON, f'slider = "C"\n{WAY.replace("0.3", "nan")}'), "found nan"),
+    "a pin let go": (
+        driven(
+            COUPLER,
+            f'pin = "B"\nlinks = ["crank", "coupler"]\nlaw = "free"\n{TURN}\n' "duration_s = 1.0"),
+        "nothing drives what is let go: name a link at the ground"),
+    "a pin of one link": (
+        driven(PISTON, f'pin = "A"\nlinks = ["crank", "rod"]\n{TURN}'),
+        "pin A joins ground, crank, not rod"),
+    "no such pin": (driven(PISTON, f'pin = "Q"\n{TURN}'), "no body has such a point"),
+    "a link twice": (driven(PISTON, f'pin = "B"\nlinks = ["rod", "rod"]\n{TURN}'), "rod twice"),
+    "a pin of a block": (driven(PISTON, f'pin = "C"\n{TURN}'), "slider = 'C', or a pin of two"),
+    "a link without ground": (
+        driven(PISTON, f'link = "rod"\n{TURN}'), "or drive the pin of two links"),
+    "beyond the stroke": (
+        driven(PISTON, f'slider = "C"\n{STROKE.replace("0.05", "0.12")}'),
+        r"the loop cannot close at B.* can stand at -0.4 to -0.2 m and 0.2 to 0.4 m"),
+    "assembly 0": (numbered("plate = 0"), "numbered from 1 to at most 6"),
+    "assembly 7": (numbered("plate = 7"), "numbered from 1 to at most 6"),
+    "no such assembly": (numbered("plate = 5"), "the group has 2 assemblies; give a number"),
+    "no number of one": (numbered("plate = true"), "found True"),
+    "a leg's branch": (numbered("leg1 = 1"), "no two assemblies; it has plate"),
+    "beyond a limit": (
+        TRIAD.replace("E = [0.25, -0.05]", "E = [0.01, -0.05]"),
+        "the group about plate ends in a limit position at 88.2668 deg"),
+    "no assembly": (
+        TRIAD.replace("E = [0.25, -0.05]", "E = [9.0, -0.05]"),
+        "the group about plate has no assembly; start elsewhere"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_what_can_not_drive_or_stand_so_is_refused_with_what_would_do(what: str) -> None:
+    text, said = REFUSED[what]
+    with pytest.raises(CrankcheckError) as refused:
+        moved(parse_scene(text, "test"))
+    assert re.search(said, " ".join(str(refused.value).split()))
+
+
+def moved(scene: Scene) -> None:
+    """Solve a scene over its course."""
+    analyse(scene)
+    solve(scene, np.linspace(0.0, scene.driver.law.period_s, 49))
+
+
+@pytest.mark.parametrize("change", [
+    lambda mapping: operator.setitem(mapping, "E", (0.0, 0.0)),
+    lambda mapping: operator.delitem(mapping, next(iter(mapping))),
+    lambda mapping: operator.ior(mapping, {"E": (0.0, 0.0)}),
+    lambda mapping: mapping.update(E=(0.0, 0.0)),
+    lambda mapping: mapping.setdefault("E", (0.0, 0.0)),
+    lambda mapping: mapping.pop(next(iter(mapping))),
+    lambda mapping: mapping.popitem(),
+    lambda mapping: mapping.clear(),
+])  # fmt: skip
+def test_a_scene_is_not_changed(change: Callable[[Any], object]) -> None:
+    scene = load_scene("fourbar-lecture-1")
+    for each in (scene, copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
+        assert each == scene
+        rocker = each.links["rocker"].points
+        for mapping in (each.ground, each.links, each.branch, rocker, each.pins):
+            with pytest.raises(TypeError, match="make another one"):
+                change(mapping)
+
+
+def test_it_is_made_anew_and_what_it_was_made_of_is_its_own() -> None:
+    given = {"A": (0.0, 0.0), "D": (0.2, 0.0)}
+    scene = replace(load_scene("fourbar-lecture-1"), ground=given)
+    given["D"] = (0.3, 0.0)
+    assert scene.ground == {"A": (0.0, 0.0), "D": (0.2, 0.0)}
+    moved = replace(scene, ground={**scene.ground, "D": (0.25, 0.0)})
+    assert moved.ground["D"] == (0.25, 0.0)

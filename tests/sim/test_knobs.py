@@ -1,4 +1,4 @@
-"""The knobs of the engines."""
+"""The knobs of the engines, and what they cost: the constants of that can be found again."""
 
 from __future__ import annotations
 
@@ -9,12 +9,23 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from models.files import load_scene
+from benchmarks.step_cost import exudyn, fit, mujoco, points, pymunk, start
+from models.files import load_scene, shipped
+from models.scene import Scene
 from sim.engine import SettingValue
+from sim.exudyn import knobs as exudyn_knobs
+from sim.exudyn.session import ExudynSession
+from sim.exudyn.settings import TUNED as EXUDYN_TUNED
+from sim.mujoco import knobs as mujoco_knobs
+from sim.mujoco.knobs import EVALUATIONS
+from sim.mujoco.settings import INTEGRATORS, TUNED
+from sim.pymunk import knobs as pymunk_knobs
+from sim.pymunk.knobs import PASS_US, RAIL_US
+from sim.pymunk.settings import TUNED as PYMUNK_TUNED
 from sim.registry import engine, offering
 from sim.run import run
 from sim.settings import profile_of, resolved
-from sim.tuning import Knob, rungs, search_space
+from sim.tuning import Knob, Work, rungs, search_space
 from tests.worlds.tiers import slowly
 
 TUNABLE = offering("knobs")
@@ -70,3 +81,91 @@ def test_rungs_are_round_and_about_as_far_apart_as_asked() -> None:
     assert (found[0], found[-1]) == (2.0, 20.0)
     assert all(value == float(f"{value:.2g}") for value in found)
     assert all(1.0 < b / a < 1.12 for a, b in itertools.pairwise(found))
+
+
+MUJOCO = {name: setting.value for name, setting in TUNED.settings.items()}
+PYMUNK: dict[str, SettingValue] = {k: s.value for k, s in PYMUNK_TUNED.settings.items()}
+EXUDYN: dict[str, SettingValue] = {k: s.value for k, s in EXUDYN_TUNED.settings.items()}
+
+
+def mujoco_work(scene: Scene) -> Work:
+    return mujoco_knobs.work(scene, start(scene))
+
+
+def pymunk_work(scene: Scene) -> Work:
+    return pymunk_knobs.work(scene, start(scene))
+
+
+def test_every_integrator_has_its_cost() -> None:
+    assert set(EVALUATIONS) == set(INTEGRATORS)
+
+
+def test_more_evaluations_bodies_and_loops_cost_more() -> None:
+    four, six = (mujoco_work(load_scene(n)) for n in ("fourbar-lecture-1", "sixbar-watt"))
+    assert six(MUJOCO) > four(MUJOCO) > 3.0 * four({**MUJOCO, "integrator": "implicitfast"})
+
+
+def test_every_joint_costs_at_every_iteration() -> None:
+    work = pymunk_work(load_scene("fourbar-lecture-1"))
+    slope = work({**PYMUNK, "iterations": 101}) - work({**PYMUNK, "iterations": 100})
+    assert slope == pytest.approx(3 * PASS_US["PivotJoint"])
+
+
+def test_a_rail_costs_its_own_and_only_where_there_is_one() -> None:
+    exact, groove = ({**PYMUNK, "iterations": 1, "lines": each} for each in ("exact", "groove"))
+    fourbar, massless = (
+        pymunk_work(load_scene(name)) for name in ("fourbar-lecture-1", "slider-crank-excel-210")
+    )
+    assert fourbar(exact) == fourbar(groove)
+    assert massless(exact) - massless(groove) == pytest.approx(RAIL_US, rel=0.01)
+
+
+def test_a_matrix_and_an_iteration_cost_as_much_as_the_mechanism_is_large() -> None:
+    four, six = (
+        exudyn_knobs.work(scene, start(scene))
+        for scene in map(load_scene, ("fourbar-lecture-1", "sixbar-watt"))
+    )
+    assert four(EXUDYN) < four({**EXUDYN, "jacobian": "each-iteration"})
+    assert four({**EXUDYN, "relative_tolerance": 1e-4}) < four(EXUDYN)
+    assert 1.5 < six(EXUDYN) / four(EXUDYN) < 2.5
+
+
+@pytest.mark.parametrize("name", ["fourbar-lecture-1", "slider-crank-excel-210", "shaper"])
+def test_the_unknowns_are_those_of_the_engine(name: str) -> None:
+    scene = load_scene(name)
+    session = ExudynSession(scene, start(scene), EXUDYN, 1e-3, "prescribed")
+    held = session._system.systemData
+    assert exudyn_knobs.unknowns(scene) == held.ODE2Size() + held.AEsize()
+
+
+def test_calibration_times_every_engine_on_every_steady_scene() -> None:
+    named = {(scene.name, engine) for scene, engine, _ in points()}
+    assert {name for name, _ in named} < set(shipped())
+    assert len(named) == 3 * len({name for name, _ in named})
+
+
+def test_calibration_finds_what_a_machine_of_known_costs_takes() -> None:
+    names = ("fourbar-lecture-1", "sixbar-watt", "shaper", "slider-crank-excel-210")
+    what = [p for p in points() if p[0].name in names]
+    works = {
+        "mujoco": lambda scene, settings: mujoco_work(scene)({**MUJOCO, **settings}),
+        "pymunk": lambda scene, settings: pymunk_work(scene)({**PYMUNK, **settings}),
+        "exudyn": lambda scene, settings: exudyn_knobs.work(scene, start(scene))(
+            {**EXUDYN, **settings}
+        ),
+    }
+    taken = [works[engine](scene, settings) for scene, engine, settings in what]
+    lines = [*mujoco(what, taken), *pymunk(what, taken), *exudyn(what, taken)]
+    us = (mujoco_knobs.STEP_US, mujoco_knobs.BODY_US, mujoco_knobs.LOOP_US)
+    assert f"EVALUATIONS = {EVALUATIONS}" in lines
+    assert "STEP_US, BODY_US, LOOP_US = {:.3f}, {:.3f}, {:.3f}".format(*us) in lines
+    us = (pymunk_knobs.STEP_US, pymunk_knobs.BODY_US, RAIL_US)
+    assert "STEP_US, BODY_US, RAIL_US = {:.3f}, {:.3f}, {:.3f}".format(*us) in lines
+    assert f"PASS_US = {PASS_US}" in lines
+    us = (exudyn_knobs.STEP_US, exudyn_knobs.ITERATION_US, exudyn_knobs.MATRIX_US)
+    assert "STEP_US, ITERATION_US, MATRIX_US = {:.3f}, {:.3f}, {:.4f}".format(*us) in lines
+
+
+def test_a_fit_returns_the_costs_that_were_put_in() -> None:
+    counts = np.array([[1.0, 2.0], [1.0, 5.0], [1.0, 9.0]])
+    assert fit(counts.tolist(), (counts @ [3.0, 0.5]).tolist()) == pytest.approx([3.0, 0.5])

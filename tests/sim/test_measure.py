@@ -1,18 +1,32 @@
-"""From poses to the motion of the mechanism: exact poses give the exact motion, faults show."""
+"""From poses to the motion of the mechanism and the lengths of its springs: exact poses give the
+exact ones, faults show.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from types import ModuleType
+from typing import Any
 
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 import pytest
 
-from analytic.kinematics import solve
+from analytic.forces.springs import spring_lengths as true_lengths
+from analytic.kinematics import chunks, solve
+from models.errors import EngineError
 from models.files import load_scene, shipped
-from models.scene import Scene
+from models.mjcf import build
+from models.scene import GROUND, Scene
+from models.spring_ends import line_ends, whole_turns
+from models.springs import LineSpring, PinSpring, SlideSpring, Spring
+from models.tree import plan
+from sim.check import refuse_other_model
+from sim.energy import energy
 from sim.engine import Poses
 from sim.measure import gaps, motion
+from sim.spring_lengths import spring_lengths
+from sim.tree_poses import body_poses
 
 
 def exact(scene: Scene, fake_engine: ModuleType, samples: int = 97) -> Poses:
@@ -141,3 +155,165 @@ def test_velocities_that_lag_are_those_of_their_own_instant(
         coarse, fine = worst(period / 200, level), worst(period / 400, level)
         assert fine < 2e-3 * scene.longest_m * scene.driver.law.peak_speed_rad_s**level
         assert 3.5 < coarse / fine < 4.5, level
+
+
+DT_S = 1e-3
+
+
+def with_springs(scene: Scene, *springs: Spring) -> Scene:
+    return replace(scene, springs={spring.name: spring for spring in springs})
+
+
+FOURBAR = with_springs(
+    load_scene("fourbar-lecture-1"),
+    LineSpring("across", 100.0, 1.0, 0.05, ("A", "C")),
+    LineSpring("diagonal", 10.0, 0.0, 0.0, ("B", "D")),
+    PinSpring("knee", 5.0, 0.1, 0.3, "C", ("coupler", "rocker")),
+    PinSpring("crank", 0.1, 0.0, 0.0, "A", (GROUND, "crank")),
+)
+SLIDERS = (
+    with_springs(
+        load_scene("slider-crank-offset"),
+        SlideSpring("along", 300.0, 3.0, 0.1, "C"),
+        LineSpring("block", 20.0, 0.0, 0.0, ("C", "A")),
+    ),
+    with_springs(
+        load_scene("slider-crank-excel-210"),  # a block without mass
+        SlideSpring("along", 300.0, 3.0, 0.1, "C"),
+        LineSpring("pin", 20.0, 0.0, 0.0, ("C", "A")),
+    ),
+    with_springs(load_scene("slotted-lever"), SlideSpring("along", 300.0, 3.0, 0.1, "B")),
+    with_springs(load_scene("shaper"), SlideSpring("ram", 300.0, 3.0, 0.1, "F")),
+)
+"""Springs along lines of the ground and of a link, of blocks with and without mass, of a link."""
+
+
+def poses_of(fake: ModuleType, scene: Scene, shift: float = 0.0) -> Any:
+    time_s = np.linspace(0.0, 1.2 * scene.driver.law.period_s, 301)
+    return fake.exact_poses(scene, fake.FakeEngine(solve, velocity_shift=shift), time_s, DT_S)
+
+
+@pytest.mark.parametrize("scene", [FOURBAR, *SLIDERS], ids=lambda scene: scene.name)
+def test_lengths_are_those_of_the_reference(scene: Scene, fake_engine: ModuleType) -> None:
+    poses = poses_of(fake_engine, scene)
+    found = spring_lengths(scene, poses)
+    ((_, chunk),) = chunks(scene, poses.time_s, bound=False)
+    for spring, true, _ in true_lengths(scene, chunk):
+        off = found[spring.name] - true
+        if isinstance(spring, PinSpring):  # turns are counted on here
+            assert off[0] == pytest.approx(0.0, abs=1e-12)
+            off = np.remainder(off + np.pi, 2.0 * np.pi) - np.pi
+        np.testing.assert_allclose(off, 0.0, atol=1e-12)
+    assert list(found) == list(scene.springs)
+
+
+def test_a_spring_in_a_pin_is_wound_up_and_not_let_go_after_half_a_turn(
+    fake_engine: ModuleType,
+) -> None:
+    q = spring_lengths(FOURBAR, poses_of(fake_engine, FOURBAR))["crank"]
+    assert abs(q[0]) <= np.pi
+    assert q[-1] - q[0] == pytest.approx(2.4 * np.pi)
+    spring = PinSpring("turned", 1.0, 0.0, 4.0, "A", (GROUND, "crank"))
+    assert 0.5 + whole_turns(spring, 0.5) == pytest.approx(0.5 + 2.0 * np.pi)
+
+
+def test_springs_add_what_they_keep_at_the_instants_of_the_velocities(
+    fake_engine: ModuleType,
+) -> None:
+    bare = replace(FOURBAR, springs={})
+    late = poses_of(fake_engine, FOURBAR, 0.5)
+    added = energy(FOURBAR, late).potential_j - energy(bare, late).potential_j
+    ((_, chunk),) = chunks(FOURBAR, late.time_s + 0.5 * DT_S, bound=False)
+    kept = np.zeros(len(late.time_s))
+    for spring, q, _ in true_lengths(FOURBAR, chunk):
+        if spring.name != "crank":
+            kept += 0.5 * spring.rate * (q - spring.free) ** 2
+    crank = FOURBAR.springs["crank"]
+    kept += 0.5 * crank.rate * spring_lengths(FOURBAR, late)["crank"] ** 2
+    assert np.abs(added - kept).max() < 2e-3 * kept.max()
+    without = replace(FOURBAR, springs={"crank": crank})
+    shift = energy(without, late).potential_j - energy(bare, late).potential_j
+    moved = spring_lengths(FOURBAR, late)["crank"] + 0.5 * DT_S * late.bodies["crank"].omega
+    np.testing.assert_allclose(shift, 0.05 * moved**2, rtol=1e-12)
+
+
+def test_what_the_engine_holds_of_a_spring_is_held_to_the_scene(fake_engine: ModuleType) -> None:
+    fake = fake_engine.FakeEngine(solve)
+    state = solve(FOURBAR, np.zeros(1)).state()
+    facts = fake.open(FOURBAR, state, {}, DT_S, "prescribed").facts()
+    refuse_other_model(FOURBAR, state, facts, DT_S, "prescribed")
+    own = dict(facts.springs)
+    stray = {**own, "stray": (1.0, 0.0, 0.0)}
+    missing = {name: one for name, one in own.items() if name != "knee"}
+    for springs, words in (
+        ({**own, "across": (100.0, 2.0, 0.05)}, "springs.across has damping 2, not 1"),
+        ({**own, "across": (100.0, 1.0, 0.0)}, "springs.across has free 0, not 0.05"),
+        ({**own, "diagonal": (10.1, 0.0, 0.0)}, "springs.diagonal has rate 10.1, not 10"),
+        ({**own, "diagonal": (10.0, 0.0, 1e-6)}, "springs.diagonal has free 1e-06, not 0"),
+        ({**own, "knee": (float("nan"), 0.1, 0.3)}, "springs.knee has rate nan, not 5"),
+        (missing, "springs.knee is not there"),
+        (stray, "springs.stray is none of the scene"),
+    ):
+        with pytest.raises(EngineError, match=words):
+            refuse_other_model(FOURBAR, state, replace(facts, springs=springs), DT_S, "prescribed")
+
+
+def test_the_end_of_a_spring_is_on_a_body_that_carries_its_point() -> None:
+    across = FOURBAR.springs["across"]
+    (ground, place), (body, at) = line_ends(FOURBAR, across)
+    assert (ground, place) == (GROUND, FOURBAR.ground["A"])
+    assert (body, at) == ("coupler", FOURBAR.links["coupler"].points["C"])
+    lost = replace(across, points=("A", "Z"))
+    with pytest.raises(EngineError, match=r"springs\.across: no body carries point Z"):
+        line_ends(FOURBAR, lost)
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_positions_and_velocities_are_those_of_mujoco(name: str) -> None:
+    scene = load_scene(name)
+    start = solve(scene, np.array([0.0])).state(0)
+    model = mujoco.MjModel.from_xml_string(build(scene, start))
+    data = mujoco.MjData(model)
+    random = np.random.default_rng(5)
+    q, rate, push = random.normal(size=(3, 6, model.nv))
+    found = body_poses(plan(scene, start).limbs, q, rate, push)
+    for row in range(len(q)):
+        data.qpos[:], data.qvel[:] = q[row], rate[row]
+        mujoco.mj_forward(model, data)
+        for body, pose in found.items():
+            number = model.body(body).id
+            np.testing.assert_allclose(pose.origin[row], data.xpos[number][:2], atol=1e-13)
+            turn = data.xmat[number].reshape(3, 3)
+            np.testing.assert_allclose(np.cos(pose.theta[row]), turn[0, 0], atol=1e-13)
+            np.testing.assert_allclose(np.sin(pose.theta[row]), turn[1, 0], atol=1e-13)
+            speed = np.empty(6)
+            mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, number, speed, 0)
+            np.testing.assert_allclose(pose.omega[row], speed[2], atol=1e-12)
+            np.testing.assert_allclose(pose.velocity[row], speed[3:5], atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["fourbar-lecture-1", "slotted-lever", "shaper", "scotch-yoke"])
+def test_accelerations_are_the_rates_of_the_velocities(name: str) -> None:
+    scene = load_scene(name)
+    start = solve(scene, np.array([0.0])).state(0)
+    limbs = plan(scene, start).limbs
+    count = sum(len(limb.freedoms) for limb in limbs)
+    random = np.random.default_rng(6)
+    q0, v0, a0 = random.normal(size=(3, count))
+    time_s = np.array([-1e-4, 0.0, 1e-4])[:, None]
+    found = body_poses(
+        limbs, q0 + v0 * time_s + a0 * time_s**2 / 2, v0 + a0 * time_s, a0 + 0 * time_s
+    )
+    for pose in found.values():
+        by_hand = (pose.velocity[2] - pose.velocity[0]) / 2e-4
+        np.testing.assert_allclose(pose.origin_acceleration[1], by_hand, rtol=1e-5, atol=1e-6)
+        np.testing.assert_allclose(pose.alpha[1], (pose.omega[2] - pose.omega[0]) / 2e-4, rtol=1e-8)
+
+
+def test_coordinates_beyond_numbers_are_a_run_that_came_apart_and_no_warning() -> None:
+    scene = load_scene("slider-crank-offset")
+    start = solve(scene, np.array([0.0])).state(0)
+    limbs = plan(scene, start).limbs
+    q = np.full((2, sum(len(limb.freedoms) for limb in limbs)), 1e300)
+    found = body_poses(limbs, q, q, q)
+    assert not all(np.isfinite(pose.origin_acceleration).all() for pose in found.values())

@@ -1,28 +1,32 @@
-"""How many iterations the joints of pymunk ask for: as Chipmunk's own iterations tell."""
+"""How many iterations the joints of pymunk ask for, as Chipmunk's own iterations tell; and springs
+in the pins of a chain, all at once.
+"""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pymunk
 import pytest
 
 from analytic.elastic.segment_start import segment_start
-from analytic.kinematics import solve
 from models.errors import EngineError
 from models.files import load_scene, parse_scene
 from models.motion import State
-from models.scene import Scene
+from models.scene import GROUND, Scene
 from models.segmented import SegmentedScene
+from models.springs import LineSpring, PinSpring, Spring
 from sim.engine import Run
-from sim.pymunk import convergence
+from sim.pymunk import acting, convergence
+from sim.pymunk.chain_springs import chain_springs
 from sim.pymunk.convergence import HALVINGS, chain_iterations, iterations, left_over
-from sim.pymunk.engine import ENGINE, PymunkSession
+from sim.pymunk.engine import ENGINE
 from sim.pymunk.space import SpaceModel, build
 from sim.remedies import remedies
 from sim.run import run
-from sim.settings import resolved
+from tests.worlds.runs import opened, ran, start_of
 
 SEGMENTS = 6
 NO_BIAS = 1.0
@@ -33,10 +37,9 @@ def chain_of(name: str, count: int = SEGMENTS) -> tuple[Scene, State]:
     return own.rigid, segment_start(own, "straight")
 
 
-def start_of(name: str) -> tuple[Scene, State]:
-    if load_scene(name).elastic:
-        return chain_of(name)
-    return load_scene(name), solve(load_scene(name), np.zeros(1)).state()
+def placed(name: str) -> tuple[Scene, State]:
+    scene = load_scene(name)
+    return chain_of(name) if scene.elastic else (scene, start_of(scene))
 
 
 def speeds(model: SpaceModel) -> float:
@@ -68,7 +71,7 @@ def left_after(iterations: int, scene: Scene, state: State) -> float:
     "name", ["fourbar-elastic", "slider-crank-elastic", "sixbar-elastic", "shaper", "toggle-press"]
 )
 def test_chipmunk_s_iterations_leave_the_share_that_is_told(name: str) -> None:
-    scene, state = start_of(name)
+    scene, state = placed(name)
     told = left_over(build(scene, state))
     count = round(-4.0 / math.log(told))  # others have died off
     measured = (left_after(2 * count, scene, state) / left_after(count, scene, state)) ** (
@@ -106,7 +109,7 @@ B = 1
 def test_the_share_is_that_of_the_joints_in_the_order_of_the_space() -> None:
     """The line and the gear of each slider by turns: all lines first would leave 0.3 % more."""
     scene = parse_scene(SLEEVES, "here")
-    state = solve(scene, np.zeros(1)).state()
+    state = start_of(scene)
     told, count = left_over(build(scene, state)), 100
     measured = left_after(2 * count, scene, state) / left_after(count, scene, state)
     assert math.log(measured) / count == pytest.approx(math.log(told), rel=1e-4)
@@ -126,22 +129,22 @@ def test_a_chain_holds_from_one_halving_on(
 ) -> None:
     """The position of the start is the worst of the turn here, but for 7 %."""
     monkeypatch.setattr(convergence, "HALVINGS", halvings)
-    done = ran("fourbar-elastic", iterations=1)
+    done = ended("fourbar-elastic", 1)
     opened = max(float(gap.max()) for gap in done.gaps.values())
     assert (done.status == "ok" and opened < 1e-5) == holds
 
 
-def ran(name: str, *, iterations: int, error_bias: float = 0.0) -> Run:
-    scene, state = start_of(name)
+def ended(name: str, iterations: int, *, error_bias: float = 0.0, steps: int = 720) -> Run:
+    scene, state = placed(name)
     settings = {"iterations": iterations, "error_bias": error_bias}
     dt_s = scene.driver.law.period_s / 1440
-    return run(scene, state, "pymunk", dt_s=dt_s, steps=720, settings=settings)
+    return run(scene, state, "pymunk", dt_s=dt_s, steps=steps, settings=settings)
 
 
 def test_a_chain_is_given_what_it_needs_and_a_run_tells_both_numbers() -> None:
     scene, state = chain_of("fourbar-elastic")
     needed = chain_iterations(build(scene, state))
-    done = ran("fourbar-elastic", iterations=10)
+    done = ended("fourbar-elastic", 10)
     assert (done.settings["iterations"], done.settings["iterations_of_segments"]) == (10, needed)
     assert needed == pytest.approx(HALVINGS * 18.0, rel=0.1)
 
@@ -154,10 +157,8 @@ def test_a_chain_is_given_what_it_needs_and_a_run_tells_both_numbers() -> None:
 def test_all_else_has_the_iterations_that_were_asked_for(
     name: str, asked: dict[str, float]
 ) -> None:
-    scene, state = start_of(name)
-    settings = {"iterations": int(asked["iterations"]), **asked}
-    dt_s = scene.driver.law.period_s / 1440
-    done = run(scene, state, "pymunk", dt_s=dt_s, steps=8, settings=settings)
+    scene, start = placed(name)
+    done = ran(scene, "pymunk", per_turn=1440, start=start, steps=8, settings=asked)
     assert done.settings["iterations"] == asked["iterations"]
     assert "iterations_of_segments" not in done.settings
 
@@ -170,28 +171,25 @@ def test_a_chain_that_needs_too_many_is_unsupported_with_the_number(
     settings = {"iterations": 1, "error_bias": 0.0}
     with pytest.raises(EngineError, match=r"need \d+ iterations .* 50 are done at most.* fewer"):
         iterations(scene, settings, build(scene, state))
-    done = ran("fourbar-elastic", iterations=1)
+    done = ended("fourbar-elastic", 1)
     assert done.status == "unsupported"
     assert "need" in done.reason
-    assert ran("fourbar-elastic", iterations=100).status == "ok"
+    assert ended("fourbar-elastic", 100).status == "ok"
+
+
+def offered(asked: int, error_bias: float = 0.0) -> list[object]:
+    """The iterations of the remedies of a long chain."""
+    scene, state = chain_of("slider-crank-elastic", 16)
+    settings = {"iterations": asked, "error_bias": error_bias}
+    return [remedy["iterations"] for remedy in remedies("pymunk", scene, state, settings)]
 
 
 def test_the_remedies_of_a_chain_are_more_than_it_has_anyway() -> None:
     scene, state = chain_of("slider-crank-elastic", 16)
-    settings = {"iterations": 150, "error_bias": 0.0}
-    held = iterations(scene, settings, build(scene, state))
+    held = iterations(scene, {"iterations": 150, "error_bias": 0.0}, build(scene, state))
     assert held > 1000
-    assert [remedy["iterations"] for remedy in remedies("pymunk", scene, state, settings)] == [
-        2 * held,
-        5 * held,
-    ]
-
-
-def test_the_remedies_of_a_chain_with_a_bias_are_those_of_any_scene() -> None:
-    scene, state = chain_of("slider-crank-elastic", 16)
-    settings = {"iterations": 10, "error_bias": 0.0018}
-    found = [remedy["iterations"] for remedy in remedies("pymunk", scene, state, settings)]
-    assert found == [300, 700, 2000]
+    assert offered(150) == [2 * held, 5 * held]
+    assert offered(10, 0.0018) == [300, 700, 2000]  # as with any scene, where there is a bias
 
 
 @pytest.mark.parametrize(("asked", "found"), [(150, []), (300_000, [600_000])])
@@ -199,21 +197,85 @@ def test_a_chain_has_no_remedy_that_can_not_be_run(
     asked: int, found: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(convergence, "MOST", 500)
-    scene, state = chain_of("slider-crank-elastic", 16)
-    settings = {"iterations": asked, "error_bias": 0.0}
-    assert [one["iterations"] for one in remedies("pymunk", scene, state, settings)] == found
-
-
-def opened(scene: Scene, state: State, **settings: float) -> PymunkSession:
-    profile = resolved(ENGINE.profiles["tuned"], settings)
-    return PymunkSession(scene, state, profile, 1e-3, "prescribed")
+    assert offered(asked) == found
 
 
 @pytest.mark.parametrize("name", ["shaper", "fourbar-elastic"])
 @pytest.mark.parametrize("found", [3, 160])
 def test_a_space_tells_the_iterations_that_it_has(name: str, found: int) -> None:
-    session = opened(*start_of(name))
+    scene, start = placed(name)
+    session = opened(scene, ENGINE, start=start)
     session._space.iterations = found
     told = session.facts().settings
     assert told["iterations"] == found
     assert "iterations_of_segments" not in told
+
+
+PULL = LineSpring("pull", 3.0, 0.1, 0.5, ("A", "C"))
+
+
+def chain(*, damping_s: float = 0.0, beside: bool = False) -> tuple[Scene, State]:
+    """Four segments for the coupler of a four-bar; another spring ``beside`` them."""
+    scene = load_scene("fourbar-elastic")
+    damped = replace(scene.elastic["coupler"], damping_s=damping_s)
+    own = SegmentedScene(replace(scene, elastic={"coupler": damped}), 4)
+    start = segment_start(own, "straight")
+    springs = own.rigid.springs | ({"pull": PULL} if beside else {})
+    return replace(own.rigid, springs=springs), start
+
+
+@pytest.mark.parametrize("beside", [False, True])
+@pytest.mark.parametrize("damping_s", [0.0, 1e-3])
+def test_they_move_a_chain_as_springs_one_by_one(
+    damping_s: float, beside: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene, start = chain(damping_s=damping_s, beside=beside)
+    own = ran(scene, "pymunk", start=start, steps=200)
+    monkeypatch.setattr(acting, "chain_springs", lambda scene: ())
+    other = ran(scene, "pymunk", start=start, steps=200)
+    for name, link in own.motion.links.items():
+        theirs = other.motion.links[name]
+        np.testing.assert_allclose(link.theta, theirs.theta, rtol=0.0, atol=1e-12)
+        np.testing.assert_allclose(link.omega, theirs.omega, rtol=0.0, atol=1e-10)
+
+
+@pytest.mark.parametrize("damping_s", [0.0, 1e-3])
+def test_a_run_tells_of_each(damping_s: float) -> None:
+    scene, start = chain(damping_s=damping_s)
+    told = opened(scene, ENGINE, start=start).facts().springs
+    assert told == {n: (s.rate, s.damping, s.free) for n, s in scene.springs.items()}
+
+
+def in_pins(**bodies: tuple[str, str]) -> dict[str, Spring]:
+    """Springs of a user in the pins of these names."""
+    return {pin: PinSpring(pin, 1.0, 0.01, 0.3, pin, pair) for pin, pair in bodies.items()}
+
+
+@pytest.mark.parametrize("springs", [
+    in_pins(A=(GROUND, "crank"), D=(GROUND, "rocker")),
+    in_pins(B=("crank", "coupler"), C=("coupler", "rocker")),
+], ids=["in the ground", "of a link"])  # fmt: skip
+def test_two_springs_in_pins_of_rigid_links_are_no_chain(springs: dict[str, Spring]) -> None:
+    """With a light coupler and a heavy rocker, for which a chain would be given 343 iterations."""
+    scene = load_scene("fourbar-lecture-1")
+    links = {name: replace(link, mass_kg=0.005) for name, link in scene.links.items()}
+    links["rocker"] = replace(links["rocker"], mass_kg=3.0)
+    scene = replace(scene, links=links, springs=springs)
+    done = ran(scene, "pymunk", steps=200)
+    assert done.settings["iterations"] == 150
+    assert "iterations_of_segments" not in done.settings
+    assert chain_springs(scene) == ()
+
+
+def test_a_spring_in_a_ground_pin_acts_beside_a_chain() -> None:
+    scene = load_scene("fourbar-elastic")
+    own = SegmentedScene(replace(scene, springs=in_pins(D=(GROUND, "rocker"))), 4)
+    assert len(chain_springs(own.rigid)) == 3
+    done = ran(own.rigid, "pymunk", start=segment_start(own, "straight"), steps=200)
+    assert max(float(gap.max()) for gap in done.gaps.values()) < 1e-5
+
+
+def test_springs_alone_make_no_chain() -> None:
+    assert len(chain_springs(chain(beside=True)[0])) == 3
+    assert chain_springs(load_scene("slider-crank-spring")) == ()
+    assert chain_springs(load_scene("squeezer")) == ()

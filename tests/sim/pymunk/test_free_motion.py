@@ -1,4 +1,6 @@
-"""Free motion in pymunk: what acts belongs to the end of a step, and errors fall as its square."""
+"""Free motion in pymunk, and its errors by the step: what acts belongs to the end of a step, and
+pins are closed for the arcs of their points.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.sim.pymunk.test_forces import START
 
 from analytic.free.machine import Machine
 from analytic.free.release import release
@@ -25,14 +28,13 @@ from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from models.staircase import Staircase
 from models.tabulated import Tabulated
 from models.window_chain import Chain
-from sim.engine import Run
+from sim.engine import Run, Settings
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.force_recipe import FORCE_RECIPE
 from sim.pymunk.snippet import SNIPPET
 from sim.run import run
 from sim.settings import resolved
 from sim.snippets import Stepping
-from tests.sim.pymunk.test_reactions import START
 from tests.worlds.let_go import released
 from tests.worlds.tiers import slowly
 
@@ -295,3 +297,39 @@ def test_the_force_recipe_refuses_springs_and_free_motion() -> None:
     settings = resolved(ENGINE.profiles["tuned"], None)
     with pytest.raises(EngineError, match=r"leaves out springs\.knee, a driver that is let go"):
         FORCE_RECIPE(scene, state, settings, 1e-3)
+
+
+def off(name: str, dt_s: float, paths: str) -> float:
+    """How far pins are open, over the longest link, after the first steps of half a second."""
+    scene = load_scene(name)
+    start = solve(scene, np.zeros(1)).state()
+    steps = round(0.5 / dt_s)
+    own: Settings = {"free_paths": paths}
+    done = run(scene, start, "pymunk", "tuned", dt_s=dt_s, steps=steps, drive="free", settings=own)
+    assert done.status == "ok", done.reason
+    return max(float(np.max(gap[8:])) for gap in done.gaps.values()) / scene.longest_m
+
+
+@pytest.mark.parametrize("name", ["fourbar-swing", "slider-crank-spring"])
+def test_pins_are_open_by_a_cube_of_the_step_where_chords_leave_a_square(name: str) -> None:
+    arcs, chords = ([off(name, dt, paths) for dt in (2e-3, 1e-3)] for paths in ("arcs", "chords"))
+    assert math.log2(arcs[0] / arcs[1]) > 2.7
+    assert math.log2(chords[0] / chords[1]) == pytest.approx(2.0, abs=0.2)
+    assert arcs[1] < 0.1 * chords[1]
+
+
+@pytest.mark.parametrize(("profile", "order"), [("as-shipped", 1.0), ("tuned", 2.0)])
+def test_a_driven_pin_of_two_moving_links_converges_as_its_profile_does(
+    profile: str, order: float
+) -> None:
+    scene = load_scene("fourbar-by-coupler")
+    start = solve(scene, np.zeros(1)).state()
+    errors = []
+    for steps in (720, 2880):
+        dt_s = scene.driver.law.period_s / steps
+        done = run(scene, start, "pymunk", profile, dt_s=dt_s, steps=2 * steps)
+        assert done.status == "ok", done.reason
+        true = solve(scene, done.motion.time_s, bound=False).links["rocker"].theta
+        errors.append(float(np.max(np.abs(done.motion.links["rocker"].theta - true))))
+    assert errors[0] < 1e-2
+    assert math.log2(errors[0] / errors[-1]) / 2.0 == pytest.approx(order, abs=0.1)

@@ -1,8 +1,11 @@
-"""Profile as-shipped is what a bare engine does; settings out of range never reach an engine."""
+"""Profile as-shipped is what a bare engine does, settings out of range never reach one, those in
+seconds are told, and remedies are settings.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import exudyn as exu
@@ -13,11 +16,13 @@ import pytest
 
 from analytic.kinematics import solve
 from models.files import load_scene
-from sim.engine import Facts, Session, SettingValue
+from sim.engine import Facts, Session, Settings, SettingValue
 from sim.exudyn.engine import ENGINE
 from sim.exudyn.solver import simulation
-from sim.registry import engine
-from sim.settings import SettingError, resolved
+from sim.registry import ENGINES, engine, offering
+from sim.remedies import remedies
+from sim.run import run
+from sim.settings import SettingError, profile_of, resolved
 
 SCENE = load_scene("fourbar-lecture-1")
 START = solve(SCENE, np.zeros(1)).state()
@@ -160,3 +165,99 @@ def test_a_value_that_an_engine_does_not_take_is_refused(
 ) -> None:
     with pytest.raises(SettingError, match=f"setting {setting}: found"):
         opened(name, "tuned", {setting: value})
+
+
+SCENES = ("fourbar-lecture-1", "slider-crank-offset")
+PER_TURN = 120
+IN_SECONDS = {
+    "mujoco": {"solref_timeconst_s": 0.03, "solref_timeconst_steps": 0.0},
+    "pymunk": {"error_bias": 0.3, "damping": 0.5},
+}
+"""By engine, values that are times, or losses in a second, of their own."""
+
+
+def angles_at(name: str, engine_name: str, settings: Settings, speed: float) -> np.ndarray:
+    """The angles of all links over a turn at a speed of the driver."""
+    scene = load_scene(name)
+    law = scene.driver.law
+    scene = replace(scene, driver=replace(scene.driver, law=replace(law, speed_rad_s=speed)))
+    done = run(
+        scene,
+        solve(scene, np.zeros(1)).state(),
+        engine_name,
+        dt_s=scene.driver.law.period_s / PER_TURN,
+        steps=PER_TURN,
+        settings=settings,
+    )
+    return np.stack([link.theta for link in done.motion.links.values()])
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("name", ENGINES)
+def test_without_them_a_speed_changes_no_angle(name: str, scene: str) -> None:
+    settings = resolved(engine(name).profiles["tuned"], None)
+    assert engine(name).in_seconds(settings) == ()
+    slow, fast = (angles_at(scene, name, settings, speed) for speed in (0.37, 211.0))
+    error = np.abs(slow - angles_at(scene, name, settings, 10.0)).max()
+    assert max(error, np.abs(slow - fast).max()) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("name", "setting"), [(name, each) for name, values in IN_SECONDS.items() for each in values]
+)
+def test_each_that_is_named_does(name: str, setting: str) -> None:
+    tuned = resolved(engine(name).profiles["tuned"], None)
+    settings = tuned | {setting: IN_SECONDS[name][setting]}
+    if setting == "solref_timeconst_s":
+        assert engine(name).in_seconds(settings) == ()  # it is not in force
+        settings |= {"solref_timeconst_steps": 0.0}
+        named: tuple[str, ...] = ("solref_timeconst_s",)
+    elif setting == "solref_timeconst_steps":
+        named = ("solref_timeconst_s",)
+    else:
+        settings |= {"iterations": 3}  # joints that are held take no notice of a damping
+        named = (setting,)
+    assert engine(name).in_seconds(settings) == named
+    slow, fast = (angles_at(SCENES[0], name, settings, speed) for speed in (1.0, 10.0))
+    assert np.abs(slow - fast).max() > 1e-7
+
+
+def test_an_engine_that_has_such_has_them_as_shipped() -> None:
+    for name in IN_SECONDS:
+        assert engine(name).in_seconds(resolved(engine(name).profiles["as-shipped"], None))
+
+
+@pytest.mark.parametrize("name", offering("remedies"))
+@pytest.mark.parametrize("scene_name", ["fourbar-lecture-1", "sixbar-watt", "shaper"])
+def test_every_remedy_opens_and_none_is_what_tuned_has(name: str, scene_name: str) -> None:
+    scene = load_scene(scene_name)
+    start = solve(scene, np.zeros(1)).state()
+    chosen = engine(name)
+    tuned = resolved(profile_of(chosen, "tuned"), {})
+    held = [chosen.open(scene, start, tuned, 1e-3, "prescribed").facts().settings]
+    for remedy in remedies(name, scene, start, tuned):
+        settings = resolved(profile_of(chosen, "tuned"), remedy)
+        facts = chosen.open(scene, start, settings, 1e-3, "prescribed").facts()
+        assert facts.settings not in held
+        held.append(facts.settings)
+    assert len(held) > 2
+
+
+@pytest.mark.parametrize("name", offering("remedies"))
+def test_no_remedy_is_what_there_is_or_less(name: str) -> None:
+    scene = load_scene("sixbar-watt")
+    start = solve(scene, np.zeros(1)).state()
+    tuned = resolved(profile_of(engine(name), "tuned"), {})
+    for remedy in remedies(name, scene, start, tuned):
+        left = remedies(name, scene, start, {**tuned, **remedy})
+        assert remedy not in left
+        assert len(left) < len(remedies(name, scene, start, tuned))
+
+
+def test_several_pins_are_named_with_plus_or_comma_between() -> None:
+    scene = load_scene("sixbar-watt")
+    start = solve(scene, np.zeros(1)).state()
+    for text in ("B+G", "B,G", " B , G "):
+        settings = resolved(profile_of(engine("mujoco"), "tuned"), {"close": text})
+        session = engine("mujoco").open(scene, start, settings, 1e-3, "prescribed")
+        assert set(str(session.facts().settings["close"]).split(", ")) == {"B", "G"}
