@@ -65,6 +65,7 @@ VERIFY: Mistakes = {
     "verify fourbar-swing --duration -1": "--duration -1: give a number above 0",
     "verify fourbar-swing --dt 0": "--dt 0: give a number above 0",
     "verify --free slider-crank-self-locking": ["friction that grows", "take it out"],
+    "verify slider-crank-self-locking --forces --no-convergence --profile tuned": "mujoco is given no such friction (friction.piston)",
     "verify --mjcf x.xml --free": "--mjcf and --free",
     "sweep --free --turns 2 -o out": "--turns: what is let go has no turns",
     "sweep --free --steps-per-turn 90 -o out": "--steps-per-turn: what is let go has no turns",
