@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import ClassVar
 
 import pytest
@@ -36,6 +37,12 @@ def timed(_: object, cells: Sequence[tuple[Cell, float]], rounds: int) -> list[o
     """In place of a clock: a cell takes as many microseconds as there are cells up to it."""
     assert rounds > 1
     return [((n + 9.0, float(n)), (1.1 * n, 2.0 * n)) for n, _ in enumerate(cells, 1)]
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    """Where a search may be kept."""
+    return tmp_path / "kept.db"
 
 
 @pytest.fixture(autouse=True, scope="module")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from pathlib import Path
 
@@ -48,6 +49,46 @@ def done(budget: int = 14, seed: int = 0, attempt: Try = known) -> list[Attempt]
         return search(study, plan(budget, seed), attempt)
 
 
+def noted(calls: list[tuple[Settings, Attempt | None]]) -> Try:
+    """Notes what it is called with."""
+
+    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
+        calls.append((dict(settings), best))
+        return known(settings, best)
+
+    return attempt
+
+
+def interrupted(after: int) -> Try:
+    """Settings that are tried well ``after`` times; the next time Ctrl-C comes."""
+    left = [None] * after
+
+    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
+        if not left:
+            raise Stopped(2)
+        left.pop()
+        return known(settings, best)
+
+    return attempt
+
+
+def clocked(*late: int) -> Try:
+    """The clock ends these of the attempts."""
+    number = itertools.count()
+
+    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
+        found = known(settings, best)
+        if next(number) in late:
+            return replace(found, steps_per_turn=None, reason="timeout", timed_out=True)
+        return found
+
+    return attempt
+
+
+def costing(settings: Settings, cost_us: float) -> Attempt:
+    return Attempt(dict(settings), 100, 100, 0.9, "a scene", cost_us, 1)
+
+
 def test_one_seed_finds_the_same_settings_and_another_tries_others() -> None:
     assert done(seed=1) == done(seed=1)
     assert [a.settings for a in done(seed=1)] != [a.settings for a in done(seed=2)]
@@ -62,88 +103,53 @@ def test_the_profile_is_tried_first_so_that_nothing_found_is_dearer() -> None:
 
 
 @pytest.mark.parametrize("seed", few(range(3), {0}, "luck of a seed"))
-def test_the_search_beats_as_many_guesses(seed: int) -> None:
-    best = best_of(done(budget=40, seed=seed))
+def test_the_search_beats_as_many_guesses_and_soon_leaves_what_is_cheap_and_misses(
+    seed: int,
+) -> None:
+    found = done(budget=40, seed=seed)
+    best = best_of(found)
     assert best.settings["kind"] == "fast"
     assert abs(float(best.settings["stiffness"]) - 23.0) <= 1.0
-
-
-def test_cheap_settings_that_miss_the_target_are_soon_left_alone() -> None:
-    kinds = [a.settings["kind"] for a in done(budget=40)]
-    assert kinds[12:].count("fast") > 2 * kinds[12:].count("wrong")
-
-
-def test_settings_outside_the_knobs_stay_those_of_the_profile() -> None:
-    assert {a.settings["fixed"] for a in done()} == {7}
+    assert {a.settings["fixed"] for a in found} == {7}, "that is no knob"
+    kinds = [a.settings["kind"] for a in found[12:]]
+    assert kinds.count("fast") > 2 * kinds.count("wrong")
 
 
 def test_settings_that_were_tried_are_not_run_again() -> None:
-    ran: list[dict[str, object]] = []
-
-    def counted(settings: Settings, best: Attempt | None) -> Attempt:
-        ran.append(dict(settings))
-        return known(settings, best)
-
-    space = replace(SPACE, knobs=SPACE.knobs[1:], starts=SPACE.starts)
+    calls: list[tuple[Settings, Attempt | None]] = []
+    space = replace(SPACE, knobs=SPACE.knobs[1:])
     with study_in(None, {}) as study:
-        found = search(study, replace(plan(40), space=space), counted)
+        found = search(study, replace(plan(40), space=space), noted(calls))
     assert len(found) == 40
-    assert len(ran) == len({str(settings) for settings in ran}) <= 15
-    assert sum(a.runs for a in found) == 3 * len(ran)
+    assert len(calls) == len({str(settings) for settings, _ in calls}) <= 15
+    assert sum(a.runs for a in found) == 3 * len(calls)
 
 
 def test_every_attempt_is_told_the_best_so_far() -> None:
-    told: list[float] = []
-
-    def counted(settings: Settings, best: Attempt | None) -> Attempt:
-        told.append(best.cost_us if best else float("inf"))
-        return known(settings, best)
-
-    done(attempt=counted)
-    assert told[0] == float("inf")
+    calls: list[tuple[Settings, Attempt | None]] = []
+    done(attempt=noted(calls))
+    (_, first), *later = calls
+    assert first is None
+    told = [best.cost_us for _, best in later]
     assert told == sorted(told, reverse=True)
-    assert told[-1] < told[1]
-
-
-def interrupted(after: int) -> Try:
-    """Settings that are tried well ``after`` times; the next time Ctrl-C comes."""
-    count = 0
-
-    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
-        nonlocal count
-        count += 1
-        if count > after:
-            raise Stopped(2)
-        return known(settings, best)
-
-    return attempt
+    assert told[-1] < told[0]
 
 
 @pytest.mark.parametrize("at", few((0, 7, 12), {12}, "the first trials have less to go on with"))
-def test_a_search_that_was_cut_short_goes_on_to_what_a_whole_one_finds(
-    tmp_path: Path, at: int
-) -> None:
-    path = tmp_path / "kept.db"
+def test_a_search_that_was_cut_short_goes_on_to_what_a_whole_one_finds(path: Path, at: int) -> None:
     with pytest.raises(Stopped), study_in(path, {}) as study:
         search(study, plan(), interrupted(at))
-    calls: list[Settings] = []
-
-    def counted(settings: Settings, best: Attempt | None) -> Attempt:
-        calls.append(settings)
-        return known(settings, best)
-
+    calls: list[tuple[Settings, Attempt | None]] = []
     with study_in(path, {}) as study:
         states = [trial.state for trial in study.trials]
         assert states == [TrialState.COMPLETE] * at + [TrialState.FAIL]
-        found = search(study, plan(), counted)
+        found = search(study, plan(), noted(calls))
     whole = done()
-    assert [a.settings for a in found] == [a.settings for a in whole]
     assert found == whole
     assert len(calls) == sum(a.runs > 0 for a in whole) - at
 
 
-def test_a_larger_budget_begins_with_the_trials_of_a_smaller_one(tmp_path: Path) -> None:
-    path = tmp_path / "kept.db"
+def test_a_larger_budget_begins_with_the_trials_of_a_smaller_one(path: Path) -> None:
     for budget in (4, 12):
         with study_in(path, {}) as study:
             found = search(study, plan(budget), known)
@@ -153,13 +159,11 @@ def test_a_larger_budget_begins_with_the_trials_of_a_smaller_one(tmp_path: Path)
         assert search(study, plan(4), interrupted(0)) == found
 
 
-def test_a_study_is_one_that_optuna_reads_with_its_own_best(tmp_path: Path) -> None:
-    path = tmp_path / "kept.db"
+def test_a_study_is_one_that_optuna_reads_with_its_own_best(path: Path) -> None:
     with study_in(path, {}) as study:
         found = search(study, plan(4), known)
     own = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
-    best = best_of(found)
-    assert own.best_value == best.cost_us
+    assert own.best_value == best_of(found).cost_us
     assert {t.state for t in own.trials} == {TrialState.COMPLETE}
 
 
@@ -184,8 +188,7 @@ def test_many_small_losses_do_not_add_up_when_set_back() -> None:
     profile = dict.fromkeys((k.name for k in knobs), 0)
 
     def each_a_bit(settings: Settings, best: Attempt | None) -> Attempt:
-        cost = 100.0 + 0.6 * sum(settings[k.name] == 0 for k in knobs)
-        return Attempt(dict(settings), 100, 100, 0.9, "a scene", cost, 1)
+        return costing(settings, 100.0 + 0.6 * sum(settings[k.name] == 0 for k in knobs))
 
     best = each_a_bit(dict.fromkeys(profile, 1), None)
     found, _ = plainer(replace(SPACE, knobs=knobs), each_a_bit(profile, None), best, each_a_bit)
@@ -197,38 +200,20 @@ def test_a_profile_that_is_as_cheap_is_taken_as_it_is() -> None:
     """A knob set back alone may cost more than the profile does, and still be as good as equal."""
 
     def costs(settings: Settings, best: Attempt | None) -> Attempt:
-        cost = {"k0 0 k1 0": 100.5, "k0 1 k1 1": 100.0}.get(
-            " ".join(f"{name} {settings[name]}" for name in ("k0", "k1")), 100.9
-        )
-        return Attempt(dict(settings), 100, 100, 0.9, "a scene", cost, 1)
+        values = (settings["k0"], settings["k1"])
+        return costing(settings, {(0, 0): 100.5, (1, 1): 100.0}.get(values, 100.9))
 
     space = replace(SPACE, knobs=(Knob("k0", (0, 1)), Knob("k1", (0, 1))))
     first, best = (costs(dict.fromkeys(("k0", "k1"), k), None) for k in (0, 1))
     assert plainer(space, first, best, costs) == (first, [])
 
 
-def clocked(*late: int) -> Try:
-    """The clock ends these of the attempts."""
-    count = 0
-
-    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
-        nonlocal count
-        count += 1
-        found = known(settings, best)
-        if count - 1 in late:
-            return replace(found, steps_per_turn=None, reason="timeout", timed_out=True)
-        return found
-
-    return attempt
-
-
 @pytest.mark.parametrize(
     "late", few(((0,), (1,), (9,), (0, 5, 13)), {(0, 5, 13)}, "places of a single one")
 )
 def test_what_the_clock_ended_is_not_kept_and_tried_again(
-    tmp_path: Path, late: tuple[int, ...]
+    path: Path, late: tuple[int, ...]
 ) -> None:
-    path = tmp_path / "kept.db"
     with study_in(path, {}) as study:
         once = search(study, plan(), clocked(*late))
         kept = attempts(study)
@@ -236,17 +221,12 @@ def test_what_the_clock_ended_is_not_kept_and_tried_again(
     lost = [a for a in once if a.timed_out]
     assert len(lost) >= len(late)
     assert kept == {place: a for place, a in enumerate(once) if not a.timed_out}
-    ran: list[Settings] = []
-
-    def counted(settings: Settings, best: Attempt | None) -> Attempt:
-        ran.append(settings)
-        return known(settings, best)
-
+    calls: list[tuple[Settings, Attempt | None]] = []
     with study_in(path, {}) as study:
-        again = search(study, plan(), counted)
+        again = search(study, plan(), noted(calls))
         assert attempts(study) == dict(enumerate(again))
         assert search(study, plan(), interrupted(0)) == again
-    assert ran == [a.settings for a in lost if a.runs]
+    assert [settings for settings, _ in calls] == [a.settings for a in lost if a.runs]
     assert not any(a.timed_out for a in again)
     assert [a.settings for a in again] == [a.settings for a in once]
 
@@ -266,12 +246,7 @@ def test_settings_that_the_clock_ends_are_not_tried_twice_in_one_search() -> Non
 
 
 def test_progress_is_told_after_each_trial() -> None:
-    count = 0
-
-    def advance() -> None:
-        nonlocal count
-        count += 1
-
+    told: list[None] = []
     with study_in(None, {}) as study:
-        search(study, plan(9), known, advance)
-        assert count == len(attempts(study)) == 9
+        search(study, plan(9), known, lambda: told.append(None))
+        assert len(told) == len(attempts(study)) == 9

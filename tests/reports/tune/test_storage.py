@@ -19,19 +19,17 @@ from tests.worlds.tiers import few
 ASKED = {"engine": "mujoco", "target": 1e-6, "profile": {"iterations": 2}}
 
 
-def test_a_study_is_gone_on_with_where_all_is_as_before(tmp_path: Path) -> None:
-    path = tmp_path / "kept.db"
+def test_a_study_is_gone_on_with_where_all_is_as_before(path: Path) -> None:
     check_storage(path)
     with study_in(path, ASKED) as study:
         study.add_trial(optuna.create_trial(value=1.0))
     check_storage(path)
     with study_in(path, ASKED) as study:
         assert len(study.trials) == 1
-    assert sorted(each.name for each in tmp_path.iterdir()) == [".kept.db.lock", "kept.db"]
+    assert sorted(each.name for each in path.parent.iterdir()) == [".kept.db.lock", "kept.db"]
 
 
-def test_another_search_is_refused_and_what_differs_is_named(tmp_path: Path) -> None:
-    path = tmp_path / "kept.db"
+def test_another_search_is_refused_and_what_differs_is_named(path: Path) -> None:
     with study_in(path, ASKED):
         pass
     for name, value, words in (
@@ -43,14 +41,10 @@ def test_another_search_is_refused_and_what_differs_is_named(tmp_path: Path) -> 
             pass
 
 
-@pytest.mark.parametrize(
-    "name",
-    few(
-        ("a b.db", "100%.db", "what?.db", "a#b.sqlite", "é.db"),
-        {"100%.db", "what?.db"},
-        "two kinds of quoting show it",
-    ),
-)
+NAMES = ("a b.db", "100%.db", "what?.db", "a#b.sqlite", "é.db")
+
+
+@pytest.mark.parametrize("name", few(NAMES, {"100%.db", "what?.db"}, "two kinds of quoting"))
 def test_any_name_of_a_file_is_that_of_the_file(tmp_path: Path, name: str) -> None:
     with study_in(tmp_path / name, ASKED):
         pass
@@ -68,18 +62,22 @@ def shop(path: Path) -> None:
         base.commit()
 
 
+def theirs(path: Path) -> None:
+    optuna.create_study(storage=f"sqlite:///{path}", study_name="theirs")
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [
         (notes, "holds something else; name a new file"),
         (shop, "holds something else; name a new file"),
+        (theirs, "Optuna file with the study 'theirs'"),
         (os.mkfifo, "no plain file; name a new file"),  # and it is not waited for
     ],
 )
 def test_something_else_is_refused_and_left_alone(
-    make: Callable[[Path], None], words: str, tmp_path: Path
+    make: Callable[[Path], None], words: str, path: Path
 ) -> None:
-    path = tmp_path / "kept.db"
     make(path)
     before = path.read_bytes() if path.is_file() else None
     with pytest.raises(CrankcheckError, match=words):
@@ -87,55 +85,36 @@ def test_something_else_is_refused_and_left_alone(
     assert (path.read_bytes() if path.is_file() else None) == before
 
 
-def test_a_study_of_somebody_else_is_refused_by_its_name(tmp_path: Path) -> None:
-    path = tmp_path / "theirs.db"
-    optuna.create_study(storage=f"sqlite:///{path}", study_name="theirs")
-    with pytest.raises(CrankcheckError, match="Optuna file with the study 'theirs'"):
-        check_storage(path)
-
-
-def test_an_empty_file_is_taken(tmp_path: Path) -> None:
-    path = tmp_path / "new.db"
+def test_an_empty_file_is_taken_and_one_of_another_ending_is_not(path: Path) -> None:
     path.touch()
     check_storage(path)
     with study_in(path, ASKED) as study:
         assert study.trials == []
-
-
-def test_a_file_of_another_ending_is_refused(tmp_path: Path) -> None:
     with pytest.raises(CrankcheckError, match=r"found '\.txt'; use \.db"):
-        check_storage(tmp_path / "kept.txt")
+        check_storage(path.with_suffix(".txt"))
 
 
-def test_two_searches_can_not_write_to_one_file(tmp_path: Path) -> None:
-    path = tmp_path / "kept.db"
-    with (
-        study_in(path, ASKED),
-        pytest.raises(CrankcheckError, match="another search writes there now"),
-        study_in(path, ASKED),
-    ):
-        pass
+def test_two_searches_can_not_write_to_one_file(path: Path) -> None:
+    writes = "another search writes there now"
+    with study_in(path, ASKED), pytest.raises(CrankcheckError, match=writes):
+        study_in(path, ASKED).__enter__()
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no file that is open is removed there")
-def test_a_search_that_comes_as_another_ends_locks_out_a_third(tmp_path: Path) -> None:
+def test_a_search_that_comes_as_another_ends_locks_out_a_third(path: Path) -> None:
     """The second has opened the file of the lock while the first held it; the third comes late."""
     import fcntl
 
-    path = tmp_path / "kept.db"
     with study_in(path, ASKED):
-        second = (tmp_path / ".kept.db.lock").open("ab")
+        second = path.with_name(".kept.db.lock").open("ab")
     with second:
         fcntl.flock(second, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        with (
-            pytest.raises(CrankcheckError, match="another search writes there now"),
-            study_in(path, ASKED),
-        ):
+        writes = "another search writes there now"
+        with pytest.raises(CrankcheckError, match=writes), study_in(path, ASKED):
             pass
 
 
-def test_a_file_that_can_no_more_be_written_is_told_without_a_traceback(tmp_path: Path) -> None:
-    path = tmp_path / "kept.db"
+def test_a_file_that_can_no_more_be_written_is_told_without_a_traceback(path: Path) -> None:
 
     def broken() -> None:
         with study_in(path, ASKED) as study, contextlib.closing(sqlite3.connect(path)) as base:
