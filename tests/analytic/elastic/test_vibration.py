@@ -1,4 +1,5 @@
-"""The integration of driven elastic links, against a library's method and by its energy."""
+"""The integration of driven elastic links: against a library's method, by its energy, beside the
+equations with every coordinate kept, and by nodes that are exact as high as they say."""
 
 from __future__ import annotations
 
@@ -10,29 +11,32 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp  # type: ignore[import-untyped]
 
+from analytic.check.driven_multipliers import DrivenMultipliers
 from analytic.elastic import vibration
-from analytic.elastic.discretisation import Elements, Modes, Polynomials, Segments
+from analytic.elastic.discretisation import Discretisation, Elements, Modes, Polynomials, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.radau_nodes import radau
 from analytic.elastic.reduced import ReducedForm
 from analytic.elastic.tangent import SlopesOverWindows, tangent
 from analytic.elastic.vibration import vibrate
 from analytic.free.gauss import gauss
+from analytic.multibody.multibody_motion import Baumgarte, Method, Projection
+from models.array import Array
 from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.files import load_scene
+from models.forces import Forces
 from models.laws import FromRest
+from models.motion import Motion
 from models.scene import Scene
-from tests.analytic.elastic.driven import FEW as TURNING
-from tests.analytic.elastic.driven import form_of as turning_form
-from tests.analytic.elastic.driven import fourbar, with_elastic
-from tests.analytic.elastic.driven import turning as turning_fourbar
+from tests.analytic.elastic.driven import FEW, following, form_of, fourbar, turning, with_elastic
 from tests.worlds.tiers import slowly
 
 STEPS = "many steps of the library: the equations are the same"
 
 
-def form_of(scene: Scene, by: Polynomials | Modes | Segments) -> ReducedForm:
-    return DrivenElasticMotion(scene, 1.0, by, "straight", stiffened=True).form
+def followed(scene: Scene, until_s: float, by: Discretisation) -> DrivenElasticMotion:
+    return DrivenElasticMotion(scene, until_s, by, "quasi-static", stiffened=True)
 
 
 def by_a_library(form: ReducedForm, until_s: float) -> np.ndarray:
@@ -58,7 +62,7 @@ def by_a_library(form: ReducedForm, until_s: float) -> np.ndarray:
     ],
 )
 def test_a_straight_start_rings_as_a_library_integrates_it(
-    scene: Scene, by: Polynomials | Modes | Segments, until: float
+    scene: Scene, by: Discretisation, until: float
 ) -> None:
     form = form_of(scene, by)
     expected = by_a_library(form, until)
@@ -71,19 +75,13 @@ def test_a_straight_start_rings_as_a_library_integrates_it(
 
 @pytest.mark.parametrize("count", [5, slowly(6, reason="shapes that ring faster")])
 def test_windows_end_at_kinks_and_in_between_the_motion_is_smooth(count: int) -> None:
-    scene = fourbar()
-    rise = 0.31
-    law = FromRest(scene.driver.law.offset_rad, 8.0, rise)
-    scene = replace(scene, driver=replace(scene.driver, law=law))
+    scene = following(fourbar(), FromRest(fourbar().driver.law.offset_rad, 8.0, 0.31))
     motion = DrivenElasticMotion(scene, 0.6, Polynomials(count), "straight", stiffened=True)
-    edges = motion.history.edges_s
-    assert rise in edges
-    assert len(edges) >= 16
+    assert 0.31 in motion.history.edges_s
+    assert len(motion.history.edges_s) >= 16
     time_s = np.linspace(0.0, 0.6, 41)
-    assert (
-        motion.doubt(time_s).middle_m["coupler"].max()
-        < 1e-5 * np.abs(motion.at(time_s).elastic["coupler"].middle).max()
-    )
+    largest = np.abs(motion.at(time_s).elastic["coupler"].middle).max()
+    assert motion.doubt(time_s).middle_m["coupler"].max() < 1e-5 * largest
 
 
 ENERGY = {
@@ -104,9 +102,8 @@ STARTS: tuple[Shape, ...] = ("straight", "quasi-static", "periodic")
     ],
 )
 def test_the_drive_gives_what_energy_and_damping_take(name: str, start: Shape) -> None:
-    scene = ENERGY[name]
     until = 0.3
-    motion = DrivenElasticMotion(scene, until, Polynomials(3, 1), start, stiffened=True, halved=2)
+    motion = DrivenElasticMotion(ENERGY[name], until, Polynomials(3, 1), start, True, halved=2)
     rule, edges = gauss(10), np.linspace(0.0, until, 129)
     span = edges[1] - edges[0]
     time_s = (edges[:-1, None] + span * rule.places).ravel()
@@ -128,25 +125,23 @@ def test_the_drive_gives_what_energy_and_damping_take(name: str, start: Shape) -
 
 
 def test_what_bends_too_far_is_refused_with_words() -> None:
-    soft = with_elastic(fourbar(), flexural_n_m2=1e-2)
-    motion = DrivenElasticMotion(soft, 0.1, Polynomials(3), "quasi-static", stiffened=True)
+    motion = followed(with_elastic(fourbar(), flexural_n_m2=1e-2), 0.1, Polynomials(3))
     with pytest.raises(CrankcheckError, match=r"coupler bends by 0\.\d+ of its length.*stiffer"):
         motion.at(np.linspace(0.0, 0.1, 5))
 
 
 def test_a_link_that_hardly_bends_takes_no_more_windows_than_it_needs() -> None:
-    stiff = with_elastic(fourbar(), flexural_n_m2=1e12)
-    motion = DrivenElasticMotion(stiff, 0.01, Polynomials(3), "quasi-static", stiffened=True)
+    motion = followed(with_elastic(fourbar(), flexural_n_m2=1e12), 0.01, Polynomials(3))
     middle = motion.at(np.linspace(0.0, 0.01, 5)).elastic["coupler"].middle
     assert 0.0 < np.abs(middle).max() < 1e-13
     assert len(motion.history.z) < 30
 
 
 @pytest.mark.parametrize(
-    "by", [Modes(1, 0), slowly(TURNING, reason="a link that rings along itself as well")]
+    "by", [Modes(1, 0), slowly(FEW, reason="a link that rings along itself as well")]
 )
 def test_a_window_that_is_too_long_is_halved(by: Modes) -> None:
-    form = turning_form(turning_fourbar(1.3), by)
+    form = form_of(turning(1.3), by)
     still = np.zeros(form.size)
     long, short = (vibrate(form, still, still, form.period_s, count) for count in (2, 30))
     middle = np.array([0.5 * form.period_s])
@@ -164,6 +159,81 @@ def test_what_is_stiff_is_met_as_well_as_rounding_lets_it(monkeypatch: pytest.Mo
         return tangent(*own)  # type: ignore[arg-type]
 
     monkeypatch.setattr(vibration, "tangent", counted)
-    motion = DrivenElasticMotion(fourbar(), 0.2, Elements(8), "quasi-static", stiffened=True)
+    motion = followed(fourbar(), 0.2, Elements(8))
     blocks = len(motion.history.z) / vibration.BLOCK
     assert len(taken) <= 2 * math.ceil(blocks)
+
+
+SCENE = load_scene("fourbar-elastic")
+HEAVY = replace(with_elastic(SCENE, damping_s=1e-4), gravity_m_s2=(0.0, -9.81))
+
+
+def off_multipliers(scene: Scene, turns: float, method: Method, count: int) -> tuple[float, float]:
+    """How far deflections are from those of the equations with every coordinate kept, from one
+    state, over the largest; and reactions with the torque."""
+    until_s = turns * scene.driver.law.period_s
+    driven, time_s = followed(scene, until_s, Modes(1)), np.linspace(0.0, until_s, count)
+    start = driven.first.now.q[0], driven.first.now.rates[0]
+    kept = DrivenMultipliers(driven.form.assembly, start, until_s, method)
+    bent, *rest = (
+        float(np.abs(own - other).max() / np.abs(own).max())
+        for own, other in zip(*map(told, (driven.at(time_s), kept.at(time_s))), strict=True)
+    )
+    return bent, max(rest)
+
+
+def told(motion: Motion) -> list[Array]:
+    forces = motion.forces
+    assert isinstance(forces, Forces)
+    return [
+        *(motion.elastic["coupler"].middle, motion.links["rocker"].alpha),
+        *(forces.torque, forces.pins["C"]["coupler"]),
+    ]
+
+
+@pytest.mark.parametrize("turns", [0.3, slowly(2.0, reason="errors that grow with the turns")])
+def test_over_turns_it_agrees_with_the_equations_of_every_coordinate(turns: float) -> None:
+    bent, forces = off_multipliers(SCENE, turns, Projection(), 41)
+    assert bent < 1e-9
+    assert forces < 1e-8
+
+
+@pytest.mark.parametrize("turns", [0.1, slowly(0.2, reason="errors that grow with the turns")])
+@pytest.mark.parametrize("method", [Projection(), Baumgarte(50.0, 50.0)])
+def test_it_does_with_weight_and_damping(method: Method, turns: float) -> None:
+    """And with Baumgarte's terms, whose constraints stay closed to what each step leaves."""
+    assert max(off_multipliers(HEAVY, turns, method, 11)) < 1e-8
+
+
+def test_steps_of_one_size_are_for_what_is_let_go() -> None:
+    with pytest.raises(CrankcheckError, match="leave step_s out"):
+        off_multipliers(SCENE, 0.1, Baumgarte(5.0, 5.0, 1e-3), 1)
+
+
+@pytest.mark.parametrize("count", [2, 3, 10])
+def test_by_radaus_nodes_polynomials_up_to_their_order_are_exact(count: int) -> None:
+    rule = radau(count)
+    assert rule.places[-1] == 1.0
+    for power in range(2 * count - 1):
+        assert rule.end_once @ rule.places**power == pytest.approx(1.0 / (power + 1), rel=1e-12)
+    for power in range(count):
+        whole = rule.places ** (power + 1) / (power + 1)
+        once, twice = (by @ rule.places**power for by in (rule.once, rule.twice))
+        np.testing.assert_allclose(once, whole, atol=1e-13)
+        np.testing.assert_allclose(twice, whole * rule.places / (power + 2), atol=1e-13)
+
+
+def test_two_and_three_of_radaus_nodes_are_those_of_the_book() -> None:
+    """Hairer and Wanner, table 5.5 and 5.6."""
+    np.testing.assert_allclose(radau(2).places, [1.0 / 3.0, 1.0], rtol=1e-14)
+    np.testing.assert_allclose(radau(2).once, [[5.0 / 12.0, -1.0 / 12.0], [0.75, 0.25]], rtol=1e-13)
+    inner = (4.0 + np.sqrt(6.0) * np.array([-1.0, 1.0])) / 10.0
+    np.testing.assert_allclose(radau(3).places, [*inner, 1.0], rtol=1e-13)
+
+
+def test_by_radaus_nodes_what_is_stiff_is_gone_after_a_step() -> None:
+    """u' = -z u: the end of a step of 1 goes to 0 with 1/z, where Gauss' nodes keep it."""
+    rule = radau(10)
+    for z in (1e4, 1e6):
+        slopes = np.linalg.solve(np.eye(10) + z * rule.once, -z * np.ones(10))
+        assert abs(1.0 + rule.end_once @ slopes) < 100.0 / z
