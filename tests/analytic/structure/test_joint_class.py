@@ -1,18 +1,72 @@
-"""Classes of joints from contacts: the problem book's examples, the lower pairs, any frame."""
+"""Screws; classes of joints from contacts: the problem book's examples, lower pairs, any frame."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from analytic.structure.freedom_names import axis_in_words, names_of_freedoms
 from analytic.structure.joint_chains import chain_of
 from analytic.structure.joint_class import analyse_joint
-from analytic.structure.screws import rank
+from analytic.structure.screws import (
+    carried,
+    cross_matrix,
+    displaced,
+    force,
+    gap,
+    rank,
+    reciprocal,
+    rotation,
+    translation,
+)
 from models.scheme import SchemeJoint
 from models.touching import Contact, Touching, load_touching, shipped_contacts
+
+
+def matrix(twist: np.ndarray) -> np.ndarray:
+    """A twist as the matrix (4, 4) whose exponential is its motion."""
+    whole = np.zeros((4, 4))
+    whole[:3, :3], whole[:3, 3] = cross_matrix(twist[:3]), twist[3:]
+    return whole
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-13, 1e-6, 1e-3, 1.0, 2.5])
+def test_a_finite_motion_is_the_exponential_of_its_twist(size: float) -> None:
+    for twist in np.random.default_rng(1).standard_normal((5, 6)):
+        with mpmath.workdps(40):
+            exact = mpmath.expm(mpmath.matrix((size * matrix(twist)).tolist())).tolist()
+        assert np.allclose(displaced(twist, size), np.array(exact, float), atol=4e-15, rtol=0)
+
+
+def test_a_carried_axis_turns_as_its_body_and_the_gap_of_a_small_motion_is_its_twist() -> None:
+    for twist, way in np.random.default_rng(2).standard_normal((5, 2, 6)):
+        move = displaced(way, 1.0)
+        there = move @ matrix(twist) @ np.linalg.inv(move)
+        assert np.allclose(matrix(carried(move, twist)), there, atol=1e-13)
+        assert np.allclose(gap(displaced(twist, 1e-7)) / 1e-7, twist, atol=1e-6)
+
+
+def test_a_force_through_an_axis_does_no_work_on_a_turn_about_it() -> None:
+    turn = rotation((0.1, 0.2, 0.3), (0.0, 0.6, 0.8))
+    assert force((0.1, 0.2 + 0.6, 0.3 + 0.8), (1.0, 2.0, 3.0)) @ turn == pytest.approx(0.0)
+    assert np.allclose(reciprocal(turn[:, None]) @ turn, 0.0)
+    assert reciprocal(turn[:, None]).shape == (5, 6)
+
+
+def test_freedoms_have_names_where_axes_of_the_frame_do_and_places_else() -> None:
+    at = (0.1, 0.0, 0.0)
+    pair = np.array([rotation(at, (0, 0, 1)) + translation((1, 0, 0)), translation((1, 0, 0))]).T
+    assert names_of_freedoms(pair, at) == ["Qz", "Tx"]
+    skew = rotation((0.5, 0.0, 0.0), (0.0, 0.0, 1.0))[:, None]
+    assert names_of_freedoms(skew, at) == ["turn about (0, 0, 1) through (0.5, 0, 0) m"]
+    assert axis_in_words(translation((0.0, 3.0, 4.0))) == "slide along (0, 0.6, 0.8)"
+    thread = rotation((0.0, 0.2, 0.0), (1.0, 0.0, 0.0), 0.006 / (2 * np.pi))
+    words = "screw about (1, 0, 0) through (0, 0.2, 0) m, 0.006 m in a turn"
+    assert axis_in_words(thread) == words
 
 
 def contact(
@@ -44,23 +98,13 @@ def test_the_six_joints_of_exercise_1_1_have_the_classes_of_the_book(
     assert [" ".join(each.freedoms) for each in joint.guided.values() or [joint.alone]] == freedoms
 
 
-@pytest.mark.parametrize(
-    ("name", "kind"),
-    [
-        ("revolute", "revolute"),
-        ("prismatic", "prismatic"),
-        ("screw", "screw"),
-        ("cylindrical", "cylindrical"),
-        ("spherical", "spherical"),
-        ("planar", "planar"),
-        ("ball-in-tube", "ball-in-tube"),
-    ],
-)
-def test_a_pair_leaves_by_its_contacts_what_it_leaves_in_a_scheme(name: str, kind: str) -> None:
-    joint = analyse_joint(load_touching(name))
-    axis = {"prismatic": (1.0, 0.0, 0.0), "ball-in-tube": (1.0, 0.0, 0.0)}.get(
-        kind, (0.0, 0.0, 1.0)
-    )
+PAIRS = ["revolute", "prismatic", "screw", "cylindrical", "spherical", "planar", "ball-in-tube"]
+
+
+@pytest.mark.parametrize("kind", PAIRS)
+def test_a_pair_leaves_by_its_contacts_what_it_leaves_in_a_scheme(kind: str) -> None:
+    joint = analyse_joint(load_touching(kind))
+    axis = (1.0, 0.0, 0.0) if kind in ("prismatic", "ball-in-tube") else (0.0, 0.0, 1.0)
     chain = chain_of(SchemeJoint("A", kind, ("ground", "link"), axes=(axis,), lead=0.006))
     assert joint.alone.constraints == 6 - len(chain)
     assert joint.touching.is_lower_pair == (kind != "ball-in-tube")
@@ -73,26 +117,21 @@ def test_the_class_is_the_same_in_every_frame(name: str) -> None:
     turn = Rotation.random(rng=np.random.default_rng(4)).as_matrix()
 
     def moved(vector: tuple[float, float, float], by: float = 0.0) -> tuple[float, float, float]:
-        x, y, z = turn @ vector + by
-        return (float(x), float(y), float(z))
+        return tuple((turn @ vector + by).tolist())
 
-    contacts = tuple(
-        replace(
-            each,
-            at=moved(each.at, 0.7),
-            normal=moved(each.normal),
-            along=moved(each.along),
-            axis=moved(each.axis),
-        )
-        for each in touching.contacts
-    )
-    there = analyse_joint(
-        replace(touching, at=moved(touching.at, 0.7), contacts=contacts, guides={})
-    )
+    def carried_along(one: Contact) -> Contact:
+        ways = {way: moved(getattr(one, way)) for way in ("normal", "along", "axis")}
+        return replace(one, at=moved(one.at, 0.7), **ways)
+
+    contacts, at = tuple(map(carried_along, touching.contacts)), moved(touching.at, 0.7)
+    there = analyse_joint(replace(touching, at=at, contacts=contacts, guides={}))
     here = analyse_joint(touching)
     assert there.alone.constraints == here.alone.constraints
     assert len(there.alone.freedoms) == 6 - there.alone.constraints
     assert there.kept == here.kept
+
+
+LEGS = tuple(contact("point", (x, y, 0.0)) for x, y in ((1, 0), (0, 1), (-1, -1)))
 
 
 def test_form_keeps_what_no_motion_opens_and_a_force_the_rest() -> None:
@@ -103,15 +142,11 @@ def test_form_keeps_what_no_motion_opens_and_a_force_the_rest() -> None:
         "between two planes": (down, up),
         "kept both ways": (replace(down, both_ways=True),),
         "in a round tube, on its end": (contact("circle", both_ways=True), down),
-        "on three points": tuple(
-            contact("point", (x, y, 0.0)) for x, y in ((1, 0), (0, 1), (-1, -1))
-        ),
+        "on three points": LEGS,
     }
-    kept = {
-        name: analyse_joint(Touching(name, "", (0.0, 0.0, 0.0), contacts)).kept
-        for name, contacts in either.items()
-    }
-    assert [name for name, held in kept.items() if held] == ["between two planes", "kept both ways"]
+    joints = [Touching(name, "", (0.0, 0.0, 0.0), held) for name, held in either.items()]
+    kept = [joint.name for joint in joints if analyse_joint(joint).kept]
+    assert kept == ["between two planes", "kept both ways"]
 
 
 def test_freedoms_have_their_place_where_they_are_not_about_the_joints_point() -> None:
@@ -130,7 +165,6 @@ def test_points_make_the_class_of_the_surface_that_they_stand_for() -> None:
         joint = Touching("points", "", (0.0, 0.0, 0.0), contacts)
         return analyse_joint(joint).alone.constraints
 
-    legs = [contact("point", (x, y, 0.0)) for x, y in ((1.0, 0.0), (0.0, 1.0), (-1.0, -1.0))]
-    assert [by(*legs[:1]), by(*legs[:2]), by(*legs), by(contact("plane"))] == [1, 2, 3, 3]
+    assert [by(*LEGS[:1]), by(*LEGS[:2]), by(*LEGS), by(contact("plane"))] == [1, 2, 3, 3]
     in_line = [contact("point", (x, 0.0, 0.0)) for x in (1e-3, 2e-3, 3e-3)]
     assert by(*in_line) == by(contact("line")) == 2

@@ -1,4 +1,4 @@
-"""Mobility, Assur groups in solving order, and what is said of mechanisms that have none."""
+"""Mobility, Assur groups in solving order, classes by the driver, and what is said without them."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 from analytic.check import newton
 from analytic.check.newton import Guess
 from analytic.kinematics import solve
+from analytic.structure.by_driver import StructureByDriver, by_drivers
 from analytic.structure.groups import Bridge
 from analytic.structure.mobility import analyse
 from analytic.structure.unsolved import MOST_LOOKS, LeftOver
@@ -22,40 +23,23 @@ FOURBAR = {"crank": "AB", "coupler": "BC", "rocker": "DC"}
 GROUND = {"A": (0.0, 0.0), "D": (0.3, 0.0), "G": (0.6, 0.1), "H": (0.5, 0.4)}
 LENGTHS = {"crank": 0.1, "coupler": 0.25, "rocker": 0.2}
 
-EXPECTED = {
-    "slotted-lever": ["RPR B"],
-    "whitworth": ["RPR B"],
-    "shaper": ["RPR B", "RRP F"],
-    "scotch-yoke": ["RPP B"],
-    "tangent": ["PRP P"],
-    "sixbar-watt": ["RRR C", "RRR F"],
-    "sixbar-stephenson": ["RRR C", "RRR F"],
-}
+EXPECTED = {"slotted-lever": ["RPR B"], "whitworth": ["RPR B"], "shaper": ["RPR B", "RRP F"]}
+EXPECTED |= {"scotch-yoke": ["RPP B"], "tangent": ["PRP P"]}
+EXPECTED |= {f"sixbar-{name}": ["RRR C", "RRR F"] for name in ("watt", "stephenson")}
 
 
-def build(
-    bars: dict[str, str], ground: str = "AD", extra: str = "", branch: str = "", sliders: str = ""
-) -> Scene:
+def build(bars: dict[str, str], ground: str = "AD", sliders: str = "") -> Scene:
     """A scene of bars between one-letter points; further letters of a bar are further points."""
     links = []
     for name, (a, b, *more) in bars.items():
         length = LENGTHS.get(name, 0.3)
         points = ", ".join(f"{p} = [{0.3 * length}, {0.1 * (i + 1)}]" for i, p in enumerate(more))
-        links.append(
-            f'{name} = {{ bar = ["{a}", "{b}"], length_m = {length}, points = {{ {points} }} }}'
-        )
+        bar = f'bar = ["{a}", "{b}"], length_m = {length}'
+        links.append(f"{name} = {{ {bar}, points = {{ {points} }} }}")
     pins = ", ".join(f"{p} = [{GROUND[p][0]}, {GROUND[p][1]}]" for p in ground)
-    text = [
-        'name = "made-up"\nsource = "test"',
-        f"[ground]\npoints = {{ {pins} }}",
-        "[links]",
-        *links,
-        sliders,
-        '[driver]\nlink = "crank"\nspeed_rad_s = 1.0\nstart_deg = 60.0',
-        f"[branch]\n{branch}",
-        extra,
-    ]
-    return parse_scene("\n".join(text), "test")
+    head = f'name = "made-up"\nsource = "test"\n[ground]\npoints = {{ {pins} }}\n[links]'
+    driver = '[driver]\nlink = "crank"\nspeed_rad_s = 1.0\nstart_deg = 60.0'
+    return parse_scene("\n".join([head, *links, sliders, driver]), "test")
 
 
 @pytest.mark.parametrize("name", shipped())
@@ -83,31 +67,6 @@ def test_groups_do_not_depend_on_the_order_of_the_file() -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("bars", "ground", "said"),
-    [
-        (
-            {"crank": "AB", "p": "BC", "q": "CE", "r": "ED"},
-            "AD",
-            r"3\*4 - 2\*5 - 0 = 2;.*Pin a loose",
-        ),
-        ({"crank": "AB", "p": "BC", "q": "CE", "r": "EF", "s": "FD"}, "AD", r"= 3;.*Pin a loose"),
-    ],
-    ids=["mobility 2", "mobility 3"],
-)
-def test_mobility_other_than_one_is_said_with_its_count(
-    bars: dict[str, str], ground: str, said: str
-) -> None:
-    with pytest.raises(StructureError, match=rf"made-up: mobility W = 3 n - 2 p5 - p4 = .*{said}"):
-        analyse(build(bars, ground))
-
-
-def test_a_guide_that_holds_the_mechanism_rigid_is_said_with_the_count() -> None:
-    guided = build(FOURBAR, sliders='[sliders.C]\non = "ground"')
-    with pytest.raises(StructureError, match=r"3\*4 - 2\*6 - 0 = 0;.*Remove a link or a pin"):
-        analyse(guided)
-
-
 TRIAD = {"crank": "AB", "platform": "CEF", "leg1": "BC", "leg2": "DE", "leg3": "GF"}
 SIX = {"crank": "AB", "plate1": "CEF", "plate2": "FKL", "leg1": "BC", "leg2": "DE", "leg3": "GK"}
 SIX |= {"leg4": "HL"}
@@ -129,37 +88,68 @@ def test_dyads_stand_before_and_after_a_triad() -> None:
     assert kinds == [("RRR", "coupler"), ("RR-RR-RR", "platform"), ("RRR", "rod")]
 
 
-def test_a_larger_group_names_its_links() -> None:
-    with pytest.raises(StructureError, match="class III or higher, order 4") as raised:
-        analyse(build(SIX, "ADGH"))
-    said = str(raised.value)
-    links = "plate1, plate2, leg1, leg2, leg3, leg4"
-    assert f"{links} form an Assur group of 6 links and 9 pairs" in said
-    assert "dyads (RRR, RRP, RPR, PRP, RPP) and triads (class III, order 3) have" in said
+SLIDES = "".join(
+    f'[sliders.S{i}]\non = "ground"\nlink = "leg{i}"\npoint = "{p}"\n'
+    f'[sliders.T{i}]\non = "leg{i}"\nlink = "platform"\npoint = "{q}"\ndirection_deg = 50.0\n'
+    for i, p, q in ((2, "G", "E"), (3, "H", "F"))
+)
+THREE_SLIDERS = """[sliders]
+X = { link = "p", point = "C", on = "crank" }
+Y = { link = "q", point = "E", on = "p", direction_deg = 60.0 }
+Z = { link = "q", point = "F", on = "ground", direction_deg = 90.0 }
+"""
+TWO_SLIDE = {"crank": "AB", "platform": "CEF", "leg1": "BC", "leg2": "GI", "leg3": "HK"}
+GUIDE = '[sliders.C]\non = "ground"'
+BRACED = {"crank": "AB", "plate": "BCE", "brace": "CEF", "rocker": "DF"}
+IN_A_RING = {"crank": "AB", "one": "BCE", "two": "DFJ", "bar1": "CF", "bar2": "EJ"}
+ON_AN_ARM = {"crank": "ACM", "arm": "ME", "two": "DFJ", "bar1": "CF", "bar2": "EJ"}
 
 
-def test_four_links_in_a_ring_are_of_class_iv() -> None:
-    bars = {"crank": "AB", "one": "BCE", "two": "DFJ", "bar1": "CF", "bar2": "EJ"}
-    with pytest.raises(StructureError, match=r"4 links and 6 pairs \(class IV, order 2\)"):
-        analyse(build(bars))
+def by_pin(bars: dict[str, str], link: str, base: str, pin: str) -> Scene:
+    return replace(build(bars), driver=Driver(link, ConstantSpeed(0.1, 1.0), base, pin=pin))
 
 
-def test_legs_that_slide_at_both_ends_leave_no_two_of_a_triad() -> None:
-    slides = "".join(
-        f'[sliders.S{i}]\non = "ground"\nlink = "leg{i}"\npoint = "{p}"\n'
-        f'[sliders.T{i}]\non = "leg{i}"\nlink = "platform"\npoint = "{q}"\ndirection_deg = 50.0\n'
-        for i, p, q in ((2, "G", "E"), (3, "H", "F"))
-    )
-    bars = {"crank": "AB", "platform": "CEF", "leg1": "BC", "leg2": "GI", "leg3": "HK"}
-    with pytest.raises(StructureError, match="order 3, two of whose legs slide at both ends"):
-        analyse(build(bars, "A", sliders=slides))
+REFUSED = {
+    "mobility 2": (build({"crank": "AB", "p": "BC", "q": "CE", "r": "ED"}),
+        r"made-up: mobility W = 3 n - 2 p5 - p4 = 3\*4 - 2\*5 - 0 = 2;.*Pin a loose"),
+    "mobility 3": (build({"crank": "AB", "p": "BC", "q": "CE", "r": "EF", "s": "FD"}),
+        r"made-up: mobility W = 3 n - 2 p5 - p4 = .*= 3;.*Pin a loose"),
+    "a guide holds it rigid": (build(FOURBAR, sliders=GUIDE),
+        r"3\*4 - 2\*6 - 0 = 0;.*Remove a link or a pin"),
+    "a larger group": (build(SIX, "ADGH"),
+        "plate1, plate2, leg1, leg2, leg3, leg4 form an Assur group of 6 links and 9 pairs "
+        r"\(class III or higher, order 4\).*dyads \(RRR, RRP, RPR, PRP, RPP\) and triads "
+        r"\(class III, order 3\) have"),
+    "four links in a ring": (build(IN_A_RING),
+        r"4 links and 6 pairs \(class IV, order 2\)"),
+    "two legs that slide at both ends": (build(TWO_SLIDE, "A", SLIDES),
+        "order 3, two of whose legs slide at both ends"),
+    "what the driver moves against each other is one link": (by_pin(ON_AN_ARM, "arm", "crank", "M"),
+        r"crank \+ arm, two, bar1, bar2 form .* \(class IV"),
+    "a driven pair whose bodies are joined again": (by_pin(BRACED, "brace", "plate", "C"),
+        r"pin C of plate and brace cannot move: .* at E too"),
+    "rigid beside a loose link": (build(FOURBAR | {"rocker": "DCE", "tail": "EF"}, sliders=GUIDE),
+        r"held by 2 pairs.*rigid and another link is loose"),
+    "redundant beside loose": (build(FOURBAR | {"rocker": "DCE", "strut": "BC", "tail": "EF"}),
+        r"= 1, but 2 where redundant links \(strut\) are not counted.*Pin a loose link"),
+    "both pins in common": (build({"crank": "AB", "coupler": "DC", "rocker": "DC"}),
+        "coupler and rocker both hang on pin D, and turn"),
+    "pinned as its block": (build({"crank": "AB", "lever": "BE"}, "A", '[sliders.B]\non = "lever"'),
+        "lever and block B both hang on pin B, and turn"),
+    "three sliders": (build({"crank": "AB", "p": "CI", "q": "EF"}, "A", THREE_SLIDERS),
+        "do not hang on the driver"),
+    "a branch of no assemblies": (replace(build(FOURBAR), branch={"B": 1}),
+        r"branch\.B chooses between no two assemblies; it has C"),
+    "a branch of a scene without assemblies": (replace(load_scene("tangent"), branch={"P": 1}),
+        r"branch\.P .* this scene has none"),
+}  # fmt: skip
 
 
-def test_what_the_driver_moves_against_each_other_is_one_link_of_a_group() -> None:
-    bars = {"crank": "ACM", "arm": "ME", "two": "DFJ", "bar1": "CF", "bar2": "EJ"}
-    driver = Driver("arm", ConstantSpeed(0.1, 1.0), "crank", pin="M")
-    with pytest.raises(StructureError, match=r"crank \+ arm, two, bar1, bar2 form .* \(class IV"):
-        analyse(replace(build(bars), driver=driver))
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_has_no_solution_is_refused_with_the_reason(name: str) -> None:
+    scene, said = REFUSED[name]
+    with pytest.raises(StructureError, match=said):
+        analyse(scene)
 
 
 def pairs_of_platforms(count: int) -> Scene:
@@ -214,49 +204,6 @@ def test_the_work_of_naming_a_group_does_not_grow_with_the_links(
     assert len(said) < 300
 
 
-def test_a_driven_pair_whose_bodies_are_joined_again_cannot_move() -> None:
-    bars = {"crank": "AB", "plate": "BCE", "brace": "CEF", "rocker": "DF"}
-    scene = replace(build(bars), driver=Driver("brace", ConstantSpeed(0.1, 1.0), "plate", pin="C"))
-    with pytest.raises(StructureError, match=r"pin C of plate and brace cannot move: .* at E too"):
-        analyse(scene)
-
-
-def test_rigid_part_beside_a_loose_link_is_not_taken_for_mobility_one() -> None:
-    guide = '[sliders.C]\non = "ground"'
-    guided = build(FOURBAR | {"rocker": "DCE", "tail": "EF"}, sliders=guide)
-    with pytest.raises(StructureError, match=r"held by 2 pairs.*rigid and another link is loose"):
-        analyse(guided)
-
-
-def test_redundant_link_beside_a_loose_one_is_not_taken_for_mobility_one() -> None:
-    bars = FOURBAR | {"rocker": "DCE", "strut": "BC", "tail": "EF"}
-    said = r"= 1, but 2 where redundant links \(strut\) are not counted.*Pin a loose link"
-    with pytest.raises(StructureError, match=said):
-        analyse(build(bars))
-
-
-def test_two_links_with_both_pins_in_common_hang_loose() -> None:
-    bars = {"crank": "AB", "coupler": "DC", "rocker": "DC"}
-    with pytest.raises(StructureError, match="coupler and rocker both hang on pin D, and turn"):
-        analyse(build(bars))
-
-
-def test_a_block_on_a_lever_that_is_pinned_where_the_block_is_hangs_loose() -> None:
-    bars = {"crank": "AB", "lever": "BE"}
-    with pytest.raises(StructureError, match="lever and block B both hang on pin B, and turn"):
-        analyse(build(bars, ground="A", sliders='[sliders.B]\non = "lever"'))
-
-
-def test_branch_that_chooses_nothing_is_refused() -> None:
-    with pytest.raises(
-        StructureError, match=r"branch\.B chooses between no two assemblies; it has C"
-    ):
-        analyse(build(FOURBAR, branch="B = 1"))
-    scene = load_scene("tangent")
-    with pytest.raises(StructureError, match=r"branch\.P .* this scene has none"):
-        analyse(Scene(**{**vars(scene), "branch": {"P": 1}}))
-
-
 def test_three_links_at_one_pin_are_two_pairs() -> None:
     """Coupler, rocker and rod all at C: the second dyad hangs on the pin of the first."""
     scene = build(FOURBAR | {"rod": "CF", "lever": "GF"}, "ADG")
@@ -274,23 +221,38 @@ def test_three_links_at_one_pin_are_two_pairs() -> None:
         assert np.allclose(link.alpha, other.links[name].alpha, rtol=0, atol=1e-11)
 
 
-def test_slider_on_three_sliders_is_no_group() -> None:
-    """Two links that slide on known bodies and on each other can shift: no dyad of sliders."""
-    sliders = """
-[sliders.X]
-link = "p"
-point = "C"
-on = "crank"
-[sliders.Y]
-link = "q"
-point = "E"
-on = "p"
-direction_deg = 60.0
-[sliders.Z]
-link = "q"
-point = "F"
-on = "ground"
-direction_deg = 90.0
-"""
-    with pytest.raises(StructureError, match="do not hang on the driver"):
-        analyse(build({"crank": "AB", "p": "CI", "q": "EF"}, "A", sliders=sliders))
+def classes(scene: Scene) -> dict[str, StructureByDriver]:
+    return {one.joint.words: one for one in by_drivers(scene, analyse(scene))}
+
+
+def test_a_stephenson_six_bar_is_of_class_three_by_its_far_joints() -> None:
+    found = {
+        words: one.class_number for words, one in classes(load_scene("sixbar-stephenson")).items()
+    }
+    second = {"A of ground and crank", "B of crank and coupler", "C of coupler and rocker"}
+    second |= {"D of ground and rocker"}
+    third = {"E of coupler and rod", "F of rod and lever", "G of ground and lever"}
+    assert found == {f"pin {words}": 2 if words in second else 3 for words in second | third}
+
+
+@pytest.mark.parametrize("name", ["fourbar-lecture-1", "shaper", "sixbar-watt", "scotch-yoke"])
+def test_one_joint_is_the_scenes_own_and_has_its_groups(name: str) -> None:
+    scene = load_scene(name)
+    (own,) = (one for one in classes(scene).values() if one.is_own)
+    assert [group.links for group in own.groups] == [one.bodies for one in analyse(scene).groups]
+
+
+def test_groups_by_a_slider_are_those_of_a_scene_that_it_drives() -> None:
+    scene = load_scene("slider-crank-central")
+    found = next(one for one in classes(scene).values() if one.joint.slider == "C")
+    driver = Driver("block C", scene.driver.law, slider="C")
+    driven = replace(scene, driver=driver, branch={})
+    assert [one.links for one in found.groups] == [one.bodies for one in analyse(driven).groups]
+
+
+def test_a_slider_closes_a_ring_of_four_bodies_of_class_four() -> None:
+    bars = {"crank": "AB", "bar": "BC", "plate": "CEK", "swing": "DK"}
+    found = classes(build(bars, sliders='[sliders.E]\non = "crank"\ndirection_deg = 20.0'))
+    (group,) = found["pin D of ground and swing"].groups
+    assert (group.class_number, group.order) == (4, 2)
+    assert set(group.links) == {"crank", "bar", "plate", "block E"}

@@ -1,7 +1,9 @@
-"""Mobility of schemes: what sources give, by a second method, in other frames, named causes."""
+"""Schemes: mobility by sources and a second method, causes by name, links for higher pairs."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 
@@ -10,29 +12,24 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from analytic.structure.drawing_frame import DrawingFrame
+from analytic.structure.higher_pairs import replaced, teeth_centres
+from analytic.structure.neighbourhood import settled
 from analytic.structure.passive import effect_of
 from analytic.structure.scheme_loops import IN_PLANE, Loops
 from analytic.structure.scheme_mobility import SchemeMobility, scheme_mobility
 from analytic.structure.screws import rank, reciprocal, rotation
+from models.errors import StructureError
 from models.scene import GROUND
-from models.scheme import Place, Scheme, SchemeJoint
+from models.scheme import HIGHER, Place, Scheme, SchemeJoint
 from models.scheme_files import load_scheme, shipped_schemes
 from models.scheme_text import scheme_text
 
 SCHEMES = shipped_schemes()
-COUNTS = {
-    # by Kutzbach and Gruebler, where the sources' mobility is another one
-    "bennett": -2,
-    "bricard-trihedral": 0,
-    "cardan-shaft": 0,
-    "four-bar-in-space": -2,
-    "hooke": -2,
-    "parallelogram-third-crank": 0,
-    "planetary-three-planets": -1,
-    "sarrus": 0,
-    "screw-jack": -3,
+COUNTS = {  # by Kutzbach and Gruebler, where the sources' mobility is another one
+    "bennett": -2, "bricard-trihedral": 0, "cardan-shaft": 0, "four-bar-in-space": -2, "hooke": -2,
+    "parallelogram-third-crank": 0, "planetary-three-planets": -1, "sarrus": 0, "screw-jack": -3,
     "wedge": 0,
-}
+}  # fmt: skip
 IDLE = {"cam-roller": 1, "rssr": 1, "rssp": 1, "stewart-platform": 6, "delta-robot": 6}
 
 
@@ -43,7 +40,7 @@ def known(name: str) -> SchemeMobility:
 
 
 @pytest.mark.parametrize("name", SCHEMES)
-def test_a_scheme_has_the_mobility_of_its_source(name: str) -> None:
+def test_a_scheme_has_the_mobility_of_its_source_and_of_a_matrix_of_all_bodies(name: str) -> None:
     mobility = known(name)
     scheme = mobility.scheme
     assert mobility.real == scheme.mobility
@@ -52,6 +49,7 @@ def test_a_scheme_has_the_mobility_of_its_source(name: str) -> None:
     assert mobility.idle_count == IDLE.get(name, 0)
     assert not mobility.near.others
     assert not mobility.margin_is_small
+    assert mobility.near.here == by_bodies(scheme)
 
 
 def test_there_are_twenty_schemes_and_more_of_both_spaces() -> None:
@@ -80,25 +78,16 @@ def by_bodies(scheme: Scheme) -> int:
 
 
 @pytest.mark.parametrize("name", SCHEMES)
-def test_the_drawn_position_leaves_what_a_matrix_of_all_bodies_leaves(name: str) -> None:
-    assert known(name).near.here == by_bodies(load_scheme(name))
-
-
-@pytest.mark.parametrize("name", SCHEMES)
-def test_the_derivative_of_the_closure_is_that_of_differences(name: str) -> None:
+def test_the_derivative_of_the_closure_is_that_of_differences_and_of_each_joint(name: str) -> None:
+    """And a motion in a joint opens the loops as its own freedoms do."""
     loops, at = Loops.of(load_scheme(name)), known(name).near.at
     open_by, slope = loops.closure(at)
     assert np.abs(open_by).max(initial=0.0) < 1e-9
     way = np.random.default_rng(5).standard_normal(loops.freedoms)
     ahead, behind = (loops.closure(at + step * way)[0] for step in (1e-5, -1e-5))
     assert np.allclose((ahead - behind) / 2e-5, slope @ way, atol=1e-7)
-
-
-@pytest.mark.parametrize("name", SCHEMES)
-def test_a_motion_in_a_joint_opens_the_loops_as_its_own_freedoms_do(name: str) -> None:
-    loops, at = Loops.of(load_scheme(name)), known(name).near.at
     rows = IN_PLANE if loops.scheme.dimension == 3 else list(range(6))
-    slope, own = loops.closure(at)[1], loops.joint_twists(at)
+    own = loops.joint_twists(at)
     for joint in loops.scheme.joints:
         opened = effect_of(loops, joint) @ own[joint.name][rows]
         assert np.allclose(opened, slope[:, loops.columns[joint.name]], atol=1e-9)
@@ -114,18 +103,11 @@ def moved(scheme: Scheme, seed: int, far: float = 1.0) -> Scheme:
     shift = far * np.array([0.4, -0.3, 0.0 if scheme.dimension == 3 else 0.2])
 
     def place(vector: Place, by: float = 1.0) -> Place:
-        x, y, z = turn @ vector + by * shift
-        return (float(x), float(y), float(z))
+        return tuple((turn @ vector + by * shift).tolist())
 
-    joints = [
-        replace(
-            each,
-            at=place(each.at),
-            axes=tuple(place(axis, 0.0) for axis in each.axes),
-            between=each.between,
-        )
-        for each in scheme.joints
-    ]
+    axes = [tuple(place(axis, 0.0) for axis in each.axes) for each in scheme.joints]
+    pairs = zip(scheme.joints, axes, strict=True)
+    joints = [replace(each, at=place(each.at), axes=own) for each, own in pairs]
     order = draw.permutation(len(joints))
     return replace(scheme, links=scheme.links[::-1], joints=tuple(joints[each] for each in order))
 
@@ -141,18 +123,18 @@ def test_mobility_is_that_of_any_frame_and_order(name: str) -> None:
         assert there.near.here == here.near.here
 
 
+def renamed(scheme: Scheme, links: Mapping[str, str]) -> tuple[SchemeJoint, ...]:
+    """The joints, between links by other names."""
+    return tuple(
+        replace(each, between=tuple(links.get(end, end) for end in each.between))
+        for each in scheme.joints
+    )
+
+
 @pytest.mark.parametrize("name", ["bennett", "shaper", "peaucellier", "rscr", "gear-pair"])
 def test_mobility_is_that_of_any_link_as_the_ground(name: str) -> None:
     scheme = load_scheme(name)
-    link = scheme.links[0]
-    swap = {link: GROUND, GROUND: link}
-    joints = tuple(
-        replace(
-            each,
-            between=(swap.get(each.between[0], each.between[0]), swap.get(*each.between[1:] * 2)),
-        )
-        for each in scheme.joints
-    )
+    joints = renamed(scheme, {scheme.links[0]: GROUND, GROUND: scheme.links[0]})
     assert scheme_mobility(replace(scheme, joints=joints)).real == scheme.mobility
 
 
@@ -216,13 +198,11 @@ def test_a_momentary_motion_counts_in_the_drawn_position_alone() -> None:
 
 def test_a_shaky_part_on_a_crank_is_told_from_the_motion_of_the_crank() -> None:
     bars = load_scheme("stretched-bars")
-    carried = tuple(
-        replace(each, between=tuple("crank" if end == GROUND else end for end in each.between))
-        for each in bars.joints
+    joints = (
+        SchemeJoint("O", "pin", (GROUND, "crank"), (-0.1, -0.2, 0.0)),
+        *renamed(bars, {GROUND: "crank"}),
     )
-    crank = SchemeJoint("O", "pin", (GROUND, "crank"), (-0.1, -0.2, 0.0))
-    scheme = replace(bars, links=("crank", *bars.links), joints=(crank, *carried))
-    mobility = scheme_mobility(scheme)
+    mobility = scheme_mobility(replace(bars, links=("crank", *bars.links), joints=joints))
     assert (mobility.near.here, mobility.real, mobility.yielding) == (2, 1, 1)
 
 
@@ -235,12 +215,10 @@ def test_a_twist_of_the_frame_is_one_about_the_drawings_origin() -> None:
 
 def test_lengths_that_are_a_little_off_are_told() -> None:
     scheme = load_scheme("bennett")
-    at = {joint.name: joint.at for joint in scheme.joints}
-    off = tuple(
-        replace(each, at=(at["A"][0] + 1e-5, *at["A"][1:])) if each.name == "A" else each
-        for each in scheme.joints
-    )
-    mobility = scheme_mobility(replace(scheme, joints=off))
+    joints = {joint.name: joint for joint in scheme.joints}
+    x, y, z = joints["A"].at
+    joints["A"] = replace(joints["A"], at=(x + 1e-5, y, z))
+    mobility = scheme_mobility(replace(scheme, joints=tuple(joints.values())))
     assert mobility.real == 0
     assert mobility.margin_is_small
 
@@ -255,3 +233,102 @@ def test_a_scheme_written_and_read_is_the_same(name: str, tmp_path) -> None:  # 
         assert (one.name, one.kind, one.between) == (other.name, other.kind, other.between)
         assert np.allclose(one.axes, other.axes, atol=1e-15)
         assert (one.at, one.radii, one.lead) == (other.at, other.radii, other.lead)
+
+
+WITH_HIGHER = [
+    name
+    for name in shipped_schemes()
+    if load_scheme(name).space == "planar" and HIGHER & {j.kind for j in load_scheme(name).joints}
+]
+FRAME = DrawingFrame((0.0, 0.0, 0.0), 0.2)
+
+
+def motions(scheme: Scheme, links: tuple[str, ...]) -> np.ndarray:
+    """The motions (d, 3 n) that some links have in the drawn position."""
+    loops = Loops.of(scheme, FRAME)
+    q = np.zeros(loops.freedoms)
+    placed = loops.placed(q)
+    return np.vstack([placed[link].twists[2:5] for link in links] @ loops.moves(q)).T
+
+
+@pytest.mark.parametrize("name", WITH_HIGHER)
+def test_the_count_and_the_velocities_stay(name: str) -> None:
+    scheme = load_scheme(name)
+    fewer = replaced(scheme)
+    assert fewer.count == scheme.count
+    assert not HIGHER & {joint.kind for joint in fewer.joints}
+    before, after = motions(scheme, scheme.links), motions(fewer, scheme.links)
+    assert rank(np.vstack([before, after])) == rank(before) == rank(after)
+    if name != "planetary-three-planets":  # whose passive teeth hold in this position alone
+        assert scheme_mobility(fewer).real == scheme.mobility
+
+
+@pytest.mark.parametrize("name", ["cam-flat-follower", "cam-knife-follower"])
+def test_a_cam_of_circles_moves_its_follower_as_its_links_do(name: str) -> None:
+    scheme = load_scheme(name)
+    poses = []
+    for each in (scheme, replaced(scheme)):
+        loops = Loops.of(each, FRAME)
+        move = loops.moves(np.zeros(loops.freedoms))[:, 0]
+        crank = loops.columns["A"].start
+        move *= 0.3 / move[crank]
+        found = settled(loops, move)
+        for _ in range(30):  # back to the crank's angle, along the motion
+            found[crank] += 0.3 - found[crank]
+            found = settled(loops, found)
+        poses.append((found[crank], loops.placed(found)["follower"].pose))
+    assert poses[0][0] == pytest.approx(poses[1][0], abs=1e-6)
+    assert np.allclose(poses[0][1], poses[1][1], atol=1e-5)
+
+
+def test_a_straight_profile_becomes_a_block_and_a_knife_edge_a_pin() -> None:
+    flat = {j.name: j for j in replaced(load_scheme("cam-flat-follower")).joints}
+    assert (flat["B-1"].kind, flat["B-2"].kind) == ("pin", "slider")
+    assert flat["B-1"].at == pytest.approx((0.02, 0.01, 0.0))
+    assert flat["B-2"].between == ("B-link", "follower")
+    knife = {j.name: j for j in replaced(load_scheme("cam-knife-follower")).joints}
+    assert knife["B-2"].at == pytest.approx((0.02, 0.05, 0.0))
+
+
+def gears(one: str, other: str, radii: tuple[float, float], pressure: float) -> SchemeJoint:
+    along = ((1.0, 0.0, 0.0),)
+    return SchemeJoint("T", "gear", (one, other), axes=along, radii=radii, pressure=pressure)
+
+
+@pytest.mark.parametrize(("radii", "distance"), [((0.05, 0.1), 0.15), ((-0.11, 0.03), 0.08)])
+def test_teeth_have_their_centres_on_the_base_circles(
+    radii: tuple[float, float], distance: float
+) -> None:
+    pressure = math.radians(20.0)
+    first, second = teeth_centres(gears(GROUND, "wheel", radii, pressure))
+    bases = np.abs(radii) * math.cos(pressure)
+    ends = np.hypot(*first[:2]), np.hypot(second[0] - distance, second[1])
+    assert ends == pytest.approx(tuple(bases))
+
+
+@pytest.mark.parametrize(
+    ("radii", "ratio"), [((0.05, 0.03), -0.05 / 0.03), ((-0.11, 0.03), 0.11 / 0.03)]
+)
+def test_wheels_on_fixed_centres_turn_by_the_ratio_of_their_radii(
+    radii: tuple[float, float], ratio: float
+) -> None:
+    joints = (
+        SchemeJoint("A", "pin", (GROUND, "one")),
+        SchemeJoint("B", "pin", (GROUND, "two"), (abs(sum(radii)), 0.0, 0.0)),
+        gears("one", "two", radii, 0.3),
+    )
+    loops = Loops.of(Scheme("gears", "planar", "", ("one", "two"), joints))
+    (move,) = loops.moves(np.zeros(loops.freedoms)).T
+    assert move[1] / move[0] == pytest.approx(ratio)
+
+
+def test_a_spatial_scheme_is_refused() -> None:
+    with pytest.raises(StructureError, match="spatial"):
+        replaced(load_scheme("three-ball-table"))
+
+
+def test_the_new_link_has_a_name_of_its_own() -> None:
+    scheme = load_scheme("cam-flat-follower")
+    joints = renamed(scheme, {"cam": "B-link"})
+    taken = replace(scheme, links=("B-link", "follower"), joints=joints)
+    assert replaced(taken).links == ("B-link", "follower", "B-link-2")
