@@ -186,10 +186,7 @@ YAML: dict[str, tuple[bytes, str]] = {
     "tag of a date": (b"turns: !!timestamp x", "could not determine a constructor"),
     "tag of a truth": (b"turns: !!bool x", "line 1, column 8: found x; it can not be read as bool"),
     "list as a key": (b"[a]: 1", "found unhashable key"),
-    "long text": (
-        b"turns: " + b"x" * 190_000,
-        r"turns: found 'x+\.\.\.; input should be",
-    ),
+    "long text": (b"turns: " + b"x" * 190_000, r"turns: found 'x+\.\.\.; input should be"),
     "NUL": (b"a: \0", "not valid YAML: unacceptable character"),
     "two": (b"a: 1\n---\nb: 2", "expected a single document"),
     "nothing": (b"", "a table of scenes, variants and steps_per_turn is needed"),
