@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from playwright.sync_api import Browser, CDPSession, ConsoleMessage, Page, Request
+from playwright.sync_api import Browser, CDPSession, Page
 
 WIDE, PHONE = {"width": 1280, "height": 900}, {"width": 390, "height": 844}
 LONG_MS = 300_000
@@ -111,11 +111,13 @@ class Tab:
     @classmethod
     def of(cls, browser: Browser, folder: Path) -> Tab:
         """A tab of a computer, and a folder for its file."""
-        context = browser.new_context(offline=True, viewport=WIDE)  # type: ignore[arg-type]
+        context = browser.new_context(offline=True, viewport=WIDE)
         context.set_default_timeout(LONG_MS)
         page = context.new_page()
         tab = cls(page, folder / "page.html", context.new_cdp_session(page))
-        tab._watch()
+        page.on("console", lambda message: tab.said.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: tab.said.append(f"error: {error}"))
+        page.on("request", lambda request: tab.asked.append(request.url))
         return tab
 
     def on(self, size: Mapping[str, int]) -> Tab:
@@ -127,17 +129,6 @@ class Tab:
             self.screen.send("Emulation.setDeviceMetricsOverride", shape)
             self.screen.send("Emulation.setTouchEmulationEnabled", {"enabled": self.is_phone})
         return self
-
-    def _watch(self) -> None:
-        def on_console(message: ConsoleMessage) -> None:
-            self.said.append(f"{message.type}: {message.text}")
-
-        def on_request(request: Request) -> None:
-            self.asked.append(request.url)
-
-        self.page.on("console", on_console)
-        self.page.on("pageerror", lambda error: self.said.append(f"error: {error}"))
-        self.page.on("request", on_request)
 
     def open(self, path: Path, *sections: str, **media: object) -> Tab:
         """Open a page, and draw the diagrams of some of its sections."""
@@ -161,8 +152,7 @@ class Tab:
         return self
 
     def _media(self, **media: object) -> None:
-        usual = {"reduced_motion": "reduce", "color_scheme": "light", **media}
-        self.page.emulate_media(**usual)  # type: ignore[arg-type]
+        self.page.emulate_media(**{"reduced_motion": "reduce", "color_scheme": "light", **media})
 
     def restore(self) -> None:
         """Put all choices and switches back to where they stood."""
@@ -192,7 +182,7 @@ class Tab:
     def drawn(self, shapes: str) -> list[str]:
         """How some shapes are drawn at the moment."""
         found = "all => all.map(each => each.getAttribute('d') ?? '')"
-        return self.page.locator(shapes).evaluate_all(found)  # type: ignore[no-any-return]
+        return self.page.locator(shapes).evaluate_all(found)
 
     def no_error_and_no_request(self, *clicks: str) -> None:
         """In a whole visit: every choice is made, every switch clicked, every drawer opened."""
@@ -212,9 +202,12 @@ class Tab:
             assert self.page.evaluate(OUT) == []
             assert self.page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
 
-    def every_control_has_a_name(self) -> None:
+    def every_control_has_a_name(self, is_reached_by_tab: bool = True) -> None:
         assert self.page.evaluate(NAMELESS, CONTROLS) == []
+        if is_reached_by_tab:
+            self.page.evaluate("() => { document.activeElement.blur(); scrollTo(0, 0); }")
+            assert self.page.evaluate(UNREACHED, CONTROLS) == []
 
-    def every_control_is_reached_by_tab(self) -> None:
-        self.page.evaluate("() => { document.activeElement.blur(); scrollTo(0, 0); }")
-        assert self.page.evaluate(UNREACHED, CONTROLS) == []
+    def text(self, place: str) -> str:
+        """What is read at a place."""
+        return self.page.locator(place).inner_text()

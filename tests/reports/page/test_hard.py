@@ -128,8 +128,7 @@ def test_a_matrix_that_was_stored_gives_the_same_page(
 
 
 @pytest.mark.parametrize(
-    ("error", "wanted"),
-    [(0.0, 0), (9e-7, 0), (1e-6, 1), (5e-3, 2), (1e-2, 3), (1.0, 4), (1e9, 4)],
+    ("error", "wanted"), [(0.0, 0), (9e-7, 0), (1e-6, 1), (5e-3, 2), (1e-2, 3), (1.0, 4), (1e9, 4)]
 )
 def test_the_shade_follows_the_power_of_the_error(error: float, wanted: int) -> None:
     assert shade(error) == wanted

@@ -19,6 +19,7 @@ from tests.reports.page.test_hard import evil, one_case
 from tests.worlds.tiers import slow
 
 TRUTH, RUN = "#hard-picture .reference .link", "#hard-picture .overlays .link"
+WIDTHS = "each => [each.scrollWidth, each.clientWidth]"
 Write = Callable[[str], Path]
 STEPPED = """() => {
   const ids = ['hard-failures', 'hard-row', 'hard-after'];
@@ -69,30 +70,34 @@ def opened(wide: Tab, hard_page: Path) -> Iterator[Tab]:
     assert wide.said == []
 
 
+@pytest.fixture
+def page(opened: Tab) -> Page:
+    return opened.page
+
+
 def first(matrix: Matrix, outcome: str) -> int:
     """The first run of the grid with an outcome."""
     return next(n for n, run in enumerate(matrix.runs) if run.grid and run.outcome == outcome)
 
 
-def test_no_error_and_no_request_in_a_whole_visit(wide: Tab, hard_page: Path) -> None:
+def test_a_whole_visit_has_no_error_and_no_request_and_every_control_a_name(
+    wide: Tab, hard_page: Path
+) -> None:
     wide.open(hard_page).no_error_and_no_request()
+    wide.every_control_has_a_name(is_reached_by_tab=False)
 
 
-def test_the_map_is_one_stop_of_tab_and_arrows_go_from_cell_to_cell(opened: Tab) -> None:
-    stops = (
-        "() => [...document.querySelectorAll('#hard-map [data-run]')].filter(b => b.tabIndex === 0)"
-    )
+def test_the_map_is_one_stop_of_tab_and_arrows_go_from_cell_to_cell(page: Page) -> None:
     here = "() => document.activeElement.dataset.run"
-    cell(opened.page, 0).focus()
+    cell(page, 0).focus()
     visited = []
-    for key in ("ArrowRight", "ArrowRight", "ArrowDown", "End", "ArrowUp", "Home"):
-        opened.page.keyboard.press(key)
-        visited.append(int(opened.page.evaluate(here)))
+    for key in ("ArrowRight", "ArrowRight", "ArrowDown", "End", "ArrowUp", "Home", "ArrowLeft"):
+        page.keyboard.press(key)
+        visited.append(int(page.evaluate(here)))
     # Five runs a line, of which the last is no cell; twenty a case.
-    assert visited == [1, 2, 22, 38, 18, 0]
-    opened.page.keyboard.press("ArrowLeft")
-    assert opened.page.evaluate(here) == "0"
-    assert opened.page.evaluate(f"() => ({stops})().length") == 1
+    assert visited == [1, 2, 22, 38, 18, 0, 0]
+    stops = "all => all.filter(each => each.tabIndex === 0).length"
+    assert page.locator("#hard-map [data-run]").evaluate_all(stops) == 1
 
 
 def test_a_cell_shows_its_run_by_keyboard_and_gives_the_focus_back(
@@ -104,24 +109,18 @@ def test_a_cell_shows_its_run_by_keyboard_and_gives_the_focus_back(
     assert not opened.page.locator("#hard-panel").is_visible()
     cell(opened.page, number).focus()
     opened.page.keyboard.press("Enter")
-    told = opened.page.locator("#hard-panel").inner_text()
+    told = opened.text("#hard-panel")
     assert cell(opened.page, number).get_attribute("aria-expanded") == "true"
-    for words in (
-        "Shaper: a heavy ram on a slotted lever: diverged",
-        "pymunk as-shipped, steps in a turn = 12",
-        run.reason,
-        f"{run.error:.1e}".replace("e+00", "e0"),
-        f"{run.gap:.1e}".replace("e-01", "e-1"),
-        "0.4 s, crank at 229.2°",
-        " 24 steps",
-        "crankcheck stability shaper-steps",
-        "--engine pymunk",
-        "--at 12",
-    ):
+    error, gap = f"{run.error:.1e}".replace("e+00", "e0"), f"{run.gap:.1e}".replace("e-01", "e-1")
+    assert "Shaper: a heavy ram on a slotted lever: diverged" in told
+    assert "pymunk as-shipped, steps in a turn = 12" in told
+    for words in (run.reason, error, gap, "0.4 s, crank at 229.2°", " 24 steps"):
+        assert words in told, words
+    for words in ("crankcheck stability shaper-steps", "--engine pymunk", "--at 12"):
         assert words in told, words
     row = opened.page.locator("#hard-row")
-    above = row.evaluate("each => each.previousElementSibling.cells[0].textContent")
-    assert above.startswith("Shaper")
+    above = "each => each.previousElementSibling.cells[0].textContent"
+    assert row.evaluate(above).startswith("Shaper")
     opened.page.locator("#hard-play").focus()
     opened.page.keyboard.press("Escape")
     assert not row.is_visible()
@@ -129,18 +128,16 @@ def test_a_cell_shows_its_run_by_keyboard_and_gives_the_focus_back(
     assert opened.page.locator("[aria-expanded=true]").count() == 0
 
 
-def test_a_cell_that_is_chosen_again_is_closed(opened: Tab) -> None:
-    cell(opened.page, 0).click()
-    assert opened.page.locator("#hard-row").is_visible()
-    cell(opened.page, 0).click()
-    assert not opened.page.locator("#hard-row").is_visible()
-
-
-def test_a_run_that_holds_has_numbers_and_no_picture(opened: Tab) -> None:
-    cell(opened.page, 0).click()
-    assert opened.page.locator("#hard-numbers").is_visible()
-    assert not opened.page.locator("#hard-figure").is_visible()
-    assert "of failures only" in opened.page.locator("#hard-note").inner_text()
+def test_a_run_that_holds_has_numbers_and_no_picture_and_is_closed_when_chosen_again(
+    opened: Tab, page: Page
+) -> None:
+    cell(page, 0).click()
+    assert page.locator("#hard-row").is_visible()
+    assert page.locator("#hard-numbers").is_visible()
+    assert not page.locator("#hard-figure").is_visible()
+    assert "of failures only" in opened.text("#hard-note")
+    cell(page, 0).click()
+    assert not page.locator("#hard-row").is_visible()
 
 
 def test_a_cell_stays_under_the_finger_that_chose_it(opened: Tab) -> None:
@@ -149,7 +146,6 @@ def test_a_cell_stays_under_the_finger_that_chose_it(opened: Tab) -> None:
     target = cell(opened.page, 22)  # below the row that is opened
     target.evaluate("each => scrollBy(0, each.getBoundingClientRect().top - 100)")
     before = target.bounding_box()
-    assert before
     target.click()
     assert target.bounding_box() == pytest.approx(before, abs=1.5)
 
@@ -159,8 +155,6 @@ def test_what_was_opened_is_brought_into_the_window(opened: Tab, hard_matrix: Ma
     target.evaluate("each => scrollBy(0, each.getBoundingClientRect().bottom - innerHeight + 20)")
     target.click()
     shown, row = target.bounding_box(), opened.page.locator("#hard-row").bounding_box()
-    assert shown
-    assert row
     assert shown["y"] >= 0
     assert row["y"] + row["height"] <= 900
 
@@ -184,57 +178,46 @@ def test_what_the_bisection_looked_at_is_chosen_in_the_panel(
     number = next(n for n, run in enumerate(hard_matrix.runs) if not run.grid)
     chip = opened.page.locator(f"#hard-between [data-near='{number}']")
     chip.click()
-    assert "steps in a turn = 60" in opened.page.locator("#hard-told").inner_text()
-    assert (
-        opened.page.locator(f"#hard-between [data-near='{number}']").get_attribute("aria-pressed")
-        == "true"
-    )
+    assert "steps in a turn = 60" in opened.text("#hard-told")
+    assert chip.get_attribute("aria-pressed") == "true"
     assert opened.page.evaluate("() => document.activeElement.dataset.near") == str(number)
 
 
-def test_the_picture_moves_beside_the_truth_and_stops(opened: Tab, hard_matrix: Matrix) -> None:
-    opened.page.select_option("#hard-failures", str(first(hard_matrix, "diverged")))
-    still = opened.drawn(RUN)
+def test_the_picture_moves_beside_the_truth_and_its_error_can_be_magnified(
+    opened: Tab, page: Page, hard_matrix: Matrix
+) -> None:
+    """How it stops again is the same stage's in `test_browser`."""
+    page.select_option("#hard-failures", str(first(hard_matrix, "diverged")))
+    still, truth = opened.drawn(RUN), opened.drawn(TRUTH)
     assert still
-    assert opened.drawn(TRUTH) != still
+    assert truth != still
     opened.elapse(150)
     assert opened.drawn(RUN) == still  # reduced motion is wanted: it waits
-    play = opened.page.locator("#hard-play")
-    play.click()
-    assert play.inner_text() == "Pause"
+    page.locator("#hard-play").click()
     opened.elapse(250)
-    truth = opened.drawn(TRUTH)
     assert opened.drawn(RUN) != still
-    opened.elapse(150)
     assert opened.drawn(TRUTH) != truth
-    play.click()
-    stopped = opened.drawn(RUN)
-    opened.elapse(150)
-    assert opened.drawn(RUN) == stopped
-    assert opened.page.locator("#hard-picture .trail").count() > 0
+    assert page.locator("#hard-picture .trail").count() > 0
+    page.select_option("#hard-failures", str(first(hard_matrix, "degraded")))
+    assert page.input_value("#hard-factor") == "1"
+    true = opened.drawn(RUN)
+    page.select_option("#hard-factor", "10")
+    assert opened.drawn(RUN) != true
+    assert "m." in opened.text("#hard-readout")
 
 
 def test_the_picture_moves_by_itself_where_motion_is_welcome(
-    opened: Tab, hard_matrix: Matrix
+    opened: Tab, page: Page, hard_matrix: Matrix
 ) -> None:
-    opened.page.emulate_media(reduced_motion="no-preference")
+    page.emulate_media(reduced_motion="no-preference")
     opened.elapse(0)
-    cell(opened.page, first(hard_matrix, "diverged")).click()
-    assert opened.page.locator("#hard-play").inner_text() == "Pause"
+    cell(page, first(hard_matrix, "diverged")).click()
+    assert opened.text("#hard-play") == "Pause"
     before = opened.drawn(RUN)
     opened.elapse(200)
     assert opened.drawn(RUN) != before
-    cell(opened.page, 0).click()
-    assert opened.page.locator("#hard-play").text_content() == "Play"
-
-
-def test_an_error_can_be_magnified(opened: Tab, hard_matrix: Matrix) -> None:
-    opened.page.select_option("#hard-failures", str(first(hard_matrix, "degraded")))
-    assert opened.page.input_value("#hard-factor") == "1"
-    true = opened.drawn(RUN)
-    opened.page.select_option("#hard-factor", "10")
-    assert opened.drawn(RUN) != true
-    assert "m." in opened.page.locator("#hard-readout").inner_text()
+    cell(page, 0).click()
+    assert page.locator("#hard-play").text_content() == "Play"
 
 
 def test_the_command_is_copied(opened: Tab) -> None:
@@ -242,40 +225,28 @@ def test_the_command_is_copied(opened: Tab) -> None:
     opened.page.locator(".repeat .copy").click()
     opened.page.locator(".repeat .copy", has_text="Copied").wait_for()
     copied = opened.page.evaluate("() => navigator.clipboard.readText()")
-    assert copied == (
-        "crankcheck stability fourbar-lecture-1-steps --engine mujoco --profile as-shipped --at 30"
-    )
+    asked = "--engine mujoco --profile as-shipped --at 30"
+    assert copied == f"crankcheck stability fourbar-lecture-1-steps {asked}"
 
 
-def test_a_wide_page_needs_no_sideways_scrolling(opened: Tab) -> None:
-    assert opened.page.evaluate("() => document.documentElement.scrollWidth") <= 1280
-    inner, outer = opened.page.locator("#hard .map").evaluate(
-        "each => [each.scrollWidth, each.clientWidth]"
-    )
+def test_all_can_be_read_in_both_themes_without_sideways_scrolling(page: Page) -> None:
+    assert page.evaluate("() => document.documentElement.scrollWidth") <= 1280
+    inner, outer = page.locator("#hard .map").evaluate(WIDTHS)
     assert inner <= outer
-
-
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_signs_and_values_can_be_read_in_both_themes(opened: Tab, scheme: str) -> None:
-    opened.page.emulate_media(color_scheme=scheme)
-    ratios = opened.page.evaluate(CONTRASTS)
-    assert len(ratios) > 90
-    assert min(ratios) >= 4.5
-
-
-def test_every_control_has_a_name(opened: Tab) -> None:
-    opened.every_control_has_a_name()
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        ratios = page.evaluate(CONTRASTS)
+        assert len(ratios) > 90
+        assert min(ratios) >= 4.5
 
 
 def test_hostile_text_does_nothing(wide: Tab, hard_matrix: Matrix, written: Write) -> None:
-    wide.open(written(stability_page(evil(hard_matrix))))
-    wide.page.evaluate(
-        "() => document.querySelectorAll('#hard-map button').forEach(b => b.click())"
-    )
-    wide.page.select_option("#hard-failures", index=1)
-    assert wide.page.evaluate("() => window.hacked") is None
-    assert wide.page.locator("main img").count() == 0
-    assert "{{ 7 * 7 }}" in wide.page.locator("#hard-told").inner_text()
+    page = wide.open(written(stability_page(evil(hard_matrix)))).page
+    page.locator("#hard-map button").evaluate_all("all => all.forEach(each => each.click())")
+    page.select_option("#hard-failures", index=1)
+    assert page.evaluate("() => window.hacked") is None
+    assert page.locator("main img").count() == 0
+    assert "{{ 7 * 7 }}" in wide.text("#hard-told")
     assert wide.said == []
 
 
@@ -292,10 +263,9 @@ def test_a_run_and_a_truth_with_missing_samples_are_drawn_as_far_as_they_go(
     broken = replace(picture, drawing=drawing, rows=packed(rows))
     wide.open(written(stability_page(replace(hard_matrix, pictures=(broken,)))))
     wide.page.locator("#hard-slider").focus()
-    for key, truth, run in (("Home", 3, 3), ("End", 0, 0)):
+    for key, count in (("Home", 3), ("End", 0)):
         wide.page.keyboard.press(key)
-        assert wide.page.locator(TRUTH).count() == truth
-        assert wide.page.locator(RUN).count() == run
+        assert [wide.page.locator(each).count() for each in (TRUTH, RUN)] == [count, count]
     assert wide.said == []
 
 
@@ -308,21 +278,20 @@ def test_hard_cases_work_in_the_report_beside_its_other_sections(
     wide.elapse(0)
     wide.page.locator("#hard-play").click()
     wide.elapse(100)
-    assert wide.page.locator("#motion-play").inner_text() == "Play"
-    assert "diverged" in wide.page.locator("#hard-told").inner_text()
+    assert wide.text("#motion-play") == "Play"
+    assert "diverged" in wide.text("#hard-told")
     assert wide.said == []
 
 
 def test_nothing_runs_out_of_a_phone(phone: Tab, hard_page: Path) -> None:
     as_opened(phone, hard_page).nothing_runs_out()
-    frame = "each => [each.scrollWidth, each.clientWidth]"
-    inner, outer = phone.page.locator("#hard .map").evaluate(frame)
+    cases, panel = phone.page.locator("#hard .map"), phone.page.locator("#hard-panel")
+    inner, outer = cases.evaluate(WIDTHS)
     assert inner > outer  # the map scrolls in its own box
-    panel = phone.page.locator("#hard-panel")
     assert panel.evaluate("each => each.getBoundingClientRect().right") <= 390
-    phone.page.locator("#hard .map").evaluate("each => { each.scrollLeft = 200; }")
+    cases.evaluate("each => { each.scrollLeft = 200; }")
     assert panel.evaluate("each => each.getBoundingClientRect().left") >= 0
-    phone.page.locator("#hard .map").evaluate("each => { each.scrollLeft = 0; }")
+    cases.evaluate("each => { each.scrollLeft = 0; }")
 
 
 @slow("the same scripts as on a computer, by touch: a map that scrolls by itself is tapped")
@@ -337,7 +306,7 @@ def test_a_page_without_pictures_and_with_what_is_not_known_works(
     one = one_case(hard_matrix, outcome="exploded", reason="bang " * 400, **lost)
     phone.open(written(stability_page(one)))
     cell(phone.page, 0).click()
-    assert "exploded" in phone.page.locator("#hard-told").inner_text()
-    assert "no moving picture" in phone.page.locator("#hard-note").inner_text()
+    assert "exploded" in phone.text("#hard-told")
+    assert "no moving picture" in phone.text("#hard-note")
     assert phone.page.evaluate(OUT) == []
     assert phone.said == []
