@@ -1,35 +1,35 @@
-"""What stores, compares and shows cells takes those of elastic links."""
+"""What stores, compares and shows cells takes those of elastic links; and their logs are judged as
+runs are, beside the beam and the exact chain."""
 
 from __future__ import annotations
 
 import json
+import shlex
 from pathlib import Path
 
 import pandas as pd
 import pytest
-from typer.testing import CliRunner
 
 import crankcheck as face
 from models.errors import CrankcheckError
 from models.files import find_scene, load_scene
-from reports.cli import app
 from reports.plan.chosen_study import StudyChoice, chosen_study
 from reports.plan.elastic import counted_released
 from reports.plan.free import scenes_of, under_control
 from reports.plan.grid import grid
 from reports.plan.study import load_study
 from reports.store.reader import read_store
-from tests.worlds.in_process import in_this_process
+from tests.worlds.command_line import crank_alone
 from tests.worlds.tiers import few, slowly
 
-STEPS = ["--engine", "mujoco", "--segments", "4", "--steps-per-turn", "720", "--turns", "1"]
-NAME, CONTROLLED = "fourbar-elastic", "fourbar-elastic-controlled"
+MUJOCO = ["--engine", "mujoco", "--profile", "tuned", "--jobs", 1]
+TURN = ["--steps-per-turn", "720", "--turns", "1"]
+NAME, PULSE, CONTROLLED = (f"fourbar-elastic{end}" for end in ("", "-pulse", "-controlled"))
 
 
 def crankcheck(*words: object, code: int = 0) -> str:
     """The output of a command, with its lines as one."""
-    with in_this_process():
-        result = CliRunner().invoke(app, [str(word) for word in words], catch_exceptions=False)
+    result = crank_alone(*words)
     assert result.exit_code == code, result.output
     return " ".join(result.output.split())
 
@@ -40,80 +40,70 @@ def crankcheck(*words: object, code: int = 0) -> str:
 )
 def verified(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Path:
     folder = tmp_path_factory.mktemp("elastic") / "verified"
-    crankcheck("verify", request.param, *STEPS, "--no-convergence", "--jobs", "1", "-o", folder)
+    asked = ["--engine", "mujoco", "--segments", 4, "--no-convergence", "--jobs", 1]
+    crankcheck("verify", request.param, *asked, *TURN, "-o", folder)
     return folder
 
 
 def test_a_verification_is_kept_with_what_links_were_given_as(verified: Path) -> None:
-    document = json.loads((verified / "verify.json").read_text())
-    rows = document["cells"]
+    rows = json.loads((verified / "verify.json").read_text())["cells"]
     assert {(row["segments"], row["springs"]) for row in rows} == {(4, "plain")}
     assert rows[0]["place_pure"] == rows[0]["deflection_pure"]
     assert rows[0]["chain_pure"] == pytest.approx(0.05, rel=0.1)
-
-
-def test_a_verification_is_compared_with_itself(verified: Path) -> None:
     assert "0 worse" in crankcheck("diff", verified, verified)
 
 
 def test_a_sweep_has_a_line_for_every_number_of_segments(tmp_path: Path) -> None:
-    asked = ["--engine", "mujoco", "--profile", "tuned", "--segments", "3,4", "--no-timing"]
-    told = crankcheck(
-        "sweep", NAME, "-o", tmp_path / "store", *asked, "--turns", "1", "--jobs", "1"
-    )
+    asked = [*MUJOCO, "--segments", "3,4", "--no-timing", "--turns", "1"]
+    told = crankcheck("sweep", NAME, "-o", tmp_path / "store", *asked)
     assert "6 run now" in told  # the steps that they hold, twice and four times these
     page = tmp_path / "report.html"
     assert "not whole" not in crankcheck("report", tmp_path / "store", "-o", page)
     assert "3 segments" in page.read_text(encoding="utf-8")
 
 
+SWEPT_FREE = "--free --segments 4,8,16 -o DIR`"
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["verify", "fourbar-lecture-1", "--segments", "4"], "no scene has one"),
-        (["verify", "elastic", "--segments", "1"], "a link bends with 2 segments or more"),
-        (["verify", "elastic", "--springs", "soft"], "use plain, corrected or beam"),
-        (["verify", NAME, "--free"], "what is let go comes back after no period"),
+        ("verify fourbar-lecture-1 --segments 4", "no scene has one"),
+        ("verify elastic --segments 1", "a link bends with 2 segments or more"),
+        ("verify elastic --springs soft", "use plain, corrected or beam"),
+        (f"verify {NAME} --free", "what is let go comes back after no period"),
+        (f"tune {NAME} --engine mujoco --target 1e-3", f"`crankcheck sweep {NAME} --segm"),
+        (f"tune {PULSE} --engine mujoco --target 1e-3", f"`crankcheck sweep {PULSE} {SWEPT_FREE}"),
         (
-            ["tune", NAME, "--engine", "mujoco", "--target", "1e-3"],
-            f"`crankcheck sweep {NAME} --segm",
+            f"tune {CONTROLLED} --engine mujoco --target 1e-3",
+            f"`crankcheck sweep {CONTROLLED} {SWEPT_FREE}",
         ),
         (
-            ["tune", "fourbar-elastic-pulse", "--engine", "mujoco", "--target", "1e-3"],
-            "`crankcheck sweep fourbar-elastic-pulse --free --segments 4,8,16 -o DIR`",
-        ),
-        (
-            ["tune", CONTROLLED, "--engine", "mujoco", "--target", "1e-3"],
-            f"`crankcheck sweep {CONTROLLED} --free --segments 4,8,16 -o DIR`",
-        ),
-        (
-            ["sweep", CONTROLLED, "--engine", "mujoco", "--segments", "4", "-o", "none"],
+            f"sweep {CONTROLLED} --engine mujoco --segments 4 -o none",
             "it has no turns; `crankcheck sweep --free` lets it go so",
         ),
-        (["advise", NAME, "--dt", "0.01", "--speed", "7", "--target", "1e-3"], "takes rigid links"),
+        (f"advise {NAME} --dt 0.01 --speed 7 --target 1e-3", "takes rigid links"),
     ],
 )
-def test_what_makes_no_sense_is_refused(words: list[str], said: str) -> None:
-    assert said in crankcheck(*words, code=2)
+def test_what_makes_no_sense_is_refused(words: str, said: str) -> None:
+    assert said in crankcheck(*words.split(), code=2)
 
 
 def test_errors_say_what_they_are_held_to() -> None:
-    asked = ["--profile", "tuned", "--jobs", "1", "--no-convergence"]
-    told = crankcheck("verify", NAME, *STEPS, *asked)
+    asked = [*MUJOCO, "--no-convergence"]
+    told = crankcheck("verify", NAME, *asked, "--segments", 4, *TURN)
     assert "against the solved motion of the beam with foreshortening" in told
     assert "closed form" not in told
-    asked += ["--engine", "mujoco", "--duration", "0.1"]
-    assert "closed form" not in crankcheck("verify", "fourbar-swing", *asked)
+    assert "closed form" not in crankcheck("verify", "fourbar-swing", *asked, "--duration", 0.1)
 
 
 def test_a_sweep_of_both_steps_elastic_links_as_their_segments_ask(tmp_path: Path) -> None:
     """With the shipped study's steps, of which segments hold hardly any, all would come apart."""
-    asked = ["--engine", "mujoco", "--profile", "tuned", "--segments", "3", "--no-timing"]
-    folder = tmp_path / "store"
-    told = crankcheck("sweep", NAME, "fourbar-lecture-1", "-o", folder, *asked, "--jobs", "1")
+    asked = [*MUJOCO, "--segments", 3, "--no-timing", "-o", tmp_path / "store"]
+    told = crankcheck("sweep", NAME, "fourbar-lecture-1", *asked)
     assert "10 run now" in told
     assert "diverged" not in told
-    stored = read_store(folder)
+    stored = read_store(tmp_path / "store")
     assert not stored.notice  # it is whole
     cells = stored.cells
     steps = cells[cells["scene"] == NAME]["steps_per_turn"]
@@ -122,21 +112,16 @@ def test_a_sweep_of_both_steps_elastic_links_as_their_segments_ask(tmp_path: Pat
 
 
 @pytest.mark.parametrize(
-    "names",
-    [
-        ["fourbar-elastic-pulse"],
-        slowly(["fourbar-elastic-pulse", CONTROLLED], reason="the controller's truth: two seconds"),
-    ],
+    "names", [[PULSE], slowly([PULSE, CONTROLLED], reason="the controller's truth: two seconds")]
 )
 def test_elastic_links_that_are_let_go_are_verified_where_they_are_named(names: list[str]) -> None:
-    asked = ["--engine", "mujoco", "--profile", "tuned", "--segments", "4", "--no-convergence"]
-    asked += ["--duration", "0.3", "--jobs", "1"]
+    asked = [*MUJOCO, "--segments", 4, "--no-convergence", "--duration", 0.3]
     told = crankcheck("verify", *names, *asked)
     assert "elastic links, profile tuned" in told
     assert "WITHIN TOLERANCE" in told
 
 
-@pytest.mark.parametrize("name", ["fourbar-elastic-pulse", CONTROLLED])
+@pytest.mark.parametrize("name", [PULSE, CONTROLLED])
 def test_a_log_of_elastic_links_that_were_let_go_is_not_judged_either(
     name: str, tmp_path: Path
 ) -> None:
@@ -153,50 +138,133 @@ def test_a_log_of_elastic_links_that_were_let_go_is_not_judged_either(
         face.compare(name, frame, segments=2)
 
 
-def test_a_check_in_turns_of_what_a_controller_drives_says_what_takes_it() -> None:
-    with pytest.raises(CrankcheckError, match="it has no turns; `run` runs it"):
-        face.check(CONTROLLED, segments=4)
-
-
-def test_what_a_controller_drives_keeps_it_when_it_is_let_go() -> None:
+def test_what_a_controller_drives_keeps_it_when_it_is_let_go_and_has_no_turns() -> None:
     (own,) = scenes_of([CONTROLLED], free=True)
     assert own.is_free
     assert own == under_control(load_scene(CONTROLLED))
     assert own.loads
+    with pytest.raises(CrankcheckError, match="it has no turns; `run` runs it"):
+        face.check(CONTROLLED, segments=4)
 
 
 def test_a_sweep_of_what_is_let_go_steps_elastic_links_as_their_segments_ask() -> None:
     """At 4 ms all would come apart."""
 
     def steps(name: str, **choice: object) -> list[float]:
-        asked = StudyChoice([name], ["mujoco"], ["tuned"], free=True, segments=[4], **choice)  # type: ignore[arg-type]
+        free = {"free": True, "segments": [4], "duration_s": 0.1, **choice}
+        asked = StudyChoice([name], ["mujoco"], ["tuned"], **free)  # type: ignore[arg-type]
         study = chosen_study(load_study(None), asked, is_shipped=True)
         return [task.cell.dt_s for task in grid(study).tasks]
 
-    for name in ("fourbar-elastic-pulse", CONTROLLED):
-        own = under_control(load_scene(name))
-        held_s, _ = counted_released(own, None, 0.1, 4, "plain")
-        assert steps(name, duration_s=0.1) == [held_s, held_s / 2, held_s / 4]
-        assert steps(name, duration_s=0.1, dt_s=[5e-4]) == [5e-4]
+    for name in (PULSE, CONTROLLED):
+        held_s, _ = counted_released(under_control(load_scene(name)), None, 0.1, 4, "plain")
+        assert steps(name) == [held_s, held_s / 2, held_s / 4]
+        assert steps(name, dt_s=[5e-4]) == [5e-4]
 
 
 def test_what_is_let_go_is_swept_and_timed_over_the_step(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("reports.sweep.measured.REPEAT_S", 1e-5)  # nobody compares these times
-    asked = ["--free", "--engine", "mujoco", "--profile", "tuned", "--segments", "4"]
-    steps = ["--dt", "1e-3,5e-4", "--duration", "0.3", "--jobs", "1"]
-    told = crankcheck("sweep", "fourbar-elastic-pulse", "-o", tmp_path / "s", *asked, *steps)
+    asked = [*MUJOCO, "--free", "--segments", 4, "--dt", "1e-3,5e-4", "--duration", 0.3]
+    told = crankcheck("sweep", PULSE, "-o", tmp_path / "s", *asked)
     assert "2 run now" in told
     assert "2 timed now" in told
 
 
-@pytest.mark.parametrize("name", [NAME, "fourbar-elastic-pulse"])
+@pytest.mark.parametrize("name", [NAME, PULSE])
 def test_a_link_that_stretches_alone_is_a_row_with_its_reason(name: str, tmp_path: Path) -> None:
-    text = find_scene(name).read_text(encoding="utf-8")
-    stretched = text.replace(
-        "[elastic.coupler]", "[elastic.coupler]\nbends = false\nstretches = true"
-    )
+    text, head = find_scene(name).read_text(encoding="utf-8"), "[elastic.coupler]"
+    stretched = text.replace(head, f"{head}\nbends = false\nstretches = true")
     (tmp_path / "axial.toml").write_text(stretched.replace("periodic", "quasi-static"))
     told = crankcheck("verify", tmp_path / "axial.toml", "--engine", "mujoco", code=2)
     assert "elastic.coupler stretches, and a chain of segments does not" in told
+
+
+STEP_S = 0.0011843018022380978
+FEW = ["--step", STEP_S, "--segments", "4"]
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("elastic") / "log.csv"
+
+
+@pytest.fixture(scope="module")
+def said(log: Path) -> str:
+    """What `run` says when it has written the log."""
+    return crankcheck("run", NAME, "--segments", 4, *TURN, "-o", log)
+
+
+def test_the_log_of_a_run_is_judged_by_the_command_that_run_tells(
+    said: str, log: Path, tmp_path: Path
+) -> None:
+    head = log.read_text().splitlines()[0]
+    assert "coupler_deflection_m" in head
+    assert "coupler-1" not in head
+    words = shlex.split(said.partition("next: crankcheck ")[2])
+    told = crankcheck(*words, "-o", tmp_path / "log.html")
+    assert "deflection of coupler" in told
+    assert "segments of coupler" in told
+    assert "closed form" not in told
+    assert (tmp_path / "log.html").stat().st_size > 100_000
+
+
+@pytest.mark.parametrize(
+    ("column", "factor", "rule"),
+    [
+        ("coupler_deflection_m", 1.05, "CC132"),
+        ("coupler_deflection_m", 0.8, "CC131"),
+        ("coupler_extension_m", 300.0, "CC133"),
+        ("rocker_theta_rad", 1.0001, "CC103"),
+    ],
+)
+def test_what_is_wrong_in_a_log_is_seen(
+    said: str, log: Path, column: str, factor: float, rule: str, tmp_path: Path
+) -> None:
+    frame = pd.read_csv(log)
+    frame[column] *= factor
+    frame.to_csv(tmp_path / "log.csv", index=False)
+    told = crankcheck("judge", NAME, tmp_path / "log.csv", *FEW, code=1)
+    assert rule in told
+    assert "causes are not looked for where links bend" in told
+
+
+def test_other_segments_than_were_run_are_seen(said: str, log: Path) -> None:
+    assert "CC132" in crankcheck("judge", NAME, log, *FEW[:3], "8", code=1)
+
+
+def test_a_drive_of_its_own_and_a_frame_of_python_are_told(said: str, log: Path) -> None:
+    told = crankcheck("judge", NAME, log, *FEW, "--drive", "fitted", code=2)
+    assert "leave --drive out" in told
+    assert face.judge(NAME, log, step_s=STEP_S, segments=4).verdict == "within"
+    errors = face.compare(NAME, pd.read_csv(log), segments=4)
+    assert "deflection" in {row.quantity for row in errors.errors.rows}
+    with pytest.raises(face.CrankcheckError, match="segments"):
+        face.judge("fourbar-lecture-1", log, step_s=STEP_S, segments=4)
+
+
+def test_rigid_links_have_no_deflection(tmp_path: Path) -> None:
+    path = tmp_path / "rigid.csv"
+    crankcheck("run", "fourbar-lecture-1", "--turns", "1", "-o", path)
+    pd.read_csv(path).assign(coupler_deflection_m=0.0).to_csv(path, index=False)
+    told = crankcheck("judge", "fourbar-lecture-1", path, "--target", "1e-2")
+    assert "coupler_deflection_m: 'deflection' is no kind of reading of a link" in told
+
+
+@pytest.mark.parametrize(
+    ("elements", "steps", "springs"), [(4, 360, "beam"), (8, 720, "beam"), (4, 720, "plain")]
+)
+def test_a_log_starts_within_the_limit_of_its_run(elements: int, steps: int, springs: str) -> None:
+    """Joints are solved for, whatever the beam is off by in its places."""
+    given = {"segments": elements, "springs": springs}
+    run = face.run(NAME, engine="exudyn", steps_per_turn=steps, turns=1, **given)
+    of_run = face.judge(NAME, run)
+    of_log = face.judge(NAME, run.motion, step_s=720.0 / steps * STEP_S, **given)
+    assert (of_run.verdict, of_log.verdict) == ("within", "within")
+    assert "coupler_deflection_m" in str(of_log)
+    first, second = (
+        next(finding.limit for finding in verdict.findings if finding.rule == "CC116")
+        for verdict in (of_run, of_log)
+    )
+    assert first == pytest.approx(second, rel=1e-6)
