@@ -69,12 +69,8 @@ def test_what_is_found_is_no_dearer_than_the_profile_and_reaches_the_target(
     tuned, found = line(text, "error of place")
     assert max(float(tuned), float(found)) <= 1e-5
     assert line(text, "solref_timeconst_steps")[0] == "5"
-    cost = [
-        EVALUATIONS[integrator] * int(steps)
-        for integrator, steps in zip(
-            line(text, "integrator"), line(text, "steps per turn"), strict=True
-        )
-    ]
+    pairs = zip(line(text, "integrator"), line(text, "steps per turn"), strict=True)
+    cost = [EVALUATIONS[integrator] * int(steps) for integrator, steps in pairs]
     assert cost[1] <= cost[0]
     told_ratio = re.search(r"found over profile tuned: (\S+) by the model", text)
     assert float(told_ratio[1]) == pytest.approx(cost[1] / cost[0], abs=0.0051)
@@ -93,24 +89,20 @@ def test_where_all_else_is_dearer_the_profile_is_found(monkeypatch: pytest.Monke
 
 def test_the_snippet_has_the_settings_that_were_found(whole: tuple[int, str]) -> None:
     _, text = whole
-    steps = line(text, "steps per turn")[1]
-    assert f"{steps} steps a turn" in text
+    assert f"{line(text, 'steps per turn')[1]} steps a turn" in text
     assert f'integrator="{line(text, "integrator")[1]}"' in text
-    ratio = line(text, "solref_dampratio")[1]
-    assert f' {ratio}" solimp=' in text
+    assert f' {line(text, "solref_dampratio")[1]}" solimp=' in text
     pasted = text[text.index("<!--") : text.rindex("-->") + 3]
     assert "makes contacts softer" in pasted  # and so a box does not lie where it lay
     assert mujoco_disturbance(pasted).moving < 1e-9
 
 
 def test_a_search_in_two_halves_finds_what_a_whole_one_does(
-    tmp_path: Path, whole: tuple[int, str]
+    path: Path, whole: tuple[int, str]
 ) -> None:
-    path = tmp_path / "kept.db"
     told(replace(SMALL, budget=4, output=path))
-    assert told(replace(SMALL, output=path)) == whole
-    again = told(replace(SMALL, output=path))
-    assert again == whole
+    for _ in range(2):
+        assert told(replace(SMALL, output=path)) == whole
 
 
 @pytest.mark.parametrize(
@@ -132,27 +124,22 @@ def test_a_file_of_another_search_is_refused(
 
 
 @pytest.mark.parametrize(
-    ("where", "now", "words"),
+    ("name", "now", "words"),
     [
-        ("reports.cli.commands.tune.crankcheck_version", lambda: "0.0", "crankcheck version 0.0"),
-        ("reports.cli.commands.tune.version", lambda name: "0.0", "Optuna version 0.0"),
-        (
-            "reports.cli.commands.tune.search_space",
-            lambda name: replace(search_space(name), starts=()),
-            "starts",
-        ),
+        ("crankcheck_version", lambda: "0.0", "crankcheck version 0.0"),
+        ("version", lambda name: "0.0", "Optuna version 0.0"),
+        ("search_space", lambda name: replace(search_space(name), starts=()), "starts"),
     ],
 )
 def test_a_file_of_other_versions_or_starts_is_refused(
-    kept: Path, monkeypatch: pytest.MonkeyPatch, where: str, now: object, words: str
+    kept: Path, monkeypatch: pytest.MonkeyPatch, name: str, now: object, words: str
 ) -> None:
-    monkeypatch.setattr(where, now)
+    monkeypatch.setattr(f"reports.cli.commands.tune.{name}", now)
     with pytest.raises(CrankcheckError, match=f"asked was {words}"):
         told(replace(SMALL, output=kept))
 
 
-def test_what_the_clock_ended_is_told_and_not_kept(tmp_path: Path) -> None:
-    path = tmp_path / "kept.db"
+def test_what_the_clock_ended_is_told_and_not_kept(path: Path) -> None:
     request = replace(SMALL, budget=2, limit_s=1e-4, output=path)
     for _ in range(2):
         code, text = told(request)
@@ -168,8 +155,7 @@ def test_nothing_that_reaches_is_told_with_what_came_nearest(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("reports.tune.attempt.MOST_SEARCHED", 4000)
-    request = replace(SMALL, engine="pymunk", target=1e-10, budget=1)
-    code, text = told(request)
+    code, text = told(replace(SMALL, engine="pymunk", target=1e-10, budget=1))
     assert code == 1
     assert "NOTHING REACHES 1e-10: nearest is" in text
     assert "steps per turn; take a larger target" in " ".join(text.split())
@@ -178,10 +164,8 @@ def test_nothing_that_reaches_is_told_with_what_came_nearest(
 
 
 def test_several_scenes_are_tuned_together() -> None:
-    request = replace(
-        SMALL, scenes=("fourbar-lecture-1", "slider-crank-excel-210"), target=1e-4, budget=2
-    )
-    code, text = told(request)
+    scenes = ("fourbar-lecture-1", "slider-crank-excel-210")
+    code, text = told(replace(SMALL, scenes=scenes, target=1e-4, budget=2))
     assert code == 0
     assert text.startswith("fourbar-lecture-1, slider-crank-excel-210, mujoco: error of place")
     assert line(text, "worst in")[0] == "slider-crank-excel-210"
@@ -260,9 +244,9 @@ if __name__ == "__main__":
 
 
 def test_a_search_that_is_stopped_says_what_it_keeps(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path, progress, real, calls = tmp_path / "kept.db", io.StringIO(), Bench.attempt, []
+    progress, real, calls = io.StringIO(), Bench.attempt, []
 
     def attempt(bench: Bench, settings: Settings, best: Attempt | None) -> Attempt:
         calls.append(settings)
@@ -271,20 +255,19 @@ def test_a_search_that_is_stopped_says_what_it_keeps(
         return real(bench, settings, best)
 
     monkeypatch.setattr(Bench, "attempt", attempt)
-    with pytest.raises(Stopped):
-        run_tune(replace(SMALL, output=path), Console(quiet=True), Console(file=progress))
-    kept = f"2 of 6 trials are kept in {path}; the same command goes on from there\n"
-    assert progress.getvalue() == kept
-    calls.clear()
-    with pytest.raises(Stopped):
-        run_tune(replace(SMALL, output=path), Console(quiet=True), Console(file=progress))
-    assert progress.getvalue() == kept + kept.replace("2 of 6", "4 of 6")
+    wanted = ""
+    for number in (2, 4):
+        calls.clear()
+        with pytest.raises(Stopped):
+            run_tune(replace(SMALL, output=path), Console(quiet=True), Console(file=progress))
+        wanted += f"{number} of 6 trials are kept in {path}; the same command goes on from there\n"
+        assert progress.getvalue() == wanted
 
 
 @slow("a process with children, that imports Optuna: `make test` stops a search in its own")
 @pytest.mark.skipif(sys.platform == "win32", reason="signals to a group are POSIX")
-def test_ctrl_c_keeps_the_trials_and_leaves_no_process(programs: Start, tmp_path: Path) -> None:
-    path, program = tmp_path / "kept.db", tmp_path / "run.py"
+def test_ctrl_c_keeps_the_trials_and_leaves_no_process(programs: Start, path: Path) -> None:
+    program = path.with_name("run.py")
     program.write_text(script(SCRIPT), encoding="utf-8")
     running = programs(PYTHON, program, path)
     # The pipes end when the last process that holds them does.
@@ -298,8 +281,5 @@ def test_ctrl_c_keeps_the_trials_and_leaves_no_process(programs: Start, tmp_path
         f"{kept} of 1000 trials are kept in {path}; the same command goes on from there",
         "crankcheck: interrupted",
     ]
-    assert sorted(each.name for each in tmp_path.iterdir()) == [
-        ".kept.db.lock",
-        "kept.db",
-        "run.py",
-    ]
+    names = sorted(each.name for each in path.parent.iterdir())
+    assert names == [".kept.db.lock", "kept.db", "run.py"]
