@@ -42,13 +42,7 @@ from tests.worlds.fuzzing import (
 )
 from tests.worlds.in_process import Here
 from tests.worlds.mutation import mutant, retied, stretched
-from tests.worlds.scene_files import (
-    Tree,
-    elastic_mechanisms,
-    free_mechanisms,
-    scene_files,
-    toml,
-)
+from tests.worlds.scene_files import Tree, elastic_mechanisms, free_mechanisms, scene_files, toml
 from tests.worlds.tiers import at_length, slow, slowly
 
 LIMITS = Limits(time_s=600.0, memory_gb=1.0)

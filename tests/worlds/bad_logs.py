@@ -167,7 +167,6 @@ TEXTS: dict[str, tuple[bytes, str]] = {
 
 
 def rows_of(count: int, row: bytes, path: Path) -> None:
-    """Many rows, all alike."""
     with path.open("wb") as file:
         file.write(b"time_s,crank_deg\n")
         file.writelines(row * 100_000 for _ in range(count // 100_000))
@@ -219,7 +218,6 @@ def bare(path: Path, **columns: object) -> None:
 
 
 def cut_short(make: Callable[[Path], object], path: Path) -> None:
-    """A file that lacks its last bytes."""
     make(path)
     path.write_bytes(path.read_bytes()[:-99])
 
@@ -276,7 +274,6 @@ def empty_book(path: Path) -> None:
 
 
 def archive(path: Path) -> None:
-    """A zip of something else."""
     with zipfile.ZipFile(path, "w") as file:
         file.writestr("a", "b")
 

@@ -46,7 +46,6 @@ def rates(crank: float, speed: float) -> tuple[float, float]:
 
 
 def worst(found: tuple[Array, ...], exact: tuple[Array, ...]) -> float:
-    """The largest difference."""
     return max(float(np.abs(a - b).max()) for a, b in zip(found, exact, strict=True))
 
 
@@ -95,14 +94,12 @@ def _across(vector: Array) -> Array:
 def exudyn_body(
     system: Any, mass: float, inertia: float, pose: list[float], rates: list[float]
 ) -> tuple[Any, Any]:
-    """A body added to a system: its node and itself."""
     node = system.AddNode(items.NodeRigidBody2D(referenceCoordinates=pose, initialVelocities=rates))
     given = items.ObjectRigidBody2D(mass=mass, inertia=inertia, nodeNumber=node)
     return node, system.AddObject(given)
 
 
 def exudyn_pin(system: Any, *ends: tuple[Any, float]) -> None:
-    """A pin added to a system, at places along two bodies."""
     markers = [
         system.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[x, 0.0, 0.0]))
         for body, x in ends
@@ -181,7 +178,6 @@ def measured_as_we_did(snippet: str) -> str:
 
 
 def fourbar_bodies(text: str, flywheel: float) -> str:
-    """MJCF text with the four-bar's places filled in."""
     coupler, rocker = (float(each[0]) for each in angles(np.array([START])))
     return text.format(
         crank=START, coupler_in_crank=coupler - START, rocker=rocker, flywheel=flywheel

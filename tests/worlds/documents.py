@@ -26,7 +26,6 @@ ANY = "..."
 
 
 def blocks(page: str, language: str) -> list[str]:
-    """What stands in the blocks of a language."""
     return re.findall(rf"```{language}\n(.*?)```", page, flags=re.DOTALL)
 
 
@@ -66,7 +65,6 @@ def threads(told: Sequence[str], code: Sequence[str]) -> list[list[str]]:
 
 
 def _made(step: str) -> list[str]:
-    """The files and folders that a command writes."""
     return re.findall(r"-o (\S+)", step)
 
 
@@ -93,7 +91,6 @@ def ran(command: Sequence[str], folder: Path) -> subprocess.CompletedProcess[str
 
 
 def started(command: Sequence[str], folder: Path) -> subprocess.CompletedProcess[str]:
-    """What came of a command as a process of its own."""
     return subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)
 
 

@@ -67,8 +67,6 @@ def drawn(scene: Scene, state: State, drawing: Drawing | None = None) -> str:
 
 
 class _Writer:
-    """Writes one model."""
-
     def __init__(self, scene: Scene, state: State, drawing: Drawing) -> None:
         self.scene, self.drawing = scene, drawing
         self.placed = frames(scene, state)
@@ -82,7 +80,6 @@ class _Writer:
         self.made = {GROUND: self.world}
 
     def text(self) -> str:
-        """All of it."""
         for limb in self.limbs:
             self._add(limb)
         closures = [self._closed(pin) for pin in self.pins]
@@ -126,14 +123,12 @@ class _Writer:
             yield Limb(name, GROUND, frame.origin, frame.theta, freedoms)
 
     def _all_pins(self) -> Iterator[LoopPin]:
-        """The pins of a model whose bodies are free."""
         for pin in joints(self.scene).pins:
             for body in pin.bodies[1:]:
                 if pin.point != self.scene.driver_pivot:
                     yield LoopPin(pin.point, (pin.bodies[0], body))
 
     def _add(self, limb: Limb) -> None:
-        """A body with its joints and its mass, on its parent."""
         made = self._at(limb.body, self.placed[limb.body])
         made.inside += [self._joint(made, limb, freedom) for freedom in limb.freedoms]
         mass, inertia = mass_of(self.scene, limb.body)
@@ -184,7 +179,6 @@ class _Writer:
         )
 
     def _closed(self, pin: LoopPin) -> str:
-        """The equality that closes a loop."""
         one, other = pin.bodies if pin.bodies[0] != GROUND else pin.bodies[::-1]
         if self.drawing.sites:
             for body in (one, other):
@@ -237,7 +231,6 @@ class _Writer:
             yield f"{pad}</body>"
 
     def _space(self, place: Point) -> Array:
-        """A place of the plane in space."""
         shift = np.array(self.drawing.shift_m, dtype=np.float64)
         return np.asarray(self.turn @ np.array([*place, 0.0]) + shift)
 
@@ -251,7 +244,6 @@ class _Writer:
 
 
 def rotation(chance: random.Random) -> Array:
-    """Any rotation (3, 3)."""
     matrix, _ = np.linalg.qr(np.array([[chance.gauss(0.0, 1.0) for _ in "xyz"] for _ in "xyz"]))
     return np.asarray(matrix * np.sign(np.linalg.det(matrix)))
 

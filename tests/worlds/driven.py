@@ -102,7 +102,6 @@ def _arms(joint: pymunk.Constraint) -> Iterator[tuple[pymunk.Body, pymunk.Vec2d,
 
 
 def _across(joint: pymunk.Constraint) -> Array:
-    """The direction that a joint of one row holds."""
     if isinstance(joint, pymunk.GrooveJoint):
         a, b = (joint.a.local_to_world(end) for end in (joint.groove_a, joint.groove_b))
         along = (b - a).normalized()

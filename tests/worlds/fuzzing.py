@@ -217,7 +217,6 @@ def _command() -> Callable[[Sequence[str]], object]:
 
 
 def _outcomes(path: Path) -> tuple[str, ...]:
-    """The status of each cell in a table of cells, if there is one."""
     if not path.exists():
         return ()
     with path.open(encoding="utf-8", newline="") as file:
@@ -245,7 +244,6 @@ class _Listener:
     paths: list[Path] = field(default_factory=list)
 
     def hear(self, event: str, arguments: Sequence[object]) -> None:
-        """Note an event of `sys.addaudithook`."""
         if not self.on:
             return
         if event == "open":

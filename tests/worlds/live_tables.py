@@ -54,9 +54,7 @@ def scene_of(kind: str, inputs: Mapping[str, float]) -> Scene:
     """The shipped scene of a kind with numbers of its sheet, put in by hand."""
     scene = load_scene(kind)
     law = replace(
-        scene.driver.law,
-        speed_rad_s=inputs["omega"],
-        start_rad=math.radians(inputs["start_deg"]),
+        scene.driver.law, speed_rad_s=inputs["omega"], start_rad=math.radians(inputs["start_deg"])
     )
     scene = replace(scene, driver=replace(scene.driver, law=law))
     return {"BC": _four_bar, "L": _slider_crank, "rho0": _slotted_lever}[
@@ -77,10 +75,7 @@ def _four_bar(scene: Scene, given: Mapping[str, float]) -> Scene:
 
 
 def _slider_crank(scene: Scene, given: Mapping[str, float]) -> Scene:
-    links = {
-        **_bar(scene, "crank", "AB", given["R"]),
-        **_bar(scene, "rod", "BC", given["L"]),
-    }
+    links = {**_bar(scene, "crank", "AB", given["R"]), **_bar(scene, "rod", "BC", given["L"])}
     angle = math.radians(given["line_deg"])
     through = _turned(given["X0"], given["e"], angle)
     slider = replace(scene.sliders["C"], through_m=through, direction_rad=angle)

@@ -101,7 +101,6 @@ def loaded(scene: Scene, chance: random.Random) -> Scene:
 
 
 def _load(scene: Scene, name: str, chance: random.Random) -> Load:
-    """A force or a torque on a body of the scene."""
     targets: list[tuple[str, str]] = [
         (link.name, point) for link in scene.links.values() for point in link.points
     ]

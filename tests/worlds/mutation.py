@@ -98,7 +98,6 @@ def _number(rng: Rng, text: str) -> str:
 
 
 def _scaled(rng: Rng, text: str) -> str:
-    """Every number times one factor."""
     factor = rng.choice(FACTORS)
     return NUMBER.sub(lambda one: repr(float(one[0]) * factor), text)
 
@@ -153,7 +152,6 @@ def _into_table(rng: Rng, text: str) -> str:
 
 
 def _splice(rng: Rng, text: str) -> str:
-    """The head of one file and the tail of another."""
     other = _shipped(rng)
     return text[: rng.randrange(len(text) + 1)] + other[rng.randrange(len(other)) :]
 
@@ -200,7 +198,6 @@ MUTATIONS: dict[Callable[[Rng, str], str], float] = {
 
 
 def _flip(rng: Rng, raw: bytes) -> bytes:
-    """Some bits turned over."""
     changed = bytearray(raw)
     for _ in range(rng.choice((1, 3, 30)) if changed else 0):
         changed[rng.randrange(len(changed))] ^= 1 << rng.randrange(8)

@@ -62,7 +62,6 @@ SAMPLING: Mapping[str, tuple[int, float]] = {
 
 @cache
 def scene_of(kind: str) -> Scene:
-    """The scene of a kind, read once."""
     return KINDS[kind]()
 
 

@@ -62,7 +62,6 @@ CROWDED = f"""<mujoco model="crowded">
 
 @cache
 def judged(text: str, joint: str, turns: float = 1.0, dt_s: float | None = None) -> JudgedModel:
-    """A model, judged; once for all tests."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "mine.xml"
         path.write_text(text)
@@ -78,10 +77,8 @@ def read_text(folder: Path, text: str | bytes, **asked: object) -> Account:
 
 
 def line(account: Account, profile: str) -> Checked:
-    """What comes of a model in one line of its verdict."""
     return checked_line(Line(account, profile))
 
 
 def texts(account: Account) -> list[str]:
-    """What can disturb a model, in words."""
     return [each.text for each in account.disturbances]

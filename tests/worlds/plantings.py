@@ -48,15 +48,26 @@ def planting(*names: str, even: bool = False) -> Callable[[Plant], Plant]:
     """Put a fault into `PLANTINGS` under the name of its function."""
 
     def put(plant: Plant) -> Plant:
-        PLANTINGS[plant.__name__] = Planting(plant, names, even)
+        def planted(sheet: Sheet, rng: Generator) -> Planted:
+            try:
+                return plant(sheet, rng)
+            except NothingError:
+                return None
+
+        PLANTINGS[plant.__name__] = Planting(planted, names, even)
         return plant
 
     return put
 
 
-def one(rng: Generator, choice: Sequence[T]) -> T | None:
-    """One of a choice; None of nothing."""
-    return choice[int(rng.integers(len(choice)))] if choice else None
+class NothingError(Exception):
+    """There is nothing in a sheet to plant a fault in."""
+
+
+def one(rng: Generator, choice: Sequence[T]) -> T:
+    if not choice:
+        raise NothingError
+    return choice[int(rng.integers(len(choice)))]
 
 
 def either(rng: Generator) -> float:
@@ -64,7 +75,6 @@ def either(rng: Generator) -> float:
 
 
 def decades(rng: Generator, low: float, high: float) -> float:
-    """A number between two powers of ten."""
     return float(10.0 ** rng.uniform(low, high))
 
 
@@ -89,7 +99,6 @@ def read(sheet: Sheet, column: str, written: Array) -> Array:
 
 
 def of_scene(sheet: Sheet, scene: Scene) -> Planted:
-    """The sheet with the readings of another scene."""
     try:
         return sheet.of(solve(scene, sheet.time_s, bound=False)), []
     except CrankcheckError:
@@ -106,10 +115,8 @@ def exchanged(sheet: Sheet, columns: Sequence[str]) -> Planted:
     return sheet.put(written), list(columns)
 
 
-def changed(sheet: Sheet, column: str | None, change: Callable[[Array], Array]) -> Planted:
+def changed(sheet: Sheet, column: str, change: Callable[[Array], Array]) -> Planted:
     """The sheet with other readings in one column."""
-    if column is None:
-        return None
     values = wrapped(sheet.channels[column], change(sheet.values[column]))
     return sheet.put({column: values}), [column]
 
@@ -127,8 +134,7 @@ def two_swapped(sheet: Sheet, rng: Generator) -> Planted:
     dimension = {c: sheet.channels[c].kind.dimension for c in sheet.channels}
     moving = sheet.moving()
     pairs = [(a, b) for a in moving for b in moving if a < b and dimension[a] == dimension[b]]
-    pair = one(rng, pairs)
-    return None if pair is None else exchanged(sheet, pair)
+    return exchanged(sheet, one(rng, pairs))
 
 
 @planting("swapped")
@@ -149,29 +155,24 @@ def rate_and_place_swapped(sheet: Sheet, rng: Generator) -> Planted:
         for rate in sheet.moving(lambda channel: channel.kind.order == 1)
         if sheet.channels[place].of == sheet.channels[rate].of
     ]
-    pair = one(rng, pairs)
-    return None if pair is None else exchanged(sheet, pair)
+    return exchanged(sheet, one(rng, pairs))
 
 
 @planting("misnamed")
 def of_another_link(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.moving(lambda channel: channel.kind.body_kind == "link"))
-    if column is None:
-        return None
     channel = sheet.channels[column]
     other = one(rng, [link for link in sheet.scene.links if link != channel.of])
-    values = replace(channel, of=str(other)).expected(truth(sheet, sheet.time_s))
+    values = replace(channel, of=other).expected(truth(sheet, sheet.time_s))
     return changed(sheet, column, lambda _: values) if np.ptp(values) > 1e-6 else None
 
 
 @planting("relative")
 def of_a_joint(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.moving(lambda c: c.kind.body_kind == "link" and c.kind.order < 2))
-    if column is None:
-        return None
     channel = sheet.channels[column]
     other = one(rng, [link for link in sheet.scene.links if link != channel.of])
-    values = replace(channel, relative_to=str(other)).expected(truth(sheet, sheet.time_s))
+    values = replace(channel, relative_to=other).expected(truth(sheet, sheet.time_s))
     return changed(sheet, column, lambda _: values)
 
 
@@ -179,8 +180,6 @@ def of_a_joint(sheet: Sheet, rng: Generator) -> Planted:
 def another_kind(sheet: Sheet, rng: Generator) -> Planted:
     si = ("rad", "rad/s", "m", "m/s")
     column = one(rng, [c for c in sheet.uneven() if sheet.channels[c].unit in si])
-    if column is None:
-        return None
     channel = sheet.channels[column]
     kinds = [
         kind
@@ -196,14 +195,10 @@ def another_kind(sheet: Sheet, rng: Generator) -> Planted:
 @planting("unit")
 def another_unit(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.telling())
-    if column is None:
-        return None
     channel = sheet.channels[column]
     units = UNITS[channel.kind.dimension]
     unit = one(rng, [unit for unit in units if unit != channel.unit])
-    return sheet.put({column: sheet.values[column] * units[channel.unit] / units[str(unit)]}), [
-        column
-    ]
+    return sheet.put({column: sheet.values[column] * units[channel.unit] / units[unit]}), [column]
 
 
 @planting("sign")
@@ -214,15 +209,13 @@ def another_sign(sheet: Sheet, rng: Generator) -> Planted:
 @planting("offset")
 def another_zero(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.columns())
-    off = sheet.limits[str(column)] * either(rng) * decades(rng, 0.7, 2.5)
+    off = sheet.limits[column] * either(rng) * decades(rng, 0.7, 2.5)
     return changed(sheet, column, lambda values: values + off)
 
 
 @planting("sign")
 def another_sign_and_zero(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.moving(places))
-    if column is None:
-        return None
     off = sheet.limits[column] * decades(rng, 1.0, 2.5)
     return changed(sheet, column, lambda values: off - values)
 
@@ -236,18 +229,16 @@ def another_gain(sheet: Sheet, rng: Generator) -> Planted:
 @planting("delay")
 def one_late(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.bending())
-    if column is None:
-        return None
-    by_s = sheet.step_s * either(rng) * decades(rng, -0.3, 1.2)
-    return sheet.of(truth(sheet, sheet.time_s - by_s), [column]), [column]
+    return _later(sheet, column, sheet.step_s * either(rng) * decades(rng, -0.3, 1.2))
 
 
 @planting("delay")
 def one_very_late(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.bending())
-    if column is None:
-        return None
-    by_s = sheet.scene.driver.law.period_s * rng.uniform(-0.45, 0.45)
+    return _later(sheet, column, sheet.scene.driver.law.period_s * rng.uniform(-0.45, 0.45))
+
+
+def _later(sheet: Sheet, column: str, by_s: float) -> Planted:
     return sheet.of(truth(sheet, sheet.time_s - by_s), [column]), [column]
 
 
@@ -311,7 +302,7 @@ def shaken_times(sheet: Sheet, rng: Generator) -> Planted:
 def another_assembly(sheet: Sheet, rng: Generator) -> Planted:
     scene = sheet.scene
     keys = [group.branch_key for group in analyse(scene).groups if group.assemblies == 2]
-    key = str(one(rng, keys))
+    key = one(rng, keys)
     return of_scene(sheet, replace(scene, branch={**scene.branch, key: -scene.branch.get(key, 1)}))
 
 
@@ -321,7 +312,7 @@ def another_length(sheet: Sheet, rng: Generator) -> Planted:
     scene = sheet.scene
     by = scene.longest_m * either(rng) * decades(rng, -2.0, -1.0)
     choice = [*scene.links, *(pin for pin in scene.ground if pin != scene.driver_pivot)]
-    name = str(one(rng, [*choice, *scene.sliders]))
+    name = one(rng, [*choice, *scene.sliders])
     if name in scene.ground:
         x, y = scene.ground[name]
         place = (x + by, y) if rng.random() < 0.5 else (x, y + by)
@@ -388,8 +379,8 @@ def _seen(sheet: Sheet, turn: complex, shift: complex = 0.0, *, mirrored: bool =
 def stuck_sample(sheet: Sheet, rng: Generator) -> Planted:
     steps = {c: np.abs(np.diff(sheet.values[c])) for c in sheet.moving()}
     places = [(c, k) for c in steps for k in np.flatnonzero(steps[c] > 4 * sheet.limits[c])]
-    found = one(rng, places)
-    return None if found is None else _held(sheet, found[0], int(found[1]) + 1, 1)
+    column, place = one(rng, places)
+    return _held(sheet, column, int(place) + 1, 1)
 
 
 @planting("stuck")
@@ -399,10 +390,8 @@ def stuck_stretch(sheet: Sheet, rng: Generator) -> Planted:
     return _held(sheet, column, first, int(rng.integers(10, 60)))
 
 
-def _held(sheet: Sheet, column: str | None, first: int, count: int) -> Planted:
+def _held(sheet: Sheet, column: str, first: int, count: int) -> Planted:
     """The sheet where a channel repeats the sample before ``first`` so many times."""
-    if column is None:
-        return None
     values = sheet.values[column].copy()
     values[first : first + count] = values[first - 1]
     return sheet.put({column: values}), [column]
@@ -418,8 +407,6 @@ def slow_sensor(sheet: Sheet, rng: Generator) -> Planted:
 @planting("spike")
 def spikes(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.columns())
-    if column is None:
-        return None
     values = sheet.values[column].copy()
     places = np.arange(3, values.size - 3, 7)
     for place in rng.choice(places, int(rng.integers(1, 6)), replace=False):
@@ -430,8 +417,6 @@ def spikes(sheet: Sheet, rng: Generator) -> Planted:
 @planting("lost turn")
 def lost_turn(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.columns(lambda c: c.kind.turns and not c.wrapped))
-    if column is None:
-        return None
     values = sheet.values[column].copy()
     values[int(rng.integers(5, values.size - 5)) :] += either(rng) * math.tau
     return sheet.put({column: values}), [column]
@@ -440,8 +425,6 @@ def lost_turn(sheet: Sheet, rng: Generator) -> Planted:
 @planting("wrapped")
 def wrapped_angle(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.moving(lambda c: c.kind.turns and not c.wrapped))
-    if column is None:
-        return None
     values = np.remainder(sheet.values[column] + math.pi, math.tau) - math.pi
     return sheet.put({column: values}), [column]
 
@@ -462,8 +445,6 @@ def magnitude(sheet: Sheet, rng: Generator) -> Planted:
 @planting("low-pass")
 def low_passed(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.bending(unwrapped))
-    if column is None:
-        return None
     constant = sheet.step_s * decades(rng, 0.3, math.log10(sheet.time_s.size / 8))
     gains = 1.0 - np.exp(-np.diff(sheet.time_s) / constant)
     values = sheet.values[column].copy()
@@ -484,10 +465,8 @@ def mean_of_the_last(sheet: Sheet, rng: Generator) -> Planted:
     return _averaged(sheet, one(rng, sheet.bending(unwrapped)), count - 1, 0)
 
 
-def _averaged(sheet: Sheet, column: str | None, before: int, after: int) -> Planted:
+def _averaged(sheet: Sheet, column: str, before: int, after: int) -> Planted:
     """The sheet with the mean over so many samples before and after each in a column."""
-    if column is None:
-        return None
     steps = np.arange(-before, sheet.time_s.size + after) * sheet.step_s
     values = sheet.channels[column].expected(truth(sheet, sheet.time_s[0] + steps))
     count = before + after + 1
@@ -498,8 +477,6 @@ def _averaged(sheet: Sheet, column: str | None, before: int, after: int) -> Plan
 @planting("rounded")
 def few_decimals(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.moving())
-    if column is None:
-        return None
     size = size_of(sheet.channels[column])
     decimals = math.floor(-math.log10(8.0 * sheet.limits[column] / size))
     written = np.round(numbers(sheet, column), decimals)
@@ -514,7 +491,7 @@ def healthy(sheet: Sheet, rng: Generator) -> Planted:
 @planting()
 def noise(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.columns())
-    off = 20.0 * sheet.limits[str(column)] * rng.normal(size=sheet.time_s.size)
+    off = 20.0 * sheet.limits[column] * rng.normal(size=sheet.time_s.size)
     return changed(sheet, column, lambda values: values + off)
 
 
@@ -522,7 +499,7 @@ def noise(sheet: Sheet, rng: Generator) -> Planted:
 def wandering(sheet: Sheet, rng: Generator) -> Planted:
     column = one(rng, sheet.columns())
     walk = np.cumsum(rng.normal(size=sheet.time_s.size))
-    off = 20.0 * sheet.limits[str(column)] * walk / np.max(np.abs(walk))
+    off = 20.0 * sheet.limits[column] * walk / np.max(np.abs(walk))
     return changed(sheet, column, lambda values: values + off)
 
 

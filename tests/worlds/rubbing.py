@@ -13,7 +13,6 @@ from tests.worlds.loading import loaded_mechanism
 
 
 def rubbed(scene: Scene, chance: random.Random, mu: float = 0.3) -> Scene:
-    """The scene with friction in some of its joints, one at least, up to a coefficient."""
     names = [p for p, held in analyse(scene).pins.items() if len(held) == 2]
     joints = [*(name for name in names if name not in scene.sliders), *scene.sliders]
     chosen = chance.sample(joints, chance.randint(1, min(4, len(joints))))

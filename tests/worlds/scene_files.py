@@ -291,7 +291,6 @@ def free_mechanisms(draw: st.DrawFn) -> Tree:
 
 
 def _ends(links: object) -> set[str]:
-    """The points of links."""
     assert isinstance(links, dict)
     return {
         point for one in links.values() for point in (*one.get("bar", ()), *one.get("points", ()))

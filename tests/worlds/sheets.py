@@ -45,7 +45,6 @@ class Sheet:
         return Case(log, Truth(self.scene, bound=False), self.limits)
 
     def put(self, values: Mapping[str, Array]) -> Sheet:
-        """The sheet with other readings in some columns."""
         return replace(self, values={**self.values, **values})
 
     def of(self, motion: Motion, columns: Sequence[str] | None = None) -> Sheet:
@@ -58,7 +57,6 @@ class Sheet:
         )
 
     def columns(self, accepts: Callable[[Channel], bool] = lambda channel: True) -> list[str]:
-        """The columns of the channels that a condition holds for."""
         return [column for column, channel in self.channels.items() if accepts(channel)]
 
     def moving(self, accepts: Callable[[Channel], bool] = lambda channel: True) -> list[str]:
@@ -86,12 +84,10 @@ class Sheet:
 
     @property
     def step_s(self) -> float:
-        """The median interval [s]."""
         return float(np.median(np.diff(self.time_s)))
 
 
 def wrapped(channel: Channel, values: Array) -> Array:
-    """Readings as a wrapped channel gives them."""
     if not channel.wrapped:
         return values
     return np.remainder(values + math.pi, math.tau) - math.pi
@@ -163,7 +159,6 @@ def _channels(scene: Scene, rng: Generator, most: int) -> dict[str, Channel]:
 
 
 def _scale(scene: Scene, channel: Channel) -> float:
-    """What a limit is over."""
     speed = scene.driver.law.peak_speed_rad_s
     length = 1.0 if channel.kind.body_kind == "link" else scene.longest_m
     return float(length * speed**channel.kind.order)

@@ -39,6 +39,5 @@ def sprung(scene: Scene, chance: random.Random) -> Scene:
 
 
 def _sizes(chance: random.Random, size: float) -> tuple[float, float]:
-    """A rate and a damping."""
     rate, damping = chance.uniform(0.1, 1.0) * size, chance.uniform(0.01, 0.1) * size
     return chance.choice(((rate, damping), (rate, 0.0), (0.0, damping)))

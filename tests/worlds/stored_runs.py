@@ -152,5 +152,4 @@ def planted() -> Callable[..., Plant]:
 
 @pytest.fixture
 def paper() -> Console:
-    """A console that records what a pipe would get."""
     return Console(width=100, record=True, file=io.StringIO())

@@ -53,7 +53,6 @@ class Linkage:
 
     @cached_property
     def bodies(self) -> Mapping[str, Mapping[str, Point]]:
-        """The points of every moving body: bars, then blocks."""
         return {**self.bars, **{name: {name: (0.0, 0.0)} for name in self.blocks}}
 
     def otherwise(self) -> Linkage:
@@ -82,10 +81,7 @@ FOURBAR = Linkage(
 )
 SLIDER_CRANK = Linkage(
     ground={"A": (0.0, 0.0)},
-    bars={
-        "crank": {"A": (0.0, 0.0), "B": (0.1, 0.0)},
-        "rod": {"B": (0.0, 0.0), "C": (0.3, 0.0)},
-    },
+    bars={"crank": {"A": (0.0, 0.0), "B": (0.1, 0.0)}, "rod": {"B": (0.0, 0.0), "C": (0.3, 0.0)}},
     blocks={"C": ((0.0, 0.0), 0.0)},
     crank="crank",
     speed_rad_s=10.0,
@@ -127,7 +123,6 @@ class Course:
     a: Array
 
     def angle(self, body: str) -> tuple[Array, Array, Array]:
-        """theta, omega, alpha (T,) of a body."""
         k = 3 * list(self.linkage.bodies).index(body) + 2
         return self.q[:, k], self.v[:, k], self.a[:, k]
 
@@ -216,7 +211,6 @@ class _Equations:
         return q
 
     def stepped(self, q: Array, step_s: float) -> Array:
-        """One step of the classical method of Runge and Kutta."""
         k1 = self.velocity(q)
         k2 = self.velocity(q + step_s / 2 * k1)
         k3 = self.velocity(q + step_s / 2 * k2)
@@ -224,11 +218,9 @@ class _Equations:
         return np.asarray(q + step_s / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
 
     def velocity(self, q: Array) -> Array:
-        """The rates of coordinates (..., 3 n)."""
         return _solved(self._jacobian(q)[0], self.nu)
 
     def acceleration(self, q: Array, v: Array) -> Array:
-        """Their second rates."""
         jacobian, arm = self._jacobian(q)
         gamma = np.zeros_like(q)
         inward = self.side * v[..., self.body + 2] ** 2
@@ -248,9 +240,7 @@ class _Equations:
         return jacobian, (right, up)
 
 
-def _pins(
-    linkage: Linkage,
-) -> Iterator[tuple[list[tuple[str, int, Point]], Point]]:
+def _pins(linkage: Linkage) -> Iterator[tuple[list[tuple[str, int, Point]], Point]]:
     """The ends of each pin, (body, side, point), and where the ground holds it (0, 0 between two
     bodies)."""
     first: dict[str, tuple[str, Point]] = {}

@@ -21,10 +21,7 @@ LATE = 2.5
 
 
 def _bar(name: str) -> list[Column]:
-    return [
-        Column(f"{name}_deg", name, "angle", DEG),
-        Column(f"{name}_omega_rad_s", name, "omega"),
-    ]
+    return [Column(f"{name}_deg", name, "angle", DEG), Column(f"{name}_omega_rad_s", name, "omega")]
 
 
 def _pin(name: str) -> list[Column]:
@@ -112,7 +109,6 @@ class Planted:
 
 
 def swapped(log: Log, one: str, other: str) -> Log:
-    """Two columns under each other's header."""
     return {**log, one: log[other], other: log[one]}
 
 
@@ -135,7 +131,6 @@ def late(columns: Sequence[Column], header: str, by_s: float) -> list[Column]:
 
 
 def drifted(log: Log, share: float) -> Log:
-    """A clock that is fast."""
     clock = next(iter(log))
     return {**log, clock: log[clock] * (1.0 + share)}
 

@@ -109,7 +109,6 @@ def logged(
     clock: str = "time_s",
     per_second: float = 1.0,
 ) -> Log:
-    """The columns at those times [s]."""
     numbers = {column.header: column.numbers(linkage, time_s) for column in columns}
     return {clock: time_s * per_second, **numbers}
 
@@ -128,7 +127,6 @@ class Dress:
     quoted: bool = False
 
     def text(self, log: Log) -> bytes:
-        """The log."""
         headers = [f'"{name}"' if self.quoted else name for name in log]
         lines = [*self.comments, self.separator.join(headers)]
         lines += [self.separator.join(self.units)] if self.units else []
@@ -148,5 +146,4 @@ def _plain(series: Array) -> list[float]:
 
 
 def single(log: Log) -> Log:
-    """The log in single precision."""
     return {name: series.astype(np.float32) for name, series in log.items()}

@@ -41,12 +41,7 @@ def _channel(linkage: Linkage, column: Column) -> str:
         along = column.of in linkage.blocks and column.what in ALONG
         kind = ALONG[column.what] if along else column.what
         unit = LENGTHS[abs(column.per)] + RATES[PLANE[column.what][0]]
-    said: dict[str, object] = {
-        "column": column.header,
-        "of": column.of,
-        "kind": kind,
-        "unit": unit,
-    }
+    said: dict[str, object] = {"column": column.header, "of": column.of, "kind": kind, "unit": unit}
     if column.per < 0.0:
         said["sign"] = -1
     if column.offset:

@@ -62,14 +62,12 @@ class Layout:
         return away.real, away.imag
 
     def link(self, near: complex) -> str:
-        """A new link, its frame anywhere near."""
         name = f"link{next(self.names)}"
         self.frames[name] = (near + self.arm(0.0, 1.0), self.number(-math.pi, math.pi))
         self.points[name] = {}
         return name
 
     def pin(self, place: complex, *bodies: str) -> str:
-        """A new point at a place, on each of the bodies."""
         name = f"P{next(self.names)}"
         for body in bodies:
             self.points[body][name] = self.local(body, place)
@@ -97,7 +95,6 @@ class Layout:
         self.sliders[name] = slider
 
     def merge(self, pin: str, other: str) -> None:
-        """Two pins at one place become one."""
         for points in self.points.values():
             if other in points:
                 points[pin] = points.pop(other)
@@ -388,5 +385,4 @@ def _worst(scene: Scene) -> float:
 
 
 def swing_times(scene: Scene, count: int) -> np.ndarray:
-    """Times over a whole period of the driver's law, from 0."""
     return np.linspace(0.0, scene.driver.law.period_s, count)

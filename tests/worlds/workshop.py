@@ -96,7 +96,6 @@ def _rest(simulation: Any) -> Array:
 
 
 def _body(system: Any, x: float, rates: list[float]) -> tuple[Any, Any]:
-    """A body of 1 kg that falls; its node and itself."""
     node, body = exudyn_body(system, 1.0, 0.03, [x, 0.0, 0.0], rates)
     marker = system.AddMarker(items.MarkerBodyMass(bodyNumber=body))
     system.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=[0.0, -9.81, 0.0]))
@@ -162,7 +161,6 @@ OF_LOOP = 3
 
 
 def mujoco_disturbance(snippet: str) -> Disturbance:
-    """What a snippet for MuJoCo changes."""
     model = mujoco.MjModel.from_xml_string(pasted(fourbar_bodies(MJCF, 0.0), snippet))
     found, end = _mujoco_run(model)
     untouched = _untouched()
@@ -212,12 +210,10 @@ def _same_steps(timestep: float, integrator: int) -> Array:
 
 @cache
 def _settled() -> Array:
-    """The last coordinates of the model as it was."""
     return _mujoco_run(_untouched())[1].qpos.copy()
 
 
 def pymunk_disturbance(snippet: str) -> Disturbance:
-    """What a snippet for pymunk changes."""
     run = compile(snippet, "snippet", "exec")
     space, joints, rest = _space()
     names: dict[str, object] = {"space": space, "joints": joints}
@@ -247,7 +243,6 @@ LASTING = slice(3, 9)
 
 
 def _space() -> tuple[pymunk.Space, tuple[pymunk.Constraint, ...], list[pymunk.Body]]:
-    """A space, the joints of the mechanism in it, and the other bodies."""
     space = pymunk.Space()
     space.gravity = (0.0, -9.81)
     space.iterations = 50
@@ -270,7 +265,6 @@ def _space() -> tuple[pymunk.Space, tuple[pymunk.Constraint, ...], list[pymunk.B
 
 
 def _box(space: pymunk.Space, x: float, y: float) -> pymunk.Body:
-    """A box of 0.2 m and 1 kg."""
     side = (0.2, 0.2)
     body = pymunk.Body(1.0, pymunk.moment_for_box(1.0, side))
     body.position = x, y

@@ -37,8 +37,6 @@ from tests.worlds.fake.engine import FakeEngine
 
 
 class Asked(NamedTuple):
-    """What an engine is asked to open."""
-
     scene: Scene
     state: State
     settings: Settings
@@ -316,7 +314,6 @@ def of_exudyn(opens: Opens = lambda asked: asked, **faults: Any) -> Fault:
 
 
 def of_forces(change: Callable[[Forces], Forces]) -> Fault:
-    """An engine that reports forces, with a change of them."""
     return of_exudyn(forces_=lambda _, log: replace(log, forces=change(log.forces)))
 
 
@@ -366,8 +363,6 @@ def _without_loads(scene: Scene) -> Scene:
 
 
 def of_loads(change: Callable[[Load], Load]) -> Fault:
-    """An engine that has other loads."""
-
     def changed(scene: Scene) -> Scene:
         return replace(scene, loads={name: change(load) for name, load in scene.loads.items()})
 
@@ -375,7 +370,6 @@ def of_loads(change: Callable[[Load], Load]) -> Fault:
 
 
 def _late_load(load: Load) -> Load:
-    """A load as it was a step before."""
     wave = load.characteristic
     if not isinstance(wave, Sine):
         return load

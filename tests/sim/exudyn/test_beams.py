@@ -75,10 +75,7 @@ def test_a_pulled_rod_is_longer_by_what_hangs_on_it() -> None:
     slider = replace(scene.sliders["C"], direction_rad=-0.5 * math.pi)
     law = ConstantSpeed(-0.5 * math.pi, 1e-4)
     scene = replace(
-        scene,
-        driver=replace(scene.driver, law=law),
-        sliders={"C": slider},
-        elastic={"rod": rod},
+        scene, driver=replace(scene.driver, law=law), sliders={"C": slider}, elastic={"rod": rod}
     )
     motion, _ = ran(scene, 4, "quasi-static", 1e-3, 50)
     hung = 9.81 * (slider.mass_kg + 0.5 * scene.links["rod"].mass_kg) * 0.6 / 2e3

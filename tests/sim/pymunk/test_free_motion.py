@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.sim.pymunk.test_forces import START
 
 from analytic.free.machine import Machine
 from analytic.free.release import release
@@ -35,6 +34,7 @@ from sim.pymunk.snippet import SNIPPET
 from sim.run import run
 from sim.settings import resolved
 from sim.snippets import Stepping
+from tests.sim.pymunk.test_forces import START
 from tests.worlds.let_go import released
 from tests.worlds.tiers import slowly
 

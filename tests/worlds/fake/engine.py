@@ -75,7 +75,6 @@ class FakeEngine:
         check_ranges(settings, {name: (0, math.inf) for name in settings if name == "knob"})
 
     def holds(self, settings: Settings, dt_s: float, drive: Drive) -> Settings:
-        """And keeps it as it is."""
         return settings
 
     def placing(self, settings: Settings) -> Placing:
@@ -83,16 +82,10 @@ class FakeEngine:
         return "solved"
 
     def in_seconds(self, settings: Settings) -> tuple[str, ...]:
-        """It knows no seconds."""
         return ()
 
     def open(
-        self,
-        scene: Scene,
-        state: State,
-        settings: Settings,
-        dt_s: float,
-        drive: Drive,
+        self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
     ) -> FakeSession:
         if self.refuses:
             raise EngineError(self.refuses)
@@ -108,12 +101,7 @@ class FakeSession:
     """A session that only counts its steps."""
 
     def __init__(
-        self,
-        engine: FakeEngine,
-        scene: Scene,
-        start_s: float,
-        settings: Settings,
-        dt_s: float,
+        self, engine: FakeEngine, scene: Scene, start_s: float, settings: Settings, dt_s: float
     ) -> None:
         self._engine, self._scene, self._start_s = engine, scene, start_s
         self._settings, self._dt, self._done = settings, dt_s, 0
@@ -206,13 +194,11 @@ def _poses(scene: Scene, motion: Motion) -> Poses:
 
 
 def _rounded(body: BodyPose) -> BodyPose:
-    """A body with other last digits of its rates."""
     rates = ("velocity", "omega", "origin_acceleration", "alpha")
     return replace(body, **{name: rounded(getattr(body, name), 2.0**-47) for name in rates})
 
 
 def _pair(number: NDArray[np.complex128]) -> Array:
-    """Complex numbers as pairs."""
     return np.stack([number.real, number.imag], axis=-1)
 
 
