@@ -20,7 +20,7 @@ from reports.sheets.letters import Letter, write_letters
 from reports.sheets.paper import Box, Paper
 from reports.sheets.polygons.polygon_sheet import draw_sheet, laid_out
 from reports.sheets.position_sheet import draw_positions, positions
-from tests.reports.sheets.overlaps import overlaps
+from tests.reports.sheets.measured import overlaps
 from tests.worlds.tiers import slow
 
 A4, SMALLEST = Paper.of("A4"), Paper.of("180x120")

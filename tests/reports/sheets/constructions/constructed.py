@@ -6,6 +6,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 from analytic.synthesis.asked import AskedAngle, PrecisionPosition
@@ -21,10 +22,6 @@ LECTURE = 'Lecture "Tong hop co cau" (synthesis)'
 THREE = (Pose(0.0 + 0.0j, 0.9), Pose(0.09 + 0.05j, 0.55), Pose(0.2 + 0.045j, 0.1))
 C, D = 0.0 + 0.0j, 0.12 + 0.0j
 """Points of the body that is carried [m], in its own frame."""
-
-
-def _triples(poses: Sequence[Pose], place: complex) -> list[complex]:
-    return [pose.at(place) for pose in poses]
 
 
 def _centre_step(name: str, pivot: str, places: Sequence[complex]) -> tuple[Step, complex]:
@@ -46,22 +43,17 @@ def _centre_step(name: str, pivot: str, places: Sequence[complex]) -> tuple[Step
 @lru_cache
 def three_positions(poses: tuple[Pose, ...] = THREE, name: str = "three-positions") -> Proposal:
     """A coupler C D in three positions, by circumcentres (the lecture, example 6)."""
-    cs, ds = _triples(poses, C), _triples(poses, D)
+    cs, ds = ([pose.at(place) for pose in poses] for place in (C, D))
     given: list[Element] = []
     for k, (c, d) in enumerate(zip(cs, ds, strict=True), 1):
         given += [Segment(c, d, "given"), Dot(c, f"C{k}", "given"), Dot(d, f"D{k}", "given")]
     first, o2 = _centre_step("C", "O2", cs)
     second, o4 = _centre_step("D", "O4", ds)
     links = tuple(Segment(a, b, "result") for a, b in ((o2, cs[0]), (cs[0], ds[0]), (o4, ds[0])))
-    steps = (
-        Step("The coupler C D in its three positions.", tuple(given)),
-        first,
-        second,
-        Step("The links are O2 C1, C1 D1 and O4 D1, the ground is O2 O4.", links),
-    )
-    dyads = (Dyad(o2, C), Dyad(o4, D))
+    begin = Step("The coupler C D in its three positions.", tuple(given))
+    end = Step("The links are O2 C1, C1 D1 and O4 D1, the ground is O2 O4.", links)
     body = CarriedBody(name, LECTURE + ", example 6", tuple(poses), {"C": C, "D": D})
-    return body.four_bar(dyads, steps=steps)
+    return body.four_bar((Dyad(o2, C), Dyad(o4, D)), steps=(begin, first, second, end))
 
 
 @lru_cache
@@ -74,38 +66,28 @@ def rocker_by_angle() -> Proposal:
     coupler = 0.3
     o2 = middle + coupler * along
     a1, a2 = o2 - radius * along, o2 + radius * along
+    ends = (
+        Dot(o4, "O4", "given", fixed=True), Dot(b1, "B1", "given"), Dot(b2, "B2", "given"),
+        Segment(o4, b1, "given"), Segment(o4, b2, "given"),
+    )  # fmt: skip
+    links = (Segment(o2, a1, "result"), Segment(a1, b1, "result"), Segment(o4, b1, "result"))
     # drawn with B in B1 where the crank lies over the coupler, away from O4's end
     steps = (
-        Step(
-            "The rocker O4 B in its end positions, 70° apart.",
-            (
-                Dot(o4, "O4", "given", fixed=True),
-                Dot(b1, "B1", "given"),
-                Dot(b2, "B2", "given"),
-                Segment(o4, b1, "given"),
-                Segment(o4, b2, "given"),
-            ),
-        ),
+        Step("The rocker O4 B in its end positions, 70° apart.", ends),
         Step("The line B1 B2, and its extension.", (Segment(b1, a2, beyond=0.1),)),
         Step("O2 is chosen on the extension.", (Dot(o2, "O2", "result", fixed=True),)),
         Step(
             "Half of B1 B2 is the radius of a circle about O2, which meets the line in A1 and A2.",
             (Circle(o2, radius), Dot(a1, "A1"), Dot(a2, "A2")),
         ),
-        Step("The crank is O2 A1, the coupler A1 B1.", (
-            Segment(o2, a1, "result"), Segment(a1, b1, "result"), Segment(o4, b1, "result"))),
-    )  # fmt: skip
-    draft = Draft(
-        "rocker-by-angle",
-        LECTURE + ", example 2",
-        {"O2": o2, "O4": o4},
-        {
-            "crank": bar("O2", "A", radius),
-            "coupler": bar("A", "B", coupler),
-            "rocker": bar("O4", "B", length),
-        },
-        {},
+        Step("The crank is O2 A1, the coupler A1 B1.", links),
     )
+    bars = {
+        "crank": bar("O2", "A", radius),
+        "coupler": bar("A", "B", coupler),
+        "rocker": bar("O4", "B", length),
+    }
+    draft = Draft("rocker-by-angle", LECTURE + ", example 2", {"O2": o2, "O4": o4}, bars, {})
     start = cmath.phase(a1 - o2)
     positions = tuple(
         PrecisionPosition(start + half, (AskedAngle("rocker", cmath.phase(b - o4)),))
@@ -115,12 +97,7 @@ def rocker_by_angle() -> Proposal:
     return Proposal(draft, "crank", positions, chosen, steps)
 
 
-FOUR = (
-    Pose(0.0 + 0.0j, 0.0),
-    Pose(0.10 + 0.05j, 0.35),
-    Pose(0.18 + 0.14j, 0.9),
-    Pose(0.2 + 0.26j, 1.6),
-)
+FOUR = (Pose(0j, 0.0), Pose(0.1 + 0.05j, 0.35), Pose(0.18 + 0.14j, 0.9), Pose(0.2 + 0.26j, 1.6))
 
 
 @lru_cache
@@ -135,15 +112,13 @@ def burmester_curves() -> Proposal:
     circles = tuple(tuple(FOUR[0].at(dyad.moving) for dyad in piece) for piece in pieces)
     bodies: list[Element] = []
     for k, pose in enumerate(FOUR, 1):
-        bodies += [
-            Segment(pose.point, pose.at(0.08 + 0j), "given"),
-            Dot(pose.point, f"P{k}", "given"),
-        ]
+        end = pose.at(0.08 + 0j)
+        bodies += [Segment(pose.point, end, "given"), Dot(pose.point, f"P{k}", "given")]
     links: list[Element] = []
     for dyad, pivot, pin in ((first, "O2", "A"), (second, "O4", "B")):
         at = FOUR[0].at(dyad.moving)
-        links += [Segment(dyad.fixed, at, "result"), Dot(dyad.fixed, pivot, "result", fixed=True)]
-        links.append(Dot(at, f"{pin}1", "result"))
+        fixed = Dot(dyad.fixed, pivot, "result", fixed=True)
+        links += [Segment(dyad.fixed, at, "result"), fixed, Dot(at, f"{pin}1", "result")]
     poles: list[Element] = []
     for i, j in ((0, 1), (0, 2), (1, 2), (2, 3)):
         place = pole(FOUR[i], FOUR[j])
@@ -167,14 +142,7 @@ def far_pole() -> Proposal:
     first, second = Pose(0j, 0.9), Pose(0.1 + 0.02j, 0.9 + 0.004)
     place = pole(first, second)
     assert place is not None
-    extra = Step(
-        "The pole of a turn that is nearly none, and the circle of a point about it.",
-        (
-            Dot(place, "P12"),
-            Segment(proposal.positions and first.point, place),
-            Circle(place, abs(place - first.point)),
-            Circle(place, 0.3, "auxiliary"),
-        ),
-    )
-    steps = (*proposal.steps, extra)
-    return Proposal(proposal.draft, proposal.driver, proposal.positions, {}, steps)
+    circles = (Circle(place, abs(place - first.point)), Circle(place, 0.3))
+    words = "The pole of a turn that is nearly none, and the circle of a point about it."
+    extra = Step(words, (Dot(place, "P12"), Segment(first.point, place), *circles))
+    return replace(proposal, chosen={}, steps=(*proposal.steps, extra))

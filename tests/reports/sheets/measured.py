@@ -1,4 +1,5 @@
-"""What a person would see at once on a sheet: words over lines, over one another, off the paper.
+"""What a person would measure on a sheet, or see at once: words over lines, over one another, off
+the paper.
 
 The sheet is drawn without its words: where their letters would be, that picture has to be blank. So
 the check knows nothing of how a sheet is drawn, and misses nothing that is.
@@ -7,8 +8,10 @@ the check knows nothing of how a sheet is drawn, and misses nothing that is.
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from xml.etree import ElementTree
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -19,10 +22,25 @@ from matplotlib.textpath import TextPath
 
 from models.array import Array
 
+SVG = "{http://www.w3.org/2000/svg}"
+MM_PER_POINT = 25.4 / 72.0
+TENTH_MM = 0.1
 DPI = 200
 INK, DARK = 0.9, 0.5
 """Ink is darker than the first in one of its colours, which the inside of a plate is not; a line
 that no text may interrupt is darker than the second."""
+
+
+def drawn_lines(svg: bytes) -> dict[str, list[Array]]:
+    """The places (n, 2) [mm] of every line by its name, from the upper left corner."""
+    found: dict[str, list[Array]] = {}
+    for group in ElementTree.fromstring(svg).iter(f"{SVG}g"):
+        path = group.find(f"{SVG}path")
+        if path is not None and group.get("id"):
+            numbers = re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", path.get("d", ""))
+            places = np.array(numbers, float).reshape(-1, 2) * MM_PER_POINT
+            found.setdefault(str(group.get("id")), []).append(places)
+    return found
 
 
 @dataclass(frozen=True)

@@ -1,25 +1,31 @@
-"""The sheet of a construction, measured."""
+"""The sheet of a construction, measured, and what its page holds; `tests.reports.page` opens it."""
 
 from __future__ import annotations
 
+import json
 import math
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from xml.etree import ElementTree
+from typing import Any
 
 import numpy as np
 import pytest
 
 from analytic.kinematics import solve
 from analytic.synthesis.construction import Circle, Curve, Dot, Segment, Step
+from analytic.synthesis.design import Proposal
 from analytic.synthesis.examine import examine
 from models.array import Array
 from models.errors import CrankcheckError
+from reports.drawing.shape import turn_of
 from reports.figures.style import width_in
 from reports.sheets.canvas import Canvas
+from reports.sheets.constructions.construction_page import INSTANTS, MOVES, construction_page
 from reports.sheets.constructions.construction_sheet import construction_sheet, laid_out
 from reports.sheets.constructions.construction_view import ConstructionView
+from reports.sheets.constructions.positions_on_way import positions_on_way
 from reports.sheets.constructions.strokes import strokes, xy
 from reports.sheets.paper import MM_PER_IN, Paper
 from tests.reports.sheets.constructions.constructed import (
@@ -28,21 +34,16 @@ from tests.reports.sheets.constructions.constructed import (
     rocker_by_angle,
     three_positions,
 )
-from tests.reports.sheets.overlaps import overlaps
+from tests.reports.sheets.measured import TENTH_MM, drawn_lines, overlaps
 from tests.worlds.tiers import few
 
 A4, A5, UPRIGHT = Paper.of("A4"), Paper.of("A5"), Paper.of("210x297")
-SVG = "{http://www.w3.org/2000/svg}"
-MM_PER_POINT = 25.4 / 72.0
-TENTH_MM = 0.1
 EVERY = {
     "three positions": three_positions,
     "rocker by its angle": rocker_by_angle,
     "Burmester's curves": burmester_curves,
     "far pole": far_pole,
 }
-
-
 SHEETS = [(name, paper) for paper in (A4, UPRIGHT) for name in EVERY]
 QUICK = [("Burmester's curves", A4), ("far pole", UPRIGHT)]
 
@@ -59,22 +60,6 @@ def measured(name: str, paper: Paper = A4) -> dict[str, list[Array]]:
     return drawn_lines(sheet_of(name, paper).saved("svg", "lines"))
 
 
-def drawn_lines(svg: bytes) -> dict[str, list[Array]]:
-    """The places (n, 2) [mm] of every line by its name, up to the sheet's own origin."""
-    found: dict[str, list[Array]] = {}
-    for group in ElementTree.fromstring(svg).iter(f"{SVG}g"):
-        path = group.find(f"{SVG}path")
-        if path is not None and group.get("id"):
-            numbers = re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", path.get("d"))
-            places = np.array(numbers, float).reshape(-1, 2) * MM_PER_POINT
-            found.setdefault(str(group.get("id")), []).append(places)
-    return found
-
-
-def layers(svg: bytes) -> list[str]:
-    return re.findall(r'inkscape:label="([^"]*)"', svg.decode())
-
-
 @pytest.mark.parametrize("name", ["three positions", "rocker by its angle"])
 def test_links_measured_off_the_sheet_are_those_of_the_scene(name: str) -> None:
     examined = examine(EVERY[name]())
@@ -82,8 +67,8 @@ def test_links_measured_off_the_sheet_are_those_of_the_scene(name: str) -> None:
     for link in examined.scene.links.values():
         (line,) = measured(name)[f"scheme-{link.name}"]
         first, last = (link.points[point] for point in link.points)
-        length = math.dist(line[0], line[1]) * sheet.scale
-        assert length == pytest.approx(math.dist(first, last), abs=TENTH_MM * sheet.scale)
+        length = math.dist(first, last) / sheet.scale
+        assert math.dist(line[0], line[1]) == pytest.approx(length, abs=TENTH_MM)
 
 
 def test_every_line_of_a_step_stands_where_the_construction_has_it() -> None:
@@ -95,13 +80,10 @@ def test_every_line_of_a_step_stands_where_the_construction_has_it() -> None:
                 continue
             line = measured("three positions")[f"step-{number}.{k}"][0]
             ends = [sheet.at(xy(end)) for end in (element.start, element.end)]
-            more = 1.0 + 2.0 * element.beyond
-            assert np.hypot(*(line[1] - line[0])) == pytest.approx(
-                more * math.dist(*ends), abs=TENTH_MM
-            )
-            assert line.mean(axis=0) * (1, -1) + (0, A4.height) == pytest.approx(
-                np.mean(ends, axis=0), abs=TENTH_MM
-            )
+            length = (1.0 + 2.0 * element.beyond) * math.dist(*ends)
+            middle = line.mean(axis=0) * (1, -1) + (0, A4.height)
+            assert math.dist(line[0], line[1]) == pytest.approx(length, abs=TENTH_MM)
+            assert middle == pytest.approx(np.mean(ends, axis=0), abs=TENTH_MM)
             checked += 1
     assert checked == 3 + 4 + 4 + 3
 
@@ -110,9 +92,8 @@ def test_the_radius_of_the_drawn_circle_is_the_crank() -> None:
     sheet = laid_out(rocker_by_angle(), A4)
     (circle,) = measured("rocker by its angle")["step-4.1"]
     crank = sheet.view.examined.scene.links["crank"].points
-    assert np.ptp(circle[:, 0]) / 2 * sheet.scale == pytest.approx(
-        math.dist(crank["O2"], crank["A"]), abs=TENTH_MM * sheet.scale
-    )
+    radius = math.dist(crank["O2"], crank["A"]) / sheet.scale
+    assert np.ptp(circle[:, 0]) / 2 == pytest.approx(radius, abs=TENTH_MM)
 
 
 def test_the_mechanism_stands_in_the_positions_that_are_asked_for() -> None:
@@ -120,8 +101,8 @@ def test_the_mechanism_stands_in_the_positions_that_are_asked_for() -> None:
     step = view.steps[0]
     asked = {each.letter: xy(each.place) for each in step.elements if isinstance(each, Dot)}
     for number, placed in enumerate(view.placements, 1):
-        assert placed.points["C"] == pytest.approx(asked[f"C{number}"], abs=1e-9)
-        assert placed.points["D"] == pytest.approx(asked[f"D{number}"], abs=1e-9)
+        for name in "CD":
+            assert placed.points[name] == pytest.approx(asked[f"{name}{number}"], abs=1e-9)
     start = solve(view.examined.scene, np.zeros(1), bound=False)
     assert view.first.points["D"] == pytest.approx(start.points["D"].position[0], abs=1e-9)
 
@@ -139,7 +120,7 @@ def test_positions_that_the_driver_can_not_lead_to_are_drawn_and_told() -> None:
 
 def test_there_is_a_layer_for_each_step_and_the_same_sheet_has_the_same_bytes() -> None:
     svg = sheet_of("rocker by its angle").saved("svg", "layers")
-    assert layers(svg) == [
+    assert re.findall(r'inkscape:label="([^"]*)"', svg.decode()) == [
         "frame",
         "positions",
         "step-1-The-rocker-O4-B-in-its-end-positions--70",
@@ -205,19 +186,17 @@ def test_what_is_far_off_is_told_and_does_not_shrink_the_figure() -> None:
 
 def test_curves_that_run_to_infinity_do_not_shrink_the_figure_or_jump_across_it() -> None:
     proposal = burmester_curves()
-    plain = replace(
-        proposal,
-        steps=tuple(
-            Step(step.words, tuple(each for each in step.elements if not isinstance(each, Curve)))
-            for step in proposal.steps
-        ),
-    )
+    steps = [
+        replace(step, elements=tuple(e for e in step.elements if not isinstance(e, Curve)))
+        for step in proposal.steps
+    ]
+    plain = replace(proposal, steps=tuple(steps))
     assert laid_out(proposal, A4).scale == laid_out(plain, A4).scale
     lines = measured("Burmester's curves")
     pieces = [each for number in (3, 4) for each in lines[f"step-{number}.1"]]
-    steps = np.concatenate([np.hypot(*np.diff(piece, axis=0).T) for piece in pieces])
-    assert len(steps) > 200
-    assert steps.max() < 60.0
+    jumps = np.concatenate([np.hypot(*np.diff(piece, axis=0).T) for piece in pieces])
+    assert len(jumps) > 200
+    assert jumps.max() < 60.0
 
 
 def test_words_that_do_not_fit_are_refused_with_a_paper_that_would_do() -> None:
@@ -234,3 +213,71 @@ def test_the_title_tells_the_scale_and_the_note_the_source() -> None:
     scale = laid_out(three_positions(), A4).scale
     assert f"three-positions: construction, position 1 of 3, K_l = {scale:g} m/mm" in words
     assert any("example 6" in each and "crankcheck" in each for each in words)
+
+
+def embedded(page: str) -> dict[str, Any]:
+    match = re.search(r'id="embedded-construction">(.*?)</script>', page)
+    return json.loads(match[1])  # type: ignore[no-any-return]  # an object, as it was written
+
+
+@pytest.mark.parametrize("make", [three_positions, rocker_by_angle, burmester_curves])
+def test_the_page_holds_every_step_and_its_words(make: Callable[[], Proposal]) -> None:
+    proposal = make()
+    page = construction_page(proposal)
+    words = re.findall(r"<li><button type=\"button\">(.*?)</button></li>", page)
+    assert words == [*(step.words for step in proposal.steps), MOVES]
+    for step, drawn in zip(proposal.steps, embedded(page)["steps"], strict=True):
+        for element, own in zip(step.elements, drawn, strict=True):
+            if isinstance(element, Dot):
+                assert own["at"] == pytest.approx(xy(element.place), rel=1e-5, abs=1e-12)
+                assert own["letter"] == element.letter
+            if isinstance(element, Segment) and not element.beyond:
+                (ends,) = own["lines"]
+                length = math.dist(ends[:2], ends[2:])
+                assert length == pytest.approx(abs(element.end - element.start), rel=1e-5)
+            if isinstance(element, Circle):
+                places = np.concatenate(own["lines"]).reshape(-1, 2)
+                away = np.hypot(*(places - xy(element.centre)).T)
+                assert away == pytest.approx(element.radius, rel=1e-5)
+            if isinstance(element, Curve):
+                assert own["look"].startswith("curve-")
+                assert own["lines"]
+
+
+def test_the_motion_meets_each_position_where_the_page_stops() -> None:
+    view = ConstructionView.of(three_positions())
+    motion = turn_of(view.examined.scene, INSTANTS)
+    theta = motion.links["input"].theta
+    for at, position in zip(positions_on_way(view, motion), view.examined.positions, strict=True):
+        assert at is not None
+        here = np.interp(at, np.arange(INSTANTS), theta)
+        assert math.remainder(here - position.driver_rad, math.tau) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_position_that_the_driver_can_not_lead_to_is_no_stop_and_what_is_chosen_is_told() -> None:
+    page = construction_page(burmester_curves())
+    own = embedded(page)
+    assert None in own["at"]
+    assert own["at"][0] is not None
+    assert len(own["poses"]) == 4
+    assert "It has a fault: circuit defect." in page
+    assert "Chosen: O2 from the middle of B1 B2, 0.3 m." in construction_page(rocker_by_angle())
+
+
+def test_the_asked_link_stands_in_each_pose() -> None:
+    own = embedded(construction_page(three_positions()))
+    view = ConstructionView.of(three_positions())
+    for pose, placed in zip(own["poses"], view.placements, strict=True):
+        assert placed is not None
+        assert len(pose["links"]) == 1
+        ends = np.concatenate([placed.points["C"], placed.points["D"]])
+        assert pose["links"][0] == pytest.approx(list(ends), rel=1e-5)
+
+
+def test_hostile_words_are_text() -> None:
+    proposal = three_positions()
+    evil = "</script><script>window.hacked=1</script><img src=x>"
+    steps = (*proposal.steps, Step(evil, (Dot(0j, evil),)))
+    page = construction_page(replace(proposal, steps=steps, doubt=evil, chosen={evil: evil}))
+    assert "<img" not in page
+    assert "<script>window" not in page
