@@ -200,7 +200,11 @@ class Tab:
         for is_open in (False, True):
             self.page.evaluate(DRAWERS, is_open)
             assert self.page.evaluate(OUT) == []
-            assert self.page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
+            self.needs_no_scrolling_aside()
+
+    def needs_no_scrolling_aside(self) -> None:
+        screen = PHONE if self.is_phone else WIDE
+        assert self.page.evaluate("document.documentElement.scrollWidth") <= screen["width"]
 
     def every_control_has_a_name(self, is_reached_by_tab: bool = True) -> None:
         assert self.page.evaluate(NAMELESS, CONTROLS) == []

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
+from html import escape
 from pathlib import Path
 
 import pytest
@@ -42,11 +43,8 @@ def lost(one: JudgedModel) -> JudgedModel:
     return judged_model(one.account, lines)
 
 
-def test_every_section_is_there_in_its_order_and_nothing_is_loaded(text: str) -> None:
+def test_every_section_is_there_in_its_order_nothing_is_loaded_and_it_is_small(text: str) -> None:
     stands_alone(text, SECTIONS)
-
-
-def test_the_page_is_small(text: str) -> None:
     assert len(text.encode()) - len(_plotly().encode()) < MEGABYTE
 
 
@@ -57,7 +55,7 @@ def test_it_tells_the_lines_the_joints_and_the_diff(text: str, rubbing: JudgedMo
     for joint in rubbing.joints():
         assert joint.name in told
     for line in rubbing.patch.splitlines():
-        assert line.replace("<", "&lt;").replace(">", "&gt;").replace('"', "&#34;") in text
+        assert escape(line).replace("&quot;", "&#34;") in text
     assert "piston touches rod in 100% of the poses" in told
     lines = embedded(text, "lines")["lines"]
     assert len(lines) == 3
@@ -78,25 +76,19 @@ def test_a_model_of_which_nothing_ran_still_has_its_page(rubbing: JudgedModel) -
 
 
 def test_nothing_of_a_file_acts_on_the_page(rubbing: JudgedModel) -> None:
-    account = rubbing.account
+    account, bare = rubbing.account, lost(rubbing)
     request = replace(account.request, path=Path(f"{NASTY.replace('/', '')}.xml"), joint=NASTY)
     hostile = replace(
-        account,
-        request=request,
-        notes=[NASTY],
-        disturbances=[Disturbance("contacts", NASTY)],
+        account, request=request, notes=[NASTY], disturbances=[Disturbance("contacts", NASTY)],
         recommended=replace(account.recommended, patch=f"--- {NASTY}\n"),
         open_m={NASTY: 1.0, **account.open_m},
-    )
-    text = model_page(JudgedModel(account=hostile, lines=lost(rubbing).lines), FACTS)
-    outline = Outline(text)
+    )  # fmt: skip
+    text = model_page(JudgedModel(account=hostile, lines=bare.lines), FACTS)
+    outline, plain = Outline(text), Outline(model_page(bare, FACTS))
     assert outline.open == []
-    assert next(each["id"] for each in outline.named("section")) == "verdict"
-    assert "\u202e" not in text
-    assert "\x1b" not in text
-    assert len(outline.named("script")) == len(
-        Outline(model_page(lost(rubbing), FACTS)).named("script")
-    )
+    assert outline.sections()[0] == "verdict"
+    assert not {"\u202e", "\x1b"} & set(text)
+    assert len(outline.named("script")) == len(plain.named("script"))
 
 
 @pytest.fixture(scope="module")
@@ -104,37 +96,28 @@ def path(written: Write, text: str) -> Path:
     return written(text)
 
 
-@pytest.fixture
-def opened(wide: Tab, path: Path) -> Iterator[Tab]:
-    yield wide.visit(path, "lines", "motion")
-    assert wide.said == []
-
-
-def test_the_scripts_draw_every_line_and_say_nothing(opened: Tab) -> None:
-    page = opened.page
-    drawn = page.evaluate("document.getElementById('lines-course').data.map(each => each.name)")
-    assert drawn == ["as-written", "contacts-off", "recommended", "limit"]
-    steps = page.evaluate("document.getElementById('lines-steps').data.map(each => each.y.length)")
-    assert steps == [3, 3, 3]
-    low, high = page.evaluate("document.getElementById('lines-steps').layout.yaxis.range")
+def test_the_scripts_draw_every_line_that_is_switched_on(wide: Tab, path: Path) -> None:
+    page = wide.visit(path, "lines", "motion").page
+    course, steps = (f"document.getElementById('lines-{each}')" for each in ("course", "steps"))
+    names = ["as-written", "contacts-off", "recommended", "limit"]
+    assert page.evaluate(f"{course}.data.map(each => each.name)") == names
+    assert page.evaluate(f"{steps}.data.map(each => each.y.length)") == [3, 3, 3]
+    low, high = page.evaluate(f"{steps}.layout.yaxis.range")
     assert low < -6.0 < -2.0 < high
     assert page.locator("#motion-picture .run").count() == 3
-    assert "as-written" in page.locator("#motion-readout").inner_text()
-    assert all(url.startswith("file:") for url in opened.asked)
-    opened.every_control_has_a_name()
-
-
-def test_a_line_that_is_switched_off_is_drawn_nowhere(opened: Tab) -> None:
-    page = opened.page
+    assert "as-written" in wide.text("#motion-readout")
+    assert all(url.startswith("file:") for url in wide.asked)
+    wide.every_control_has_a_name(is_reached_by_tab=False)
     page.locator("#motion-legend [data-item='0']").click()
     page.locator("#lines-legend [data-item='0']").click()
     page.select_option("#lines-what", "gap")
-    page.wait_for_function("document.getElementById('lines-course').data.length === 3")
+    page.wait_for_function(f"{course}.data.length === 3")
     assert page.locator("#motion-picture .run").count() == 2
     page.locator("#lines-legend [data-item='1']").click()
-    low, high = page.evaluate("document.getElementById('lines-steps').layout.yaxis.range")
+    low, high = page.evaluate(f"{steps}.layout.yaxis.range")
     assert high - low >= 1.0
-    assert "gap" in page.evaluate("document.getElementById('lines-course').layout.yaxis.title.text")
+    assert "gap" in page.evaluate(f"{course}.layout.yaxis.title.text")
+    assert wide.said == []
 
 
 @pytest.fixture(scope="module")
@@ -160,6 +143,6 @@ def test_the_scripts_draw_a_page_without_finer_steps(wide: Tab, without_finer: P
 @slow("pages of stores and logs are laid out by the same style, and are read on a phone")
 def test_it_fits_a_phone(phone: Tab, path: Path) -> None:
     phone.open(path, "lines", color_scheme="dark")
-    assert phone.page.evaluate("document.documentElement.scrollWidth") <= 390
+    phone.needs_no_scrolling_aside()
     assert phone.said == []
     assert phone.page.evaluate(OUT) == []

@@ -1,7 +1,9 @@
-"""Pages of a solved scene in a browser: they load nothing, and move with all that is on them."""
+"""Pages of a solved scene and of a construction in a browser: they load nothing, and move with all
+that is on them."""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -11,53 +13,65 @@ import pytest
 from analytic.elastic.discretisation import Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.free.release import release
+from analytic.synthesis.design import Proposal
 from models.files import load_scene
 from reports.face.scene_report import elastic_page_of, free_page_of, page_of
 from reports.page.scene_sections.elastic import factors
+from reports.sheets.constructions.construction_page import construction_page
 from reports.sheets.polygons.polygon_instant import placed_at_time
 from reports.sheets.polygons.polygon_page import polygon_page
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
-from tests.reports.page.tab import PHONE, WIDE, Tab
-from tests.worlds.tiers import slowly
+from tests.reports.page.tab import Tab
+from tests.reports.sheets.constructions.constructed import (
+    burmester_curves,
+    far_pole,
+    rocker_by_angle,
+    three_positions,
+)
+from tests.worlds.tiers import few, slowly
 
 COUPLER = "#motion-picture .overlays .link:nth-child(2)"
+PLACE, PICTURE, PLAY = "#construction-place", "#construction-picture", "#construction-play"
+LINES = f"{PICTURE} .lines > g:not([hidden])"
+BOXES = """all => all.map(each => {
+  const { left, top, right, bottom } = each.getBoundingClientRect();
+  return [left, top, right, bottom];
+})"""
+OTHER = "each size and each figure is read once: what one has with the other is slow"
 Write = Callable[[str], Path]
 
 
 @pytest.fixture(scope="module")
 def elastic(written: Write) -> Path:
     scene = load_scene("fourbar-elastic")
-    motion = DrivenElasticMotion(
-        scene, scene.driver.law.period_s, Modes(3), "periodic", stiffened=True
-    )
+    turn_s = scene.driver.law.period_s
+    motion = DrivenElasticMotion(scene, turn_s, Modes(3), "periodic", stiffened=True)
     return written(elastic_page_of(motion))
 
 
-def test_a_page_moves_with_its_forces_and_says_nothing_wrong(wide: Tab, written: Write) -> None:
-    path = written(page_of(load_scene("shaper"), with_forces=True))
-    wide.open(path)
-    seen = []
-    for at in (0, 61):
+def moved(wide: Tab, places: tuple[int, int], shapes: str, told: str) -> tuple[list[str], list]:
+    """What is told at two places of the slider, and the shapes there, which differ."""
+    words, drawn = [], []
+    for at in places:
         wide.slide("motion-slider", at)
-        told = wide.page.locator("#motion-torque").inner_text()
-        seen.append((wide.drawn("#motion-picture .force path"), told))
+        words.append(wide.text(told))
+        drawn.append(wide.drawn(shapes))
     assert not wide.said
     assert wide.asked == [wide.file.as_uri()]
-    assert seen[0] != seen[1]
-    assert all(len(arrows) >= 6 for arrows, _ in seen)
-    assert "Driving torque here: 1.93 N m." in seen[0][1]
+    assert drawn[0] != drawn[1]
+    return words, drawn
 
 
-def test_a_free_motion_moves_and_tells_the_time(wide: Tab, written: Write) -> None:
+def test_a_page_moves_with_its_forces_and_a_free_motion_tells_the_time(
+    wide: Tab, written: Write
+) -> None:
+    wide.open(written(page_of(load_scene("shaper"), with_forces=True)))
+    words, drawn = moved(wide, (0, 61), "#motion-picture .force path", "#motion-torque")
+    assert all(len(arrows) >= 6 for arrows in drawn)
+    assert "Driving torque here: 1.93 N m." in words[0]
     wide.open(written(free_page_of(release(load_scene("fourbar-swing"), 0.5))))
-    seen = []
-    for at in (0, 60):
-        wide.slide("motion-slider", at)
-        shape = wide.drawn("#motion-picture .reference path")
-        seen.append((shape, wide.page.locator("#motion-angle").inner_text()))
-    assert not wide.said
-    assert seen[0][0] != seen[1][0]
-    assert (seen[0][1], seen[1][1]) == ("0.00 s", "0.250 s")
+    words, _ = moved(wide, (0, 60), "#motion-picture .reference path", "#motion-angle")
+    assert words == ["0.00 s", "0.250 s"]
 
 
 def test_a_page_without_forces_has_none() -> None:
@@ -78,15 +92,9 @@ def test_a_page_has_the_figures_that_there_are(propped: bool, pictures: int) -> 
     assert "nan" not in text.partition("<main")[2].partition("<script")[0].lower().split()
 
 
-@pytest.mark.parametrize(
-    ("size", "width"),
-    [
-        ("phone", PHONE["width"]),
-        slowly("wide", WIDE["width"], reason="what fits a phone fits a computer"),
-    ],
-)
+@pytest.mark.parametrize("size", few(["phone", "wide"], {"phone"}, "it fits a computer as well"))
 def test_a_page_bends_its_links_by_the_factor_that_is_chosen(
-    elastic: Path, size: str, width: int, request: pytest.FixtureRequest
+    elastic: Path, size: str, request: pytest.FixtureRequest
 ) -> None:
     tab: Tab = request.getfixturevalue(size)
     seen = tab.open(elastic).page
@@ -94,12 +102,12 @@ def test_a_page_bends_its_links_by_the_factor_that_is_chosen(
     assert seen.locator("#motion-factor").input_value() == "50"
     (bent,) = tab.drawn(COUPLER)
     assert bent.count("L") == 20
-    assert "coupler 1.05 mm" in seen.locator("#motion-deflection").inner_text()
+    assert "coupler 1.05 mm" in tab.text("#motion-deflection")
     seen.select_option("#motion-factor", "1")
     assert tab.drawn(COUPLER) != [bent]
     tab.slide("motion-slider", 60)
-    assert "coupler -0.669" in seen.locator("#motion-deflection").inner_text()
-    assert seen.evaluate("document.documentElement.scrollWidth") <= width
+    assert "coupler -0.669" in tab.text("#motion-deflection")
+    tab.needs_no_scrolling_aside()
     assert not tab.said
     assert tab.asked == [tab.file.as_uri()]
 
@@ -117,13 +125,124 @@ def test_polygons_move_and_are_drawn_step_by_step(wide: Tab, written: Write) -> 
     path = written(polygon_page(placed_at_time(load_scene("scotch-yoke"), 0.02)))
     page = wide.open(path).page
     arrows = page.locator("#polygons-velocity .head")
-    whole = arrows.count()
-    first = page.locator("#polygons-velocity-rows").inner_text()
+    whole, first = arrows.count(), wide.text("#polygons-velocity-rows")
     wide.slide("polygons-slider", 60)
-    assert page.locator("#polygons-velocity-rows").inner_text() != first
+    assert wide.text("#polygons-velocity-rows") != first
     wide.slide("polygons-step", 1)
     assert 0 < arrows.count() < whole
-    assert "driver" in page.locator("#polygons-step-title").inner_text()
-    assert "one point, as omega is 0" in page.locator("#polygons-links").inner_text()
+    assert "driver" in wide.text("#polygons-step-title")
+    assert "one point, as omega is 0" in wide.text("#polygons-links")
     assert not wide.said
     assert wide.asked == [wide.file.as_uri()]
+
+
+@pytest.fixture(scope="module")
+def three(written: Write) -> Path:
+    return written(construction_page(three_positions()))
+
+
+@pytest.fixture(scope="module")
+def rocker(written: Write) -> Path:
+    return written(construction_page(rocker_by_angle()))
+
+
+def test_keys_lead_from_step_to_step_and_through_the_positions(wide: Tab, three: Path) -> None:
+    page = wide.open(three).page
+    seen = []
+    for _ in range(5):
+        seen.append((wide.text(PLACE), page.locator(LINES).count()))
+        page.keyboard.press("ArrowLeft")
+    steps = [(f"Step {k} of 4", lines) for k, lines in ((4, 16), (3, 13), (2, 8), (1, 3))]
+    assert seen == [*steps, ("Before the first step", 0)]
+    for _ in range(5):
+        page.keyboard.press("ArrowRight")
+    told = []
+    for _ in range(3):
+        told.append(wide.text(PLACE))
+        assert page.locator(f"{PICTURE} .poses .met").count() == 1
+        page.keyboard.press("ArrowRight")
+    assert [words.split(", ")[1] for words in told] == [f"position {k} of 3" for k in (1, 2, 3)]
+    assert not wide.said
+
+
+def test_the_mechanism_covers_the_pose_that_it_is_in(wide: Tab, three: Path) -> None:
+    page = wide.visit(three).page
+    wide.slide("construction-slider", 0)
+    for _ in range(7):
+        page.keyboard.press("ArrowRight")
+    assert "position 3" in wide.text(PLACE)
+    ends = """each => each.getAttribute('d').match(/-?[\\d.]+/g).slice(0, 4).map(Number)"""
+    pose = page.locator(f"{PICTURE} .poses .met path").evaluate(ends)
+    links = page.locator(f"{PICTURE} .reference .link").evaluate_all(f"all => all.map({ends})")
+    assert min(max(abs(a - b) for a, b in zip(pose, one, strict=True)) for one in links) < 0.5
+
+
+def test_buttons_the_slider_and_the_words_go_to_a_step(wide: Tab, rocker: Path) -> None:
+    page = wide.open(rocker).page
+    page.locator("#construction-steps button").nth(1).click()
+    assert wide.text(PLACE) == "Step 2 of 5"
+    assert wide.text("[aria-current=step]") == "The line B1 B2, and its extension."
+    for way, step in (("forward", 3), ("forward", 4), ("back", 3)):
+        page.locator(f"#construction-{way}").click()
+        assert wide.text(PLACE) == f"Step {step} of 5"
+    wide.slide("construction-slider", float(page.get_attribute("#construction-slider", "max")))
+    assert wide.text(PLACE).startswith("crank at")
+    assert not wide.said
+
+
+def test_those_who_want_no_motion_get_whole_steps(wide: Tab, rocker: Path) -> None:
+    page = wide.visit(rocker).page
+    wide.elapse(0)
+    page.locator(PLAY).click()
+    seen = [wide.text(PLACE)]
+    partly, hidden = ":not([stroke-dasharray=none])", f"{PICTURE} .lines > g[hidden] path"
+    for _ in range(7):
+        wide.elapse(2500)
+        seen.append(wide.text(PLACE))
+        whole = page.locator(hidden).count()
+        assert page.locator(f"{PICTURE} .lines path{partly}").count() == whole
+    assert seen[:5] == [f"Step {k} of 5" for k in range(1, 6)]
+    assert seen[5:7] == ["crank at 205°, position 1 of 2", "crank at 25°, position 2 of 2"]
+    assert wide.text(PLAY) == "Play"
+
+
+def test_it_plays_by_itself_once_where_motion_is_welcome(wide: Tab, rocker: Path) -> None:
+    page = wide.open(rocker, reduced_motion="no-preference").page
+    page.wait_for_function(f"() => document.querySelector('{PLAY}').innerText == 'Pause'")
+    page.keyboard.press(" ")
+    assert wide.text(PLAY) == "Play"
+    wide.elapse(0)
+    page.keyboard.press(" ")
+    wide.elapse(1000)
+    assert wide.text(PLAY) == "Pause"
+    wide.elapse(17_000)
+    assert wide.text(PLACE).startswith("crank at")
+    assert not wide.said
+
+
+@pytest.mark.parametrize(
+    ("make", "size"),
+    [
+        (burmester_curves, "phone"),
+        (far_pole, "wide"),
+        slowly(burmester_curves, "wide", reason=OTHER),
+        slowly(far_pole, "phone", reason=OTHER),
+    ],
+)
+def test_it_can_be_read_without_scrolling_aside(
+    make: Callable[[], Proposal], size: str, written: Write, request: pytest.FixtureRequest
+) -> None:
+    tab: Tab = request.getfixturevalue(size)
+    page = tab.open(written(construction_page(make()))).page
+    tab.needs_no_scrolling_aside()
+    assert page.locator("#construction-words").is_visible() == (size == "phone")
+    far = tab.text("#construction-far")
+    assert far.startswith("Off the picture: P12 at (-4.95, 25) m") == (make is far_pole)
+    letters = page.locator(f"{PICTURE} .dots text").evaluate_all(BOXES)
+    ((start, _, end, _),) = page.locator(PICTURE).evaluate_all(BOXES)
+    assert len(letters) >= 8
+    assert all(start - 1 < left and right < end + 1 for left, _, right, _ in letters)
+    for (x0, y0, x1, y1), (left, top, right, bottom) in itertools.combinations(letters, 2):
+        assert x0 + 3 >= right or left + 3 >= x1 or y0 + 5 >= bottom or top + 5 >= y1
+    assert not tab.said
+    assert all(asked.startswith("file:") for asked in tab.asked)
