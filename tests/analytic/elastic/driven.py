@@ -1,17 +1,25 @@
-"""Driven mechanisms with elastic links that tests share (synthetic): at other speeds, with other
-rockers and damping."""
+"""Mechanisms with elastic links that tests share (synthetic): at other speeds, with other rockers
+and damping; their motions by multipliers, and how far two motions are apart."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
 
-from analytic.elastic.discretisation import Discretisation, Modes
+import numpy as np
+
+from analytic.elastic.discretisation import Discretisation, Modes, flexible_links
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.natural import lowest_rad_s
 from analytic.elastic.reduced import ReducedForm
+from analytic.elastic.released import assembled
+from analytic.multibody.generalised_forces import GeneralisedForces
+from analytic.multibody.multibody_motion import MultibodyMotion
+from analytic.multibody.release_multibody import Acting, release_multibody
+from models.array import Array
 from models.files import load_scene
 from models.laws import ConstantSpeed, Law
+from models.motion import Motion
 from models.scene import Scene
 
 FEW = Modes(2, 1)
@@ -47,3 +55,27 @@ def turning(ratio: float = 10.5, rocker: float = 1.0, damping_s: float = 0.0) ->
 def form_of(scene: Scene, by: Discretisation = FEW) -> ReducedForm:
     """Its equations of motion."""
     return DrivenElasticMotion(scene, 1.0, by, "periodic", stiffened=True).form
+
+
+def by_multipliers(
+    scene: Scene, until_s: float, by: Discretisation, acting: Acting = GeneralisedForces
+) -> MultibodyMotion:
+    """Let go, by the equations with multipliers and an explicit method."""
+    return release_multibody(
+        scene, until_s, near=assembled(scene), flexible=flexible_links(scene, by), acting=acting
+    )
+
+
+def largest(series: Array) -> float:
+    return float(np.abs(series).max())
+
+
+def apart(motion: Motion, other: Motion, link: str) -> float:
+    """How far two motions are from each other, each quantity over its largest."""
+    bent, wanted = motion.elastic[link], other.elastic[link]
+    pairs = [(bent.middle, wanted.middle), (bent.extension, wanted.extension)]
+    pairs += [(motion.forces.torque, other.forces.torque)]
+    pairs += [(one.alpha, other.links[name].alpha) for name, one in motion.links.items()]
+    for pin, held in motion.forces.pins.items():
+        pairs += [(push, other.forces.pins[pin][body]) for body, push in held.items()]
+    return max(largest(a - b) / (largest(a) or 1.0) for a, b in pairs)

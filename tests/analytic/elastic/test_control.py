@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from analytic.elastic.control import ControlledForces, control_elastic, released_under_control
-from analytic.elastic.discretisation import Modes, flexible_links
+from analytic.elastic.discretisation import Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.released import assembled, release_elastic
+from analytic.elastic.released import release_elastic
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
-from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
 from models.controlled import Controlled
 from models.elastic import Shape
@@ -28,6 +27,7 @@ from models.scene_text import scene_text
 from models.waves import FourierSum, Pulse
 from sim.check import refuse_unknown_forces
 from sim.registry import ENGINES, engine
+from tests.analytic.elastic.driven import apart, by_multipliers, following, largest, with_elastic
 from tests.worlds.tiers import slowly
 
 SCENE = load_scene("fourbar-elastic-controlled")
@@ -38,12 +38,7 @@ TURN_S = LAW.period_s
 
 def with_gains(scene: Scene, kp: float, kd: float) -> Scene:
     """The scene with another controller."""
-    law = Controlled(LAW.start_rad, LAW.speed_rad_s, kp, kd)
-    return replace(scene, driver=replace(scene.driver, law=law))
-
-
-def largest(series: Array) -> float:
-    return float(np.abs(series).max())
+    return following(scene, Controlled(LAW.start_rad, LAW.speed_rad_s, kp, kd))
 
 
 @pytest.mark.parametrize(
@@ -53,8 +48,7 @@ def test_it_quells_what_rings_for_ever_under_a_crank_of_constant_speed(
     begin: float, end: float
 ) -> None:
     """Both start straight; the periodic motion is what is left when nothing rings."""
-    constant = ConstantSpeed(LAW.start_rad, LAW.speed_rad_s)
-    driven = replace(SCENE, driver=replace(SCENE.driver, law=constant))
+    driven = following(SCENE, ConstantSpeed(LAW.start_rad, LAW.speed_rad_s))
     time_s, until_s = TURN_S * np.linspace(begin, end, 31), end * TURN_S
 
     def bent(start: Shape) -> Array:
@@ -72,18 +66,8 @@ def test_with_multipliers_it_is_the_same_motion(turns: float) -> None:
     until_s = turns * TURN_S
     time_s = np.linspace(0.0, until_s, 11)
     motion = control_elastic(SCENE, until_s, Modes(1)).at(time_s)
-    other = release_multibody(
-        SCENE, until_s, near=assembled(SCENE), flexible=flexible_links(SCENE, Modes(1)),
-        acting=ControlledForces,
-    ).at(time_s)  # fmt: skip
-    pairs = [
-        (motion.elastic["coupler"].middle, other.elastic["coupler"].middle),
-        (motion.links["crank"].alpha, other.links["crank"].alpha),
-        (motion.forces.torque, other.forces.torque),
-        (motion.forces.pins["C"]["coupler"], other.forces.pins["C"]["coupler"]),
-    ]
-    for own, beside in pairs:
-        assert largest(own - beside) < 1e-8 * largest(own)
+    other = by_multipliers(SCENE, until_s, Modes(1), acting=ControlledForces).at(time_s)
+    assert apart(motion, other, "coupler") < 1e-8
 
 
 def test_the_torque_is_that_of_the_controller_and_all_work_there_is() -> None:
@@ -93,21 +77,16 @@ def test_the_torque_is_that_of_the_controller_and_all_work_there_is() -> None:
     crank = own.links["crank"]
     needed = forces(replace(SCENE, elastic={}), time_s, bound=False).torque
     told, speed, _ = LAW.at(time_s)
-    np.testing.assert_allclose(
-        own.forces.torque, needed - 10.0 * (crank.theta - told) - 0.1 * (crank.omega - speed),
-        atol=1e-12,
-    )  # fmt: skip
+    wanted = needed - 10.0 * (crank.theta - told) - 0.1 * (crank.omega - speed)
+    np.testing.assert_allclose(own.forces.torque, wanted, atol=1e-12)
     assert np.ptp(energy.balance) < 1e-9 * energy.kinetic.max()
     assert np.ptp(energy.work) > 1e-3 * energy.kinetic.max()
 
 
 def test_with_a_stiff_link_the_crank_keeps_to_its_law() -> None:
     """From the quasi-static shape, as a rigid mechanism that starts on its way does."""
-    stiff = replace(
-        SCENE,
-        elastic={"coupler": replace(SCENE.elastic["coupler"], flexural_n_m2=4.725e6)},
-        start=replace(SCENE.start, shape="quasi-static"),
-    )
+    stiff = with_elastic(SCENE, flexural_n_m2=4.725e6)
+    stiff = replace(stiff, start=replace(SCENE.start, shape="quasi-static"))
     time_s = np.linspace(0.0, 0.1 * TURN_S, 6)
     crank = control_elastic(stiff, 0.1 * TURN_S, Modes(1)).at(time_s).links["crank"]
     assert largest(crank.theta - LAW.at(time_s)[0]) < 1e-8
@@ -116,8 +95,8 @@ def test_with_a_stiff_link_the_crank_keeps_to_its_law() -> None:
 def test_without_gains_what_it_needs_is_not_enough() -> None:
     """The torque of the rigid mechanism alone lets the crank drift off."""
     alone = control_elastic(with_gains(SCENE, 0.0, 0.0), 0.35 * TURN_S, Modes(1))
-    crank = alone.at(np.array([0.0, 0.35 * TURN_S])).links["crank"]
-    assert abs(crank.theta[-1] - LAW.at(np.array([0.35 * TURN_S]))[0][0]) > 1e-3
+    end = np.array([0.35 * TURN_S])
+    assert largest(alone.at(end).links["crank"].theta - LAW.at(end)[0]) > 1e-3
 
 
 def test_a_file_says_it_and_reads_back() -> None:
@@ -139,8 +118,6 @@ def test_a_file_says_it_and_reads_back() -> None:
 def test_nobody_takes_it_for_a_crank_that_is_told() -> None:
     with pytest.raises(CrankcheckError, match="is controlled, and gives way"):
         assert DrivenElasticMotion(SCENE, 1.0, Modes(1), "straight", stiffened=True).form
-    with pytest.raises(CrankcheckError, match="its driver is not controlled"):
-        control_elastic(load_scene("fourbar-elastic"), 1.0)
     state = solve(SCENE, np.zeros(1), bound=False).state()
     with pytest.raises(CrankcheckError, match="without giving way"):
         build(SCENE, state)
@@ -150,8 +127,7 @@ def test_nobody_takes_it_for_a_crank_that_is_told() -> None:
 
 
 def test_let_go_it_has_no_controller() -> None:
-    time_s = np.array([0.0, 0.01])
-    free = release_elastic(SCENE, 0.01, Modes(1)).at(time_s)
+    free = release_elastic(SCENE, 0.01, Modes(1)).at(np.array([0.0, 0.01]))
     assert largest(free.forces.torque) == 0.0
 
 
@@ -178,19 +154,29 @@ def test_let_go_with_the_controllers_torque_as_loads_it_moves_as_under_control(
     assert largest(ours.links["crank"].alpha - theirs.links["crank"].alpha) < 1e-8
 
 
-def test_a_torque_that_does_not_repeat_itself_is_no_sum_of_waves() -> None:
-    kick = Load("kick", "rocker", None, Pulse(0.1, 0.3))
-    with pytest.raises(CrankcheckError, match="does not go evenly on from turn to turn"):
-        released_under_control(replace(SCENE, loads={"kick": kick}))
-    # Two waves in three turns: smooth, and another in each of them.
-    long = Load("kick", "rocker", None, FourierSum(0.0, (0.1,), (0.0,), 1.5 * TURN_S))
-    with pytest.raises(CrankcheckError, match="does not go evenly on from turn to turn"):
-        released_under_control(replace(SCENE, loads={"kick": long}))
+# Two waves in three turns: smooth, and another in each of them.
+LONG = FourierSum(0.0, (0.1,), (0.0,), 1.5 * TURN_S)
 
 
-def test_a_load_with_the_name_of_the_controllers_is_refused() -> None:
-    taken = Load("controller-speed", "rocker", None, FourierSum(0.1, (), (), 1.0))
-    with pytest.raises(CrankcheckError, match="controller-speed has the name"):
-        released_under_control(replace(SCENE, loads={"controller-speed": taken}))
+@pytest.mark.parametrize(
+    ("load", "words"),
+    [
+        (Load("kick", "rocker", None, Pulse(0.1, 0.3)), "not go evenly on from turn to turn"),
+        (Load("kick", "rocker", None, LONG), "not go evenly on from turn to turn"),
+        (Load("controller-speed", "rocker", None, FourierSum(0.1, (), (), 1.0)),
+         "controller-speed has the name"),
+    ],
+    ids=["a pulse", "another wave in each turn", "the name of the controller's"],
+)  # fmt: skip
+def test_a_load_that_the_controllers_torque_can_not_stand_beside_is_refused(
+    load: Load, words: str
+) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        released_under_control(replace(SCENE, loads={load.name: load}))
+
+
+def test_what_is_told_is_not_taken_for_controlled() -> None:
+    with pytest.raises(CrankcheckError, match="its driver is not controlled"):
+        control_elastic(load_scene("fourbar-elastic"), 1.0)
     with pytest.raises(CrankcheckError, match="its driver is not controlled"):
         released_under_control(load_scene("fourbar-elastic"))

@@ -1,9 +1,10 @@
 """Driven mechanisms with elastic links: the rigid limit, how far the reference is trusted, instants
-and sizes of any kind, and the fastest of what they do."""
+and sizes of any kind, laws of the driver, and the fastest of what they do."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -22,12 +23,16 @@ from analytic.elastic.sampled import bent, sampled
 from analytic.elastic.stiffness import fastest_rad_s
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
+from benchmarks.elastic_theories import row
+from models.array import Array
 from models.elastic import Shape
+from models.errors import CrankcheckError
 from models.files import load_scene, parse_scene
+from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
 from models.scene import Scene
-from tests.analytic.elastic.driven import SHIPPED, fourbar, with_elastic
-from tests.worlds.tiers import few, slowly
+from tests.analytic.elastic.driven import SHIPPED, following, fourbar, largest, with_elastic
+from tests.worlds.tiers import few, slow, slowly
 
 BETWEEN = 2.0
 """By what an estimated error may fall short of the true one."""
@@ -36,24 +41,21 @@ SECONDS = "two seconds each: other shapes, whose errors are estimated in the sam
 
 
 def driven(
-    scene: Scene, by: Discretisation = REFERENCE, start: Shape = "periodic", halved: int = 0
+    scene: Scene,
+    by: Discretisation = REFERENCE,
+    start: Shape = "periodic",
+    until_s: float | None = None,
 ) -> DrivenElasticMotion:
-    return DrivenElasticMotion(scene, scene.driver.law.period_s, by, start, True, halved)
+    """Followed over a period, if not otherwise said."""
+    return DrivenElasticMotion(scene, until_s or scene.driver.law.period_s, by, start, True)
 
 
-def times(scene: Scene) -> np.ndarray:
+def times(scene: Scene) -> Array:
     return np.linspace(0.0, scene.driver.law.period_s, 37)
 
 
-def off(one: Motion, other: Motion) -> dict[str, float]:
-    """The largest differences of two motions."""
-    found = {"torque": np.abs(one.forces.torque - other.forces.torque).max()}
-    for name, own in one.elastic.items():
-        found[f"middle {name}"] = np.abs(own.middle - other.elastic[name].middle).max()
-        found[f"extension {name}"] = np.abs(own.extension - other.elastic[name].extension).max()
-    for name, link in one.links.items():
-        found[f"theta {name}"] = np.abs(link.theta - other.links[name].theta).max()
-    return found
+def middle(motion: Motion) -> Array:
+    return motion.elastic["coupler"].middle
 
 
 @pytest.mark.parametrize(
@@ -63,9 +65,9 @@ def test_the_reference_is_good_to_1e_8_of_the_deflection(name: str) -> None:
     scene = load_scene(name)
     motion, time_s = driven(scene), times(scene)
     doubt, own = motion.doubt(time_s), motion.at(time_s)
-    for link, middle in doubt.middle_m.items():
-        assert middle.max() < 1e-8 * np.abs(own.elastic[link].middle).max()
-    assert doubt.torque_n_m.max() < 1e-8 * np.abs(own.forces.torque).max()
+    for link, each in doubt.middle_m.items():
+        assert each.max() < 1e-8 * largest(own.elastic[link].middle)
+    assert doubt.torque_n_m.max() < 1e-8 * largest(own.forces.torque)
 
 
 @pytest.mark.parametrize(
@@ -84,20 +86,24 @@ def test_the_estimated_error_is_not_under_the_true_one(
 ) -> None:
     scene = fourbar(axial_n=3e5)
     time_s = times(scene) if start == "periodic" else np.linspace(0.0, 0.2, 17)
-    motion = replace(driven(scene, by, start), until_s=time_s[-1])
-    best = replace(motion, by=fine, halved=3)
-    true = off(motion.at(time_s), best.at(time_s))
-    doubt = motion.doubt(time_s)
-    assert doubt.torque_n_m.max() * BETWEEN >= true["torque"]
-    assert doubt.middle_m["coupler"].max() * BETWEEN >= true["middle coupler"]
-    assert doubt.extension_m["coupler"].max() * BETWEEN >= true["extension coupler"]
+    motion = driven(scene, by, start, time_s[-1])
+    found, doubt = motion.at(time_s), motion.doubt(time_s)
+    true = replace(motion, by=fine, halved=3).at(time_s)
+    own, best = found.elastic["coupler"], true.elastic["coupler"]
+    for most, error in (
+        (doubt.torque_n_m, found.forces.torque - true.forces.torque),
+        (doubt.middle_m["coupler"], own.middle - best.middle),
+        (doubt.extension_m["coupler"], own.extension - best.extension),
+    ):
+        assert most.max() * BETWEEN >= largest(error)
     for link, theta in doubt.theta_rad.items():
-        assert theta.max() * BETWEEN >= true[f"theta {link}"] - 1e-15
+        error = found.links[link].theta - true.links[link].theta
+        assert theta.max() * BETWEEN >= largest(error) - 1e-15
 
 
 @pytest.mark.parametrize("count", [4, slowly(6, reason="windows for stiffer segments")])
 def test_of_a_chain_the_windows_alone_are_in_doubt(count: int) -> None:
-    motion = replace(driven(fourbar(), Segments(count), "quasi-static"), until_s=0.2)
+    motion = driven(fourbar(), Segments(count), "quasi-static", 0.2)
     doubt = motion.doubt(np.linspace(0.0, 0.2, 9))
     assert 0.0 < doubt.middle_m["coupler"].max() < 1e-8
 
@@ -125,41 +131,33 @@ def test_a_stiff_link_comes_to_the_rigid_one_as_one_over_its_modulus(
         axial = times_as * own.axial_n
         scene = with_elastic(soft, flexural_n_m2=times_as * flexural, axial_n=axial)
         motion = driven(scene, Polynomials(4, 2)).at(time_s)
-        shape = motion.elastic["coupler"]
         turned = motion.links["rocker"].theta - rigid.links["rocker"].theta
-        torque = np.abs(motion.forces.torque - rigid_forces.torque).max()
-        errors.append([np.abs(shape.middle if bends else turned).max(), torque])
-    ratios = np.divide(errors[:-1], errors[1:])
-    assert ratios == pytest.approx(2.0, rel=5e-3)
+        torque = motion.forces.torque - rigid_forces.torque
+        errors.append([largest(middle(motion) if bends else turned), largest(torque)])
+    assert np.divide(errors[:-1], errors[1:]) == pytest.approx(2.0, rel=5e-3)
+
+
+def errors_of(make: Callable[[int], Discretisation], counts: list[int]) -> tuple[Array, float]:
+    """Of the deflection with so many parts, over its largest; and the order of them."""
+    time_s = times(fourbar())
+    true = middle(driven(fourbar()).at(time_s))
+    found = (middle(driven(fourbar(), make(count)).at(time_s)) for count in counts)
+    errors = np.array([largest(each - true) for each in found]) / largest(true)
+    return errors, -np.polyfit(np.log(counts), np.log(errors), 1)[0]
 
 
 @pytest.mark.parametrize(
     "counts", [[2, 4], slowly([2, 4, 8], reason="a second: the order with more elements")]
 )
 def test_elements_come_to_the_polynomials_with_order_4(counts: list[int]) -> None:
-    scene = fourbar()
-    time_s = times(scene)
-    true = driven(scene).at(time_s)
-    errors = [
-        off(driven(scene, Elements(count)).at(time_s), true)["middle coupler"] for count in counts
-    ]
-    order = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
-    assert order > 3.7
+    assert errors_of(Elements, counts)[1] > 3.7
 
 
 @pytest.mark.parametrize(
     "counts", [[4, 8], slowly([4, 8, 16], reason="a second: the order with more segments")]
 )
 def test_chains_come_to_the_beam_with_order_2(counts: list[int]) -> None:
-    scene = fourbar()
-    time_s = times(scene)
-    true = driven(scene).at(time_s)
-    largest = np.abs(true.elastic["coupler"].middle).max()
-    errors = [
-        off(driven(scene, Segments(count)).at(time_s), true)["middle coupler"] / largest
-        for count in counts
-    ]
-    order = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+    errors, order = errors_of(Segments, counts)
     assert order == pytest.approx(2.0, abs=0.1)
     assert errors[-1] == pytest.approx(0.8 / counts[-1] ** 2, rel=0.05)
 
@@ -167,22 +165,15 @@ def test_chains_come_to_the_beam_with_order_2(counts: list[int]) -> None:
 SIMILAR = """
 name = "similar"
 source = "ours"
-[ground]
-points = {{ A = [0.0, 0.0], D = [{0}, 0.0] }}
+ground = {{ points = {{ A = [0.0, 0.0], D = [{0}, 0.0] }} }}
+elastic = {{ coupler = {{ flexural_n_m2 = {4} }} }}
+driver = {{ link = "crank", speed_rad_s = 5.0, start_deg = 200.0 }}
+start = {{ shape = "periodic" }}
+branch = {{ C = 1 }}
 [links]
 crank = {{ bar = ["A", "B"], length_m = {1}, mass_kg = 0.4 }}
 coupler = {{ bar = ["B", "C"], length_m = {2}, mass_kg = 2.4 }}
 rocker = {{ bar = ["D", "C"], length_m = {3}, mass_kg = 0.5 }}
-[elastic.coupler]
-flexural_n_m2 = {4}
-[driver]
-link = "crank"
-speed_rad_s = 5.0
-start_deg = 200.0
-[start]
-shape = "periodic"
-[branch]
-C = 1
 """
 
 
@@ -190,9 +181,8 @@ def deflection(size: float, by: Discretisation) -> float:
     """The largest over that size, of a four-bar of 0.84 of it whose frequency is the same."""
     lengths = (0.84 * size, 0.28 * size, 0.56 * size, 0.62 * size)
     scene = parse_scene(SIMILAR.format(*lengths, 8.0 * size**3), "similar")
-    motion = DrivenElasticMotion(scene, 1.0, by, "periodic", stiffened=True)
-    middle = motion.at(np.linspace(0.0, scene.driver.law.period_s, 20)).elastic["coupler"].middle
-    return float(np.abs(middle).max()) / size
+    time_s = np.linspace(0.0, scene.driver.law.period_s, 20)
+    return largest(middle(driven(scene, by, until_s=1.0).at(time_s))) / size
 
 
 @pytest.mark.parametrize(
@@ -204,7 +194,7 @@ def test_similar_mechanisms_of_any_size_bend_alike(by: Discretisation) -> None:
 
 @pytest.fixture(scope="module")
 def motion() -> DrivenElasticMotion:
-    return DrivenElasticMotion(load_scene("fourbar-elastic"), 1.0, Modes(1), "periodic", True)
+    return driven(load_scene("fourbar-elastic"), Modes(1), until_s=1.0)
 
 
 def test_some_at_a_time_and_in_any_order_it_is_the_same(
@@ -218,7 +208,7 @@ def test_some_at_a_time_and_in_any_order_it_is_the_same(
         (each.forces.time_s, whole.forces.time_s),
         (each.links["rocker"].alpha, whole.links["rocker"].alpha),
         (each.points["C"].position, whole.points["C"].position),
-        (each.elastic["coupler"].middle, whole.elastic["coupler"].middle),
+        (middle(each), middle(whole)),
         (each.forces.torque, whole.forces.torque),
     ):
         np.testing.assert_allclose(found, wanted, rtol=1e-12, atol=1e-13)
@@ -227,8 +217,8 @@ def test_some_at_a_time_and_in_any_order_it_is_the_same(
 def test_the_shape_goes_through_both_pins_and_the_middle(motion: DrivenElasticMotion) -> None:
     time_s = np.array([0.1, 0.2])
     shape = bent(motion, time_s, np.linspace(0.0, 1.0, 5))["coupler"]
-    assert np.max(np.abs(shape[:, [0, -1]])) < 1e-17
-    np.testing.assert_allclose(shape[:, 2], motion.at(time_s).elastic["coupler"].middle, rtol=1e-12)
+    assert largest(shape[:, [0, -1]]) < 1e-17
+    np.testing.assert_allclose(shape[:, 2], middle(motion.at(time_s)), rtol=1e-12)
 
 
 @pytest.mark.parametrize("damping_s", [1e-5, 1e-3])
@@ -236,7 +226,69 @@ def test_damping_of_a_stiff_chain_is_faster_than_its_vibration(damping_s: float)
     """Damping over stiffness leaves the modes what they are: each has its ratio of damping."""
     scene, by = load_scene("fourbar-elastic"), Segments(8)
     highest = fastest_rad_s(scene, by)
-    links = {n: replace(link, damping_s=damping_s) for n, link in scene.elastic.items()}
     ratio = max(1.0, 0.5 * damping_s * highest)
     fastest = highest * (ratio + math.sqrt(ratio**2 - 1.0))
-    assert fastest_rad_s(replace(scene, elastic=links), by) == pytest.approx(fastest, rel=1e-6)
+    damped = with_elastic(scene, damping_s=damping_s)
+    assert fastest_rad_s(damped, by) == pytest.approx(fastest, rel=1e-6)
+
+
+NO_KINKS = "half a second each: without kinks in the law"
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        SpeedChange(1.5, 3.0, 6.0, 0.1, 0.2),
+        slowly(ConstantSpeed(1.5, -7.37), reason=NO_KINKS),
+        slowly(Oscillating(1.5, 0.5, 9.0), reason=NO_KINKS),
+        slowly(FromRest(1.5, 9.0, 0.2), reason=NO_KINKS),
+        slowly(Accelerating(1.5, 9.0, -40.0), reason=NO_KINKS),
+    ],
+)
+def test_a_smooth_law_is_followed(law: Law) -> None:
+    motion = driven(following(fourbar(), law), Polynomials(4), "quasi-static", 0.4)
+    time_s = np.linspace(0.0, 0.4, 21)
+    bent_m = largest(middle(motion.at(time_s)))
+    assert bent_m > 1e-4
+    assert motion.doubt(time_s).middle_m["coupler"].max() < 1e-3 * bent_m
+
+
+def test_what_oscillates_has_a_periodic_motion() -> None:
+    motion = driven(following(fourbar(), Oscillating(1.5, 0.5, 9.0)), Polynomials(4))
+    first, again = middle(motion.at(np.array([0.1, 0.1 + motion.until_s])))
+    assert first == pytest.approx(again, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("scene", "says"),
+    [
+        (following(fourbar(), SpeedChange(1.5, 3.0, 6.0, 0.1, 0.0)),
+         r"jumps from 3 to 6 rad/s.*rise_s"),
+        (load_scene("fourbar-lecture-1"), r"no link of it is elastic"),
+        (replace(fourbar(), ground={"A": (0.0, 0.0), "D": (1.35, 0.0)}), "through a change point"),
+        (replace(load_scene("fourbar-by-coupler"), elastic=fourbar().elastic),
+         "takes a driver that is a link pinned to the ground.*pin B of crank and coupler"),
+    ],
+    ids=["jump", "rigid", "change point", "inner driver"],
+)  # fmt: skip
+def test_what_is_not_followed_is_named(scene: Scene, says: str) -> None:
+    with pytest.raises(CrankcheckError, match=says):
+        _ = driven(scene, Polynomials(4), "straight", 1.0).form
+
+
+def test_times_beyond_the_end_and_endless_ones_are_refused() -> None:
+    for until_s, at_s, words in ((0.4, 0.5, r"up to 0\.4 s"), (1e4, 0.0, "50000 are the most")):
+        motion = driven(fourbar(), Polynomials(4), "quasi-static", until_s)
+        with pytest.raises(CrankcheckError, match=words):
+            motion.at(np.array([at_s]))
+    assert driven(fourbar(), Polynomials(4)).at(np.array([1e4])).elastic
+
+
+@slow("the numbers of the benchmark themselves: two seconds for a row of them")
+def test_the_linear_theory_errs_more_than_a_chain_of_four_segments() -> None:
+    told = row(load_scene("fourbar-elastic"), 5.5, (4,), (4,))
+    assert told["linear"] == pytest.approx(0.0564, abs=2e-4)
+    assert told["chain 4"] == pytest.approx(0.0497, abs=2e-4)  # 0.80 / 4^2
+    assert told["corrected 4"] < 0.2 * told["chain 4"]
+    assert told["stiffened"] < 1e-3
+    assert told["beam 4"] == pytest.approx(1.1e-3, rel=0.2)

@@ -9,72 +9,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.elastic.discretisation import (
-    Discretisation,
-    Elements,
-    Modes,
-    Segments,
-    flexible_links,
-)
+from analytic.elastic.discretisation import Discretisation, Elements, Modes, Segments
 from analytic.elastic.released import assembled, release_elastic
 from analytic.elastic.stiffness import fastest_rad_s
 from analytic.free.release import release
-from analytic.multibody.multibody_motion import MultibodyMotion
 from analytic.multibody.release_multibody import release_multibody
-from models.array import Array
-from models.elastic import ElasticLink
 from models.errors import CrankcheckError, SceneError
 from models.files import find_scene, load_scene, parse_scene
 from models.laws import ConstantSpeed
-from models.motion import Motion
 from models.scene import Scene
+from tests.analytic.elastic.driven import apart, by_multipliers, following, largest, with_elastic
 from tests.analytic.multibody.scenes import FIVE_BAR, PARALLELOGRAM, SLIDER_CRANK, scene
 from tests.worlds.tiers import slow, slowly
 
 PULSE = load_scene("fourbar-elastic-pulse")
 AXIAL_N = 200e9 * 0.01 * 0.0012
-STRIP = """
-[elastic.rod]
-flexural_n_m2 = 0.3
-damping_s = 1e-4
-"""
-
-
-def with_link(mechanism: Scene, change: Callable[[ElasticLink], ElasticLink]) -> Scene:
-    """A scene with its elastic links changed."""
-    return replace(mechanism, elastic={k: change(one) for k, one in mechanism.elastic.items()})
-
-
-AXIAL = with_link(PULSE, lambda one: replace(one, flexural_n_m2=math.inf, axial_n=AXIAL_N))
-BOTH = with_link(PULSE, lambda one: replace(one, axial_n=AXIAL_N))
+STRIP = "[elastic.rod]\nflexural_n_m2 = 0.3\ndamping_s = 1e-4\n"
+AXIAL = with_elastic(PULSE, flexural_n_m2=math.inf, axial_n=AXIAL_N)
+BOTH = with_elastic(PULSE, axial_n=AXIAL_N)
 DAMPED = scene(SLIDER_CRANK + "start_deg = 30.0\nspeed_rad_s = 12.0\n" + STRIP)
 FIVE = scene(FIVE_BAR + "[elastic.first]\nflexural_n_m2 = 2.0\n")
-
-
 METHODS = "half a second and more: other mechanisms and shapes in the same equations"
-
-
-def by_multipliers(mechanism: Scene, until_s: float, by: Discretisation) -> MultibodyMotion:
-    """By the equations with multipliers and an explicit method."""
-    return release_multibody(
-        mechanism, until_s, near=assembled(mechanism), flexible=flexible_links(mechanism, by)
-    )
-
-
-def apart(motion: Motion, other: Motion, link: str) -> float:
-    """How far two motions are from each other, each quantity over its largest."""
-    pairs = [
-        (motion.elastic[link].middle, other.elastic[link].middle),
-        (motion.elastic[link].extension, other.elastic[link].extension),
-        (motion.links[link].alpha, other.links[link].alpha),
-    ]
-    for pin, held in motion.forces.pins.items():
-        pairs += [(push, other.forces.pins[pin][body]) for body, push in held.items()]
-    return max(largest(a - b) / (largest(a) or 1.0) for a, b in pairs)
-
-
-def largest(series: Array) -> float:
-    return float(np.abs(series).max())
 
 
 @pytest.mark.parametrize(
@@ -91,10 +46,8 @@ def test_three_methods_agree(mechanism: Scene, by: Discretisation, until_s: floa
     """Collocation and Radau's method without multipliers, an explicit method with them."""
     time_s = np.linspace(0.0, until_s, 41)
     (link,) = mechanism.elastic
-    multibody = by_multipliers(mechanism, until_s, by)
-    assert (
-        apart(release_elastic(mechanism, until_s, by).at(time_s), multibody.at(time_s), link) < 1e-8
-    )
+    multibody, free = (f(mechanism, until_s, by) for f in (by_multipliers, release_elastic))
+    assert apart(free.at(time_s), multibody.at(time_s), link) < 1e-8
     early = time_s[:6]
     radau = release_elastic(mechanism, early[-1], by, method="library", tolerance=1e-9)
     assert apart(radau.at(early), multibody.at(early), link) < 1e-5
@@ -114,18 +67,9 @@ def test_what_rings_along_itself_is_followed_where_that_is_asked_for(
     """At 1e4 rad/s, by a hundredth of a micrometre; else it is left to a method that is stable."""
     time_s = np.linspace(0.0, until_s, 21)
     true = by_multipliers(mechanism, until_s, by).at(time_s).elastic["coupler"].extension
-    off = [
-        largest(
-            release_elastic(mechanism, until_s, by, tolerance=tolerance)
-            .at(time_s)
-            .elastic["coupler"]
-            .extension
-            - true
-        )
-        for tolerance in (None, 1e-15)
-    ]
-    assert off[0] < 1e-9
-    assert off[1] < 1e-4 * largest(true)
+    for tolerance, most in ((None, 1e-9), (1e-15, 1e-4 * largest(true))):
+        found = release_elastic(mechanism, until_s, by, tolerance=tolerance).at(time_s)
+        assert largest(found.elastic["coupler"].extension - true) < most
 
 
 @pytest.mark.parametrize("until_s", [1.1, slowly(1.3, reason="energy that goes by and by")])
@@ -151,15 +95,11 @@ def test_what_damping_takes_is_missing(until_s: float) -> None:
 @slow("a second and a half: shapes beside others, which driven links show in less")
 def test_modes_and_elements_agree_to_what_they_are_in_doubt_of() -> None:
     time_s = np.linspace(0.0, 0.1, 6)
-    modes = release_elastic(PULSE, 0.1, Modes(2))
-    elements = release_elastic(PULSE, 0.1, Elements(2))
-    doubt, other = modes.doubt(time_s), elements.doubt(time_s)
-    off = np.abs(
-        modes.at(time_s).elastic["coupler"].middle - elements.at(time_s).elastic["coupler"].middle
-    )
-    allowed = 2.0 * (doubt.middle_m["coupler"] + other.middle_m["coupler"]) + 1e-12
-    assert (off <= allowed).all()
-    assert allowed.max() < 0.05 * largest(modes.at(time_s).elastic["coupler"].middle)
+    both = [release_elastic(PULSE, 0.1, by) for by in (Modes(2), Elements(2))]
+    modes, elements = (each.at(time_s).elastic["coupler"].middle for each in both)
+    allowed = 2.0 * sum(each.doubt(time_s).middle_m["coupler"] for each in both) + 1e-12
+    assert (np.abs(modes - elements) <= allowed).all()
+    assert allowed.max() < 0.05 * largest(modes)
 
 
 @pytest.mark.parametrize("until_s", [0.08, slowly(0.15, reason="errors that grow with time")])
@@ -168,11 +108,9 @@ def test_a_stiff_link_moves_as_a_rigid_one(until_s: float) -> None:
     time_s = np.linspace(0.0, until_s, 6)
     rigid = release(replace(PULSE, elastic={}, start=replace(PULSE.start, shape=None)), until_s)
     true = rigid.at(time_s, bound=False).links["crank"].theta
-    off = []
+    off, flexural = [], PULSE.elastic["coupler"].flexural_n_m2
     for times in (1e2, 1e4):
-        stiff = with_link(
-            PULSE, lambda one, k=times: replace(one, flexural_n_m2=k * one.flexural_n_m2)
-        )
+        stiff = with_elastic(PULSE, flexural_n_m2=times * flexural)
         motion = release_elastic(stiff, until_s, Modes(1)).at(time_s)
         off.append(largest(motion.links["crank"].theta - true))
     assert off[1] < 0.02 * off[0] < 1e-4
@@ -197,27 +135,43 @@ def test_a_quasi_static_start_does_not_ring() -> None:
 def test_a_driven_mechanism_goes_on_with_its_speed() -> None:
     driven = load_scene("fourbar-elastic")
     driven = replace(driven, start=replace(driven.start, shape="straight"))
-    free = release_elastic(driven, 0.05, Modes(1))
-    motion = free.at(np.array([0.0, 0.05]))
+    ways, ends = (release_elastic, by_multipliers), np.array([0.0, 0.05])
+    motion, true = (way(driven, 0.05, Modes(1)).at(ends) for way in ways)
     assert motion.links["crank"].omega[0] == pytest.approx(7.3686, rel=1e-12)
-    true = by_multipliers(driven, 0.05, Modes(1)).at(np.array([0.0, 0.05]))
     assert apart(motion, true, "coupler") < 1e-8
 
 
-def test_nobody_takes_an_elastic_scene_for_a_rigid_one() -> None:
-    with pytest.raises(CrankcheckError, match="coupler bends or stretches"):
-        release(PULSE, 1.0)
-    with pytest.raises(CrankcheckError, match="coupler bends or stretches"):
-        release_multibody(PULSE, 1.0, near=assembled(PULSE))
+KINKED = scene(
+    SLIDER_CRANK + "start_deg = 30.0\n" + STRIP + '[loads.stop]\nblock = "C"\nslider = "C"\n'
+    'law = "constant"\nstroke = "forward"\nforce_n = 1.0\ndirection_deg = 180.0\n'
+)
 
 
-def test_what_can_not_start_or_be_integrated_so_says_why() -> None:
-    with pytest.raises(CrankcheckError, match="after no period"):
-        release_elastic(load_scene("fourbar-elastic"), 0.1)
-    with pytest.raises(CrankcheckError, match="free for -1 s"):
-        release_elastic(PULSE, -1.0)
-    with pytest.raises(CrankcheckError, match=r"integrated up to 0\.1 s"):
-        release_elastic(PULSE, 0.1, Modes(1)).at(np.array([0.2]))
+@pytest.mark.parametrize(
+    ("let_go", "words"),
+    [
+        (lambda: release(PULSE, 1.0), "coupler bends or stretch"),
+        (lambda: release_multibody(PULSE, 1.0, near=assembled(PULSE)), "coupler bends or stretch"),
+        (lambda: release_elastic(load_scene("fourbar-elastic"), 0.1), "after no period"),
+        (lambda: release_elastic(PULSE, -1.0), "free for -1 s"),
+        (lambda: release_elastic(PULSE, 0.1, Modes(1)).at(np.array([0.2])), r"up to 0\.1 s"),
+        (lambda: release_elastic(KINKED, 0.1, Modes(1)).at(np.zeros(1)),
+         r"loads\.stop is not smooth over the motion"),
+    ],
+    ids=["as rigid", "as rigid bodies", "no period", "no time", "too late", "a kink over it"],
+)  # fmt: skip
+def test_what_can_not_start_or_be_integrated_so_says_why(
+    let_go: Callable[[], object], words: str
+) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        let_go()
+
+
+def test_loads_with_kinks_over_the_state_are_for_the_other_form() -> None:
+    assert by_multipliers(KINKED, 0.01, Modes(1)).at(np.array([0.01]))
+
+
+def test_no_file_is_let_go_in_its_periodic_shape() -> None:
     text = find_scene("fourbar-elastic-pulse").read_text(encoding="utf-8")
     with pytest.raises(SceneError, match='found "periodic" with a driver'):
         parse_scene(text.replace('shape = "quasi-static"', 'shape = "periodic"'), "file.toml")
@@ -227,40 +181,26 @@ def test_a_link_that_others_hold_in_shape_can_start_straight_alone() -> None:
     """A third rod of a parallelogram that stretches: the others leave it no length of its own."""
     text = PARALLELOGRAM + "SHAPE[elastic.spare]\nbends = false\nstretches = true\naxial_n = 2e3\n"
     straight = scene(text.replace("SHAPE", 'shape = "straight"\n'))
-    motion = release_elastic(straight, 0.1, Modes(0, 1)).at(np.array([0.0, 0.1]))
-    other = by_multipliers(straight, 0.1, Modes(0, 1)).at(np.array([0.0, 0.1]))
+    ways, ends = (release_elastic, by_multipliers), np.array([0.0, 0.1])
+    motion, other = (way(straight, 0.1, Modes(0, 1)).at(ends) for way in ways)
     assert motion.links["crank"].theta == pytest.approx(other.links["crank"].theta, rel=1e-10)
     assert largest(motion.elastic["spare"].extension) < 1e-14
     with pytest.raises(CrankcheckError, match="its joints hold spare in shape"):
         release_elastic(scene(text.replace("SHAPE", "")), 0.1, Modes(0, 1))
 
 
-def test_loads_with_kinks_over_the_state_are_for_the_other_form() -> None:
-    kinked = scene(
-        SLIDER_CRANK + "start_deg = 30.0\n" + STRIP + '[loads.stop]\nblock = "C"\nslider = "C"\n'
-        'law = "constant"\nstroke = "forward"\nforce_n = 1.0\ndirection_deg = 180.0\n'
-    )
-    with pytest.raises(CrankcheckError, match=r"loads\.stop is not smooth over the motion"):
-        release_elastic(kinked, 0.1, Modes(1)).at(np.zeros(1))
-    assert by_multipliers(kinked, 0.01, Modes(1)).at(np.array([0.01]))
-
-
 def test_next_to_its_start_and_its_end_it_goes_on_as_it_does_there() -> None:
     """What an engine with velocities of half a step later, or before, is held to."""
     motion, longer = (release_elastic(PULSE, until_s, Modes(2)) for until_s in (0.1, 0.2))
     after = np.array([0.1003])
-    ours, theirs = motion.outside(after), longer.at(after)
-    assert apart(ours, theirs, "coupler") < 1e-5
-    rest, before = motion.at(np.zeros(1)), motion.outside(np.array([-1e-3]))
-    alpha = rest.links["crank"].alpha[0]
-    assert before.links["crank"].omega[0] == pytest.approx(
-        rest.links["crank"].omega[0] - 1e-3 * alpha, abs=1e-3
-    )
+    assert apart(motion.outside(after), longer.at(after), "coupler") < 1e-5
+    rest = motion.at(np.zeros(1)).links["crank"]
+    before = motion.outside(np.array([-1e-3])).links["crank"]
+    assert before.omega == pytest.approx(rest.omega - 1e-3 * rest.alpha, abs=1e-3)
 
 
 def test_its_fastest_frequency_is_that_of_what_nothing_holds() -> None:
     """A light crank gives way: it is higher than with one that is held."""
-    law = ConstantSpeed(PULSE.driver.law.start_rad, 1.0)  # type: ignore[attr-defined]
-    held = replace(PULSE, driver=replace(PULSE.driver, law=law))
+    held = following(PULSE, ConstantSpeed(PULSE.driver.law.offset_rad, 1.0))
     for by in (Modes(2), Segments(4)):
         assert fastest_rad_s(held, by) < fastest_rad_s(PULSE, by) < 1.2 * fastest_rad_s(held, by)
