@@ -136,14 +136,13 @@ def test_workers_with_other_packages_are_refused(
 ) -> None:
     def there(_: object, cells: Sequence[Cell], *__: object) -> Iterator[tuple[int, object]]:
         found = measured(cells[0], False)
-        row = {**found.row, **{k: v for k, v in change.items() if k != "crankcheck"}}
+        row = {k: change.get(k, v) for k, v in found.row.items()}
         yield 0, replace(found, row=row, crankcheck=change.get("crankcheck", found.crankcheck))
 
     dask(monkeypatch, Cluster())
     monkeypatch.setattr("reports.sweep.running.on_cluster", there)
     options = ("--engine", "pymunk", "--profile", "tuned", "--no-timing", "-o", str(tmp_path / "s"))
-    asked = ["sweep", GRID[0], "--steps-per-turn", "90", "--dask", "tcp://there:1", *options]
-    done = crank(*asked)
+    done = crank("sweep", GRID[0], "--steps-per-turn", "90", "--dask", "tcp://there:1", *options)
     assert done.exit_code == (2 if words else 0)
     assert re.search(words, " ".join(done.output.split()))
     if not words:
@@ -154,9 +153,7 @@ def test_workers_with_other_packages_are_refused(
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """Where a scheduler with two workers is."""
     pytest.importorskip("distributed", reason="pip install 'crankcheck[dask]'")
-    address = nowhere()
-    port = address.rpartition(":")[2]
-    folder = tmp_path_factory.mktemp("cluster")
+    address, folder = nowhere(), tmp_path_factory.mktemp("cluster")
     wait = f"import distributed; distributed.Client({address!r}).wait_for_workers(2, 600)"
     with programs() as start:
 
@@ -164,7 +161,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
             command = (PYTHON, "-P", "-m", "dask", *arguments, "--no-dashboard")
             start(*command, output=subprocess.DEVNULL)
 
-        begin("scheduler", "--host", "127.0.0.1", "--port", port)
+        begin("scheduler", "--host", "127.0.0.1", "--port", address.rpartition(":")[2])
         for _ in range(2):
             begin("worker", address, "--nthreads", "1", "--local-directory", str(folder))
         subprocess.run([PYTHON, "-W", "ignore", "-c", wait], check=True)
@@ -191,8 +188,7 @@ def test_a_cluster_gives_the_same_rows_bit_by_bit(
         stores.append(read_store(tmp_path / name).cells.set_index("key").sort_index())
     here, there = stores
     assert len(here) == 2 * 8 * 2
-    assert set(here.run_on) == {"local"}
-    assert set(there.run_on) == {"cluster"}
+    assert ({*here.run_on}, {*there.run_on}) == ({"local"}, {"cluster"})
     names = [name for name in here.columns if name not in BY_CHANCE]
     pd.testing.assert_frame_equal(here[names], there[names], check_exact=True)
 

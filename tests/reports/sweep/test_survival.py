@@ -120,10 +120,10 @@ def test_a_killed_sweep_goes_on_where_it_was(
 
 
 def test_a_third_run_finds_everything_there(whole: Stored) -> None:
-    before = sorted(path.stat().st_mtime_ns for path in whole.folder.glob("*/*.parquet"))
+    parts = {path: path.stat().st_mtime_ns for path in whole.folder.glob("*/*.parquet")}
     assert counted(whole.folder, "--no-timing") == (NUMBER, 0, NUMBER, 0)
-    assert before
-    assert sorted(path.stat().st_mtime_ns for path in whole.folder.glob("*/*.parquet")) == before
+    assert parts
+    assert {path: path.stat().st_mtime_ns for path in whole.folder.glob("*/*.parquet")} == parts
 
 
 @slow("a signal to a process with children: `make test` stops a sweep in its own")
@@ -136,8 +136,7 @@ def test_ctrl_c_keeps_what_is_done(
     """The cell that was about to be kept, too; where its timing starts there is no child."""
     stopped = begun(programs, tmp_path, moment, signal.SIGINT)
     _, err = stopped.communicate()
-    assert stopped.returncode == 130
-    assert err.splitlines()[-2:] == KEPT
+    assert (stopped.returncode, err.splitlines()[-2:]) == (130, KEPT)
     assert "Traceback" not in err
     if kept < NUMBER:
         children_end(tmp_path)
@@ -163,14 +162,11 @@ def test_ctrl_c_keeps_the_timings_of_the_blocks_before(
     with in_this_process() as patch:
         patch.setattr("reports.sweep.running.timed_in_turns", second_stops)
         done = crank("sweep", *GRID, *STEPS, "-o", tmp_path / "store")
-    assert done.exit_code == 130
-    assert done.stderr.splitlines()[-2:] == KEPT
+    assert (done.exit_code, done.stderr.splitlines()[-2:]) == (130, KEPT)
     assert blocks == [3, 3]
     timed = read_store(tmp_path / "store").cells.dropna(subset="us_per_step")
-    assert list(timed.us_per_step) == [2.0] * 3
-    assert list(timed.us_per_step_a) == [2.0] * 3
-    assert list(timed.us_per_step_b) == [2.25] * 3
-    assert list(timed.us_per_step_median) == [2.375] * 3
+    us = timed[["us_per_step", "us_per_step_a", "us_per_step_b", "us_per_step_median"]]
+    assert us.to_numpy().tolist() == [[2.0, 2.0, 2.25, 2.375]] * 3
     assert list(timed.s_per_turn) == pytest.approx(list(2e-6 * timed.steps_per_turn))
     assert counted(tmp_path / "store") == (NUMBER, 0, NUMBER, NUMBER - 3)
 
@@ -186,8 +182,7 @@ def test_ctrl_c_keeps_the_cells_before(tmp_path: Path, monkeypatch: pytest.Monke
 
     monkeypatch.setattr(running, "measured", third_stops)
     done = crank_alone("sweep", *GRID, *STEPS, "-o", tmp_path / "store")
-    assert done.exit_code == 130
-    assert done.stderr.splitlines()[-2:] == KEPT
+    assert (done.exit_code, done.stderr.splitlines()[-2:]) == (130, KEPT)
     assert len(read_store(tmp_path / "store").cells) == 2
     monkeypatch.setattr(running, "measured", real)
     assert counted(tmp_path / "store") == (NUMBER, NUMBER - 2, 2, NUMBER)
@@ -208,6 +203,5 @@ def test_two_sweeps_into_one_folder_do_not_mix(programs: Start, tmp_path: Path) 
     first.send_signal(signal.SIGTERM)
     first.send_signal(signal.SIGCONT)
     first.communicate()
-    assert second.returncode == 2
+    assert (first.returncode, second.returncode) == (143, 2)
     assert "another sweep writes there now" in err
-    assert first.returncode == 143
