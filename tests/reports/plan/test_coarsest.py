@@ -44,34 +44,23 @@ def test_takes_the_fewest_steps_allowed_where_all_reach_the_target() -> None:
     assert look(lambda n: 1e-9, 1.0)[0] == LEAST
 
 
-def test_gives_up_at_a_floor_long_before_the_finest_step() -> None:
+def test_gives_up_at_a_floor_long_before_the_finest_step_and_where_that_is_too_coarse() -> None:
     steps, errors = look(lambda n: 1e-3 + 1.0 / n**2, 1e-6)
     assert steps is None
     assert max(errors) < MOST
     assert min(errors.values()) == pytest.approx(1e-3, rel=1e-3)
-
-
-def test_gives_up_where_the_finest_step_allowed_is_too_coarse() -> None:
     steps, errors = look(lambda n: (9000 / n) ** 2, 1.0, most=5000)
     assert steps is None
     assert errors[5000] == min(errors.values()) == pytest.approx(3.24)
 
 
 def test_does_not_take_a_step_at_which_errors_happen_to_cancel() -> None:
-    def dip(n: int) -> float:
-        return (2000 / n) ** 2 * (1e-3 if 150 <= n <= 170 else 1.0)
-
-    steps, _ = look(dip, 1.0, start=160)
+    steps, _ = look(lambda n: (2000 / n) ** 2 * (1e-3 if 150 <= n <= 170 else 1.0), 1.0)
     assert 2000 <= steps <= 2000 * RESOLUTION
 
 
-def test_does_not_take_settings_that_break_at_finer_steps() -> None:
-    def breaks(n: int) -> float:
-        return math.nan if n > 300 else (200 / n) ** 2
-
-    assert look(breaks, 1.0)[0] is None
-
-
 def test_counts_runs_that_came_apart_as_infinitely_wrong() -> None:
+    """Also where they do at finer steps."""
+    assert look(lambda n: math.nan if n > 300 else (200 / n) ** 2, 1.0)[0] is None
     steps, _ = look(lambda n: math.nan if n < 700 else (500 / n) ** 2, 1.0)
     assert 700 <= steps <= 701 * RESOLUTION

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +14,7 @@ from models.errors import CrankcheckError
 from models.files import load_scene, shipped
 from models.laws import Oscillating
 from reports.plan.singular import passage_note, refuse_singular
-from tests.worlds.command_line import crank
+from tests.worlds.command_line import crank, refused
 
 Edit = Callable[..., str]
 
@@ -46,14 +45,10 @@ def test_verify_refuses_a_run_through_a_singular_position_also_between_two_sampl
     edited: Edit, monkeypatch: pytest.MonkeyPatch, start: str
 ) -> None:
     monkeypatch.setattr("reports.cli.commands.verify.check_all", None)  # no engine may run
-    path = edited(
-        "fourbar-lecture-1", RHOMBUS, NEARLY, ("start_deg = 90.0", f"start_deg = {start}")
-    )
-    result = crank("verify", path, "--steps-per-turn", "360")
-    assert result.exit_code == 2
-    text = " ".join(result.stderr.split())
-    for part in ("fourbar-lecture-1", "driver 360 deg", "dyad of C", "not determined", "choose"):
-        assert part in text
+    turned = ("start_deg = 90.0", f"start_deg = {start}")
+    path = edited("fourbar-lecture-1", RHOMBUS, NEARLY, turned)
+    words = ("fourbar-lecture-1", "driver 360 deg", "dyad of C", "not determined", "choose")
+    refused(crank("verify", path, "--steps-per-turn", "360"), *words)
 
 
 def test_a_run_that_ends_before_the_singular_position_is_free_to_go(edited: Edit) -> None:
@@ -66,13 +61,12 @@ def test_a_run_that_ends_before_the_singular_position_is_free_to_go(edited: Edit
 
 def test_a_swing_through_a_singular_position_is_refused(edited: Edit) -> None:
     """The lines of the two blocks are parallel at 90 deg: the crossing runs to infinity."""
-    path = edited("tangent", ("amplitude_deg = 40.0", "amplitude_deg = 100.0"))
-    scene = load_scene(path)
+    scene = load_scene(edited("tangent", ("amplitude_deg = 40.0", "amplitude_deg = 100.0")))
     with pytest.raises(CrankcheckError, match="90 deg the dyad of P"):
         refuse_singular(scene, scene.driver.law.period_s)
 
 
-def test_a_limit_position_is_no_change_point(edited: Edit) -> None:
+def test_a_limit_position_is_no_change_point() -> None:
     scene = load_scene("fourbar-double-rocker")
     low, high = reach(scene)[-1]
     swing = Oscillating(0.5 * (low + high), 0.5 * (high - low), 1.0)
@@ -127,9 +121,7 @@ def test_near_is_not_at(edited: Edit) -> None:
 
 
 def test_solve_shows_a_dash_for_the_rates_of_a_singular_position_and_names_it(edited: Edit) -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        result = crank("solve", edited("fourbar-lecture-1", RHOMBUS, NEARLY))
+    result = crank("solve", edited("fourbar-lecture-1", RHOMBUS, NEARLY))
     assert result.exit_code == 0
     assert "singular at 360 deg (C)" in result.output
     assert "rates are not determined there" in result.output
@@ -140,9 +132,7 @@ def test_solve_shows_a_dash_for_the_rates_of_a_singular_position_and_names_it(ed
 
 @pytest.mark.parametrize("args", [[], ["--at-deg", "180"]])
 def test_solve_goes_through_a_change_point_and_says_so(edited: Edit, args: list[str]) -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        result = crank("solve", edited("fourbar-lecture-1", RHOMBUS), *args)
+    result = crank("solve", edited("fourbar-lecture-1", RHOMBUS), *args)
     assert result.exit_code == 0
     assert "continued smoothly through the change point" in result.output
     assert "singular at" not in result.output
