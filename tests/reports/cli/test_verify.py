@@ -1,4 +1,5 @@
-"""`crankcheck verify` from the command line: verdict, table, files, and every mistake."""
+"""`crankcheck verify` from the command line: verdict, table, files, baselines. More of what it
+tells is in `test_told.py`, mistakes are in `test_refusals.py`."""
 
 from __future__ import annotations
 
@@ -14,147 +15,25 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError, EngineError
-from models.files import scene_texts, shipped
+from models.files import shipped
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands import verify as command
 from reports.judge.rules import RULES
-from tests.worlds.command_line import crank, crank_alone, refused
+from tests.worlds.command_line import crank, crank_alone, flat, refused, told
 from tests.worlds.tiers import slowly
 
-FAST = ["--steps-per-turn", "360", "--turns", "1", "--no-convergence"]
-ONE = ["verify", "fourbar-lecture-1", *FAST]
+FAST = "--steps-per-turn 360 --turns 1 --no-convergence"
+ONE = f"verify fourbar-lecture-1 {FAST}"
+MUJOCO = f"{ONE} --engine mujoco"
 
 
-def test_a_scene_within_tolerance_ends_with_0() -> None:
-    result = crank(*ONE, "--engine", "mujoco", "--profile", "tuned")
-    assert result.exit_code == 0
-    assert "WITHIN TOLERANCE: 1 cell (1 scene x 1 engine)" in result.output
-    assert "mujoco 4" in " ".join(result.output.split())
+def raising(error: BaseException) -> Callable[..., object]:
+    """A function that does nothing else."""
 
+    def raises(*_: object, **__: object) -> object:
+        raise error
 
-def test_a_scene_out_of_tolerance_ends_with_1_failures_first_with_their_cure() -> None:
-    result = crank(*ONE, "--engine", "mujoco", "--profile", "tuned", "--tol", "angle=1e-12")
-    assert result.exit_code == 1
-    assert "OUT OF TOLERANCE: 1 of 1 cell (1 scene x 1 engine)" in result.output
-    head, _, _ = result.output.partition("profile tuned")
-    assert "CC103 angle" in head
-    assert "limit 1e-12 rad (--tol)" in " ".join(head.split())
-    assert "cure:" in head
-
-
-def test_by_default_as_shipped_is_shown_and_does_not_count() -> None:
-    result = crank(*ONE, "--engine", "mujoco")
-    assert result.exit_code == 0
-    assert "profile tuned (gated)" in result.output
-    assert "profile as-shipped (shown, not gated)" in result.output
-    assert "OUT fourbar-lecture-1" in result.output
-
-
-def test_a_profile_that_is_named_is_gated() -> None:
-    result = crank(*ONE, "--engine", "mujoco", "--profile", "as-shipped")
-    assert result.exit_code == 1
-    assert "profile as-shipped (gated)" in result.output
-
-
-@pytest.mark.parametrize(
-    "dt", ["1e-3", slowly("1e-4", reason="a finer step, which mends what is no floor")]
-)
-def test_the_table_says_that_mujoco_as_shipped_does_not_shrink(dt: str) -> None:
-    shipped = ("--engine", "mujoco", "--profile", "as-shipped")
-    result = crank("verify", "fourbar-lecture-1", *shipped, "--dt", dt, "--turns", 1)
-    assert result.exit_code == 1
-    assert "does not shrink" in result.output.partition("profile as-shipped")[2]
-
-
-def test_no_line_is_wider_than_a_hundred_columns() -> None:
-    result = crank("verify", "slider-crank-excel-350", "--turns", "1")
-    assert max(len(line.rstrip()) for line in result.output.splitlines()) <= 100
-    assert "slider-crank-excel-350" in result.output.partition("profile tuned")[2]
-
-
-def test_a_scene_may_be_a_path(tmp_path: Path) -> None:
-    path = tmp_path / "mine.toml"
-    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
-    path.write_text(text.replace('"fourbar-lecture-1"', '"mine"'), encoding="utf-8")
-    result = crank("verify", str(path), *FAST, "--engine", "mujoco")
-    assert result.exit_code == 0
-    assert "mine" in result.output
-
-
-def test_all_files_of_a_folder_are_written_and_hold_the_same_cells(tmp_path: Path) -> None:
-    folder = tmp_path / "out"
-    assert crank(*ONE, "-o", str(folder), "--engine", "mujoco").exit_code == 0
-    assert sorted(path.name for path in folder.iterdir()) == [
-        "errors.parquet",
-        "verify.csv",
-        "verify.json",
-        "verify.junit.xml",
-    ]
-    cells = pd.read_csv(folder / "verify.csv")
-    assert cells["profile"].tolist() == ["tuned", "as-shipped"]
-    stored = json.loads((folder / "verify.json").read_text())
-    assert [cell["verdict"] for cell in stored["cells"]] == ["within", "out"]
-    assert stored["cells"][0]["angle_error_rad"] == pytest.approx(cells["angle_error_rad"][0])
-    assert {f["rule"] for f in stored["cells"][0]["findings"]} <= set(RULES)
-    long = pd.read_parquet(folder / "errors.parquet")
-    rocker = long.query("profile == 'tuned' and body == 'rocker' and quantity == 'angle'")
-    assert set(rocker["kind"]) == {"total", "geometric"}
-    assert rocker["maximum"].max() <= cells["angle_error_rad"][0] * (1 + 1e-12)
-    suite = Xml.fromstring((folder / "verify.junit.xml").read_text())
-    assert [case.get("name") for case in suite.iter("testcase")] == ["fourbar-lecture-1"] * 2
-
-
-def test_a_second_run_replaces_the_files_of_the_first(tmp_path: Path) -> None:
-    for tolerance in ("1e-12", "1e-1"):
-        crank(*ONE, "-o", str(tmp_path), "--engine", "mujoco", "--tol", f"angle={tolerance}")
-    cells = pd.read_csv(tmp_path / "verify.csv")
-    assert cells["verdict"][0] == "within"
-    assert len(list(tmp_path.iterdir())) == 4
-
-
-def test_junit_names_the_failure_and_skips_what_is_not_gated(tmp_path: Path) -> None:
-    path = tmp_path / "j.xml"
-    result = crank(*ONE, "--engine", "mujoco", "--tol", "angle=1e-12", "--junit", str(path))
-    assert result.exit_code == 1
-    (suite,) = Xml.fromstring(path.read_text())
-    times = [float(case.get("time", "nan")) for case in suite.iter("testcase")]
-    assert all(each > 0.0 for each in times)
-    assert float(suite.get("time", "nan")) == pytest.approx(sum(times), abs=2e-3)
-    assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("2", "1", "1")
-    failure = suite.find("testcase/failure")
-    assert failure.get("type") == "CC103"
-    assert "cure" in (failure.text or "")
-
-
-def test_outputs_are_written_even_when_out_of_tolerance(tmp_path: Path) -> None:
-    path = tmp_path / "cells.csv"
-    result = crank(*ONE, "--engine", "pymunk", "--tol", "drive=1e-30", "--csv", str(path))
-    assert result.exit_code == 1
-    assert "CC102" in pd.read_csv(path)["failed_rules"][0]
-
-
-def test_a_disk_that_fills_up_costs_the_file_and_not_the_table(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def full(self: Path, target: Path) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(Path, "replace", full)
-    result = crank(*ONE, "--engine", "mujoco", "--csv", str(tmp_path / "cells.csv"))
-    assert "WITHIN TOLERANCE" in result.output
-    refused(result, "cells.csv: can not be written: No space left on device; free some space")
-
-
-def test_an_engine_that_is_not_installed_names_the_command_that_installs_it(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    import reports.plan.chosen as names
-
-    def missing(name: str) -> object:
-        raise EngineError(f"engine {name}: not installed; pip install {name}")
-
-    monkeypatch.setattr(names, "engine", missing)
-    refused(crank(*ONE), "engine mujoco: not installed", "pip install mujoco")
+    return raises
 
 
 def edited(tmp_path: Path, name: str, *changes: tuple[str, str]) -> Path:
@@ -168,9 +47,85 @@ def edited(tmp_path: Path, name: str, *changes: tuple[str, str]) -> Path:
     return path
 
 
+def test_out_of_tolerance_ends_with_1_failures_first_with_their_cure_in_every_output(
+    tmp_path: Path,
+) -> None:
+    junit, csv = tmp_path / "j.xml", tmp_path / "cells.csv"
+    output = told(f"{MUJOCO} --tol angle=1e-12", "--junit", junit, "--csv", csv, code=1)
+    assert "OUT OF TOLERANCE: 1 of 1 cell (1 scene x 1 engine)" in output
+    head = flat(output.partition("profile tuned")[0])
+    parts = ("CC103 angle", "limit 1e-12 rad (--tol)", "cure:")
+    assert [part for part in parts if part not in head] == []
+    assert "CC103" in pd.read_csv(csv)["failed_rules"][0]
+    (suite,) = Xml.fromstring(junit.read_text())
+    times = [float(case.get("time", "nan")) for case in suite.iter("testcase")]
+    assert all(each > 0.0 for each in times)
+    assert float(suite.get("time", "nan")) == pytest.approx(sum(times), abs=2e-3)
+    # What is not gated is skipped.
+    assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("2", "1", "1")
+    failure = suite.find("testcase/failure")
+    assert failure.get("type") == "CC103"
+    assert "cure" in (failure.text or "")
+
+
+@pytest.mark.parametrize(
+    "dt", ["1e-3", slowly("1e-4", reason="a finer step, which mends what is no floor")]
+)
+def test_the_table_says_that_mujoco_as_shipped_does_not_shrink(dt: str) -> None:
+    line = "verify fourbar-lecture-1 --engine mujoco --profile as-shipped --turns 1 --dt"
+    assert "does not shrink" in told(line, dt, code=1).partition("profile as-shipped")[2]
+
+
+def test_no_line_is_wider_than_a_hundred_columns() -> None:
+    output = told("verify slider-crank-excel-350 --turns 1")
+    assert max(len(line.rstrip()) for line in output.splitlines()) <= 100
+    assert "slider-crank-excel-350" in output.partition("profile tuned")[2]
+
+
+def test_all_files_of_a_folder_hold_the_same_cells_of_the_last_run(tmp_path: Path) -> None:
+    """Of a scene in a file, which a first run had out of tolerance."""
+    folder = tmp_path / "out"
+    path = edited(tmp_path, "fourbar-lecture-1", ('"fourbar-lecture-1"', '"mine"'))
+    line = f"verify {FAST} --engine mujoco"
+    told(line, path, "-o", folder, "--tol", "angle=1e-12", code=1)
+    assert "mine" in told(line, path, "-o", folder)
+    names = ["errors.parquet", "verify.csv", "verify.json", "verify.junit.xml"]
+    assert sorted(path.name for path in folder.iterdir()) == names
+    cells = pd.read_csv(folder / "verify.csv")
+    assert cells["profile"].tolist() == ["tuned", "as-shipped"]
+    stored = json.loads((folder / "verify.json").read_text())
+    assert [cell["verdict"] for cell in stored["cells"]] == ["within", "out"]
+    assert cells["verdict"].tolist() == ["within", "out"]
+    assert stored["cells"][0]["angle_error_rad"] == pytest.approx(cells["angle_error_rad"][0])
+    assert {f["rule"] for f in stored["cells"][0]["findings"]} <= set(RULES)
+    long = pd.read_parquet(folder / "errors.parquet")
+    rocker = long.query("profile == 'tuned' and body == 'rocker' and quantity == 'angle'")
+    assert set(rocker["kind"]) == {"total", "geometric"}
+    assert rocker["maximum"].max() <= cells["angle_error_rad"][0] * (1 + 1e-12)
+    suite = Xml.fromstring((folder / "verify.junit.xml").read_text())
+    assert [case.get("name") for case in suite.iter("testcase")] == ["mine"] * 2
+
+
+def test_a_disk_that_fills_up_costs_the_file_and_not_the_table(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Path, "replace", raising(OSError(28, "No space left on device")))
+    result = crank(*MUJOCO.split(), "--csv", tmp_path / "cells.csv")
+    assert "WITHIN TOLERANCE" in result.output
+    refused(result, "cells.csv: can not be written: No space left on device; free some space")
+
+
+def test_an_engine_that_is_not_installed_names_the_command_that_installs_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    missing = EngineError("engine mujoco: not installed; pip install mujoco")
+    monkeypatch.setattr("reports.plan.chosen.engine", raising(missing))
+    refused(crank(*ONE.split()), "engine mujoco: not installed", "pip install mujoco")
+
+
 def test_two_files_with_one_name_are_refused(tmp_path: Path) -> None:
     path = edited(tmp_path, "fourbar-crossed", ('"fourbar-crossed"', '"fourbar-lecture-1"'))
-    refused(crank(*ONE, path), "a second scene called fourbar-lecture-1", "rename one")
+    refused(crank(*ONE.split(), path), "a second scene called fourbar-lecture-1", "rename one")
 
 
 LIMIT = ("[driver]", "[tolerance]\nangel = 1e-3\n[driver]")
@@ -194,34 +149,28 @@ def test_a_fault_of_the_scene_is_told_before_anything_runs(
 
 def test_a_massless_link_is_refused_by_the_engine_that_needs_its_mass(tmp_path: Path) -> None:
     massless = ("length_m = 0.25", "length_m = 0.25, mass_kg = 0.0")
-    result = crank("verify", edited(tmp_path, "fourbar-lecture-1", massless), *FAST)
+    result = crank("verify", edited(tmp_path, "fourbar-lecture-1", massless), *FAST.split())
     refused(result, "coupler", "mass_kg")
     assert "unsupported" in result.output
 
 
 def test_ctrl_c_ends_with_130_and_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(*_: object) -> object:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(command, "check_all", interrupted)
-    result = crank(*ONE)
+    monkeypatch.setattr(command, "check_all", raising(KeyboardInterrupt()))
+    result = crank(*ONE.split())
     assert result.exit_code == 130
     assert result.stderr.splitlines() == ["crankcheck: interrupted"]
+
+
+NO_MASS = EngineError("mujoco: coupler has no mass; give it a mass_kg")
 
 
 def test_a_scene_that_no_engine_can_hold_is_a_row_and_exit_2(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    import reports.judge.cell as cell
-
-    def refuse(*_: object, **__: object) -> object:
-        raise EngineError("mujoco: coupler has no mass; give it a mass_kg")
-
-    monkeypatch.setattr(cell, "run", refuse)
-    result = crank(*ONE, "--engine", "mujoco", "--profile", "tuned")
-    assert result.exit_code == 2
-    assert "coupler has no mass" in " ".join(result.output.split())
-    assert "NONE fourbar-lecture-1" in result.output
+    monkeypatch.setattr("reports.judge.cell.run", raising(NO_MASS))
+    output = told(f"{MUJOCO} --profile tuned", code=2)
+    assert "coupler has no mass" in flat(output)
+    assert "NONE fourbar-lecture-1" in output
 
 
 Verify = Callable[..., tuple[int, str]]
@@ -250,20 +199,27 @@ def plant(folder: Path, column: str, factor: float) -> None:
     cells.to_csv(folder / "verify.csv", index=False)
 
 
-def test_a_run_as_good_as_its_baseline_ends_with_0(against: Verify, tmp_path: Path) -> None:
+def test_a_run_as_good_as_its_baseline_ends_with_0_unless_it_is_out_of_tolerance(
+    against: Verify, tmp_path: Path
+) -> None:
     against(folder=tmp_path)
     code, text = against(baseline=tmp_path)
     assert code == 0
     verdict, _, diff = text.partition("NOT WORSE: 0 worse, 0 better, 1 equal, 0 new, 0 missing")
     assert "WITHIN TOLERANCE" in verdict
     assert f"old: {tmp_path}" in "".join(diff.splitlines())
+    code, text = against(baseline=tmp_path, tolerance=("angle=1e-12",))
+    assert code == 1
+    assert "OUT OF TOLERANCE" in text
+    assert "NOT WORSE" in text
 
 
 def test_a_run_worse_than_its_baseline_ends_with_1_though_within(
     against: Verify, tmp_path: Path
 ) -> None:
     against(folder=tmp_path)
-    plant(tmp_path, "gap_pure", 1 / 1.2)
+    cells = pd.read_csv(tmp_path / "verify.csv")
+    cells.assign(gap_pure=cells["gap_pure"] / 1.2).to_csv(tmp_path / "verify.csv", index=False)
     code, text = against(baseline=tmp_path, junit=tmp_path / "j.xml")
     assert code == 1
     assert "WITHIN TOLERANCE" in text
@@ -272,23 +228,8 @@ def test_a_run_worse_than_its_baseline_ends_with_1_though_within(
     own, diff = Xml.fromstring((tmp_path / "j.xml").read_text(encoding="utf-8"))
     assert [suite.get("failures") for suite in (own, diff)] == ["0", "1"]
     assert ["gap" in failure.get("message", "") for failure in diff.iter("failure")] == [True]
-
-
-def test_the_baseline_does_not_excuse_what_is_out_of_tolerance(
-    against: Verify, tmp_path: Path
-) -> None:
-    against(folder=tmp_path)
-    code, text = against(baseline=tmp_path, tolerance=("angle=1e-12",))
-    assert code == 1
-    assert "OUT OF TOLERANCE" in text
-    assert "NOT WORSE" in text
-
-
-def test_the_baseline_may_be_the_folder_that_is_written(against: Verify, tmp_path: Path) -> None:
-    against(folder=tmp_path)
-    plant(tmp_path, "gap_pure", 1 / 1.2)
-    assert against(baseline=tmp_path, folder=tmp_path)[0] == 1
-    assert against(baseline=tmp_path, folder=tmp_path)[0] == 0, "it is the new run by now"
+    # The baseline may be the folder that is written, and is the new run then.
+    assert [against(baseline=tmp_path, folder=tmp_path)[0] for _ in range(2)] == [1, 0]
 
 
 def test_only_what_is_run_now_is_compared(against: Verify, tmp_path: Path) -> None:
@@ -301,13 +242,8 @@ def test_only_what_is_run_now_is_compared(against: Verify, tmp_path: Path) -> No
 def test_an_engine_that_can_not_run_ends_with_2_beside_its_diff(
     against: Verify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    import reports.judge.cell as cell
-
-    def refuse(*_: object, **__: object) -> object:
-        raise EngineError("mujoco: coupler has no mass; give it a mass_kg")
-
     against(folder=tmp_path)
-    monkeypatch.setattr(cell, "run", refuse)
+    monkeypatch.setattr("reports.judge.cell.run", raising(NO_MASS))
     code, text = against(baseline=tmp_path)
     assert code == 2
     assert "status" in text.partition("WORSE: 1 worse")[2]
@@ -316,9 +252,7 @@ def test_an_engine_that_can_not_run_ends_with_2_beside_its_diff(
 def test_a_scene_that_changed_since_the_baseline_is_refused(
     against: Verify, tmp_path: Path
 ) -> None:
-    scene = tmp_path / "mine.toml"
-    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
-    scene.write_text(text.replace("0.25", "0.26"), encoding="utf-8")
+    scene = edited(tmp_path, "fourbar-lecture-1", ("0.25", "0.26"))
     against(folder=tmp_path)
     with pytest.raises(CrankcheckError, match="every scene of both changed in between"):
         against(baseline=tmp_path, scenes=(str(scene),))
@@ -339,13 +273,9 @@ def test_a_bad_baseline_is_refused_before_the_run(
 
 
 def test_a_failing_cell_is_told_what_was_tried_and_a_sweep_takes_it(tmp_path: Path) -> None:
-    text = scene_texts(["slider-crank-offset"])["slider-crank-offset"]
-    path = tmp_path / "heavy.toml"
-    path.write_text(text.replace("mass_kg = 0.5", "mass_kg = 3e3"))
-    steps = ["--steps-per-turn", "360", "--turns", "1", "--engine", "mujoco"]
-    done = crank("verify", str(path), "--profile", "tuned", *steps)
-    assert done.exit_code == 1
-    told = re.findall(r"cure: Tried at the same step: sweep (--set) (\S+) ", done.output)
-    assert len(told) == 1, done.output
-    out = ["--no-timing", "-o", str(tmp_path / "out")]
-    assert crank_alone("sweep", path, *steps, *told[0], *out).exit_code == 0
+    path = edited(tmp_path, "slider-crank-offset", ("mass_kg = 0.5", "mass_kg = 3e3"))
+    steps = "--steps-per-turn 360 --turns 1 --engine mujoco"
+    output = told(f"verify {steps} --profile tuned", path, code=1)
+    ((option, setting),) = re.findall(r"cure: Tried at the same step: sweep (--set) (\S+) ", output)
+    out = ["--no-timing", "-o", tmp_path / "out"]
+    assert crank_alone("sweep", path, *steps.split(), option, setting, *out).exit_code == 0

@@ -1,0 +1,170 @@
+"""`--forces` and `--free` of verify, sweep, stability and selftest from the command line."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from models.errors import CrankcheckError
+from models.files import load_scene, scene_texts
+from models.scene_text import scene_text
+from reports.cli.checking import VerifyRequest
+from reports.cli.commands.verify import plan
+from reports.stability.matrix import FILE, Graded, Matrix, read_matrix, to_json
+from reports.store.reader import read_store
+from sim import registry
+from tests.worlds.command_line import crank, crank_alone, flat, refused, told
+
+SCENE, SWING = "fourbar-lecture-1", "fourbar-swing"
+ONCE = f"verify {SCENE} --jobs 1 --steps-per-turn 180 --turns 1 --profile tuned"
+MUJOCO = f"{ONCE} --no-convergence --engine mujoco"
+FREE = f"verify {SWING} --duration 0.1 --jobs 1 --profile tuned"
+
+
+def swept(line: str, store: Path) -> str:
+    result = crank_alone("sweep", *line.split(), "--no-timing", "--jobs", "1", "-o", store)
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def shown(store: Path) -> tuple[pd.DataFrame, str]:
+    """The cells of a store that can be compared, and its page."""
+    told("report", store, "-o", store / "page.html")
+    told("diff", store, store)
+    return read_store(store).cells, (store / "page.html").read_text()
+
+
+def test_verify_has_a_table_of_forces_of_its_own(tmp_path: Path) -> None:
+    asked = told(f"{MUJOCO} --forces -o", tmp_path)
+    plain = told(f"{MUJOCO} -o", tmp_path / "plain")
+    assert "forces, profile tuned (gated)" in flat(asked)
+    assert "F largest reaction, M largest torque" in flat(asked)
+    assert "forces" not in plain
+    assert asked.splitlines()[:5] == plain.splitlines()[:5]
+    cells, bare = (pd.read_csv(f / "verify.csv") for f in (tmp_path, tmp_path / "plain"))
+    assert list(bare) == [name for name in cells if name in set(bare)]
+    assert cells["reaction_pure"][0] < 1e-4
+    findings = json.loads((tmp_path / "verify.json").read_text())["cells"][0]["findings"]
+    assert {"CC120", "CC123", "CC124"} <= {finding["rule"] for finding in findings}
+
+
+def test_convergence_of_forces_is_told_with_its_floor() -> None:
+    said = flat(told(f"{ONCE} --engine mujoco --forces"))
+    assert re.search("(levels off|does not shrink) floor", said)
+
+
+def test_an_engine_without_forces_is_unsupported_where_it_is_named_and_a_note_else(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    deaf = replace(registry.engine("mujoco"), forces_of="nothing")
+    monkeypatch.setattr("sim.mujoco.engine.ENGINE", deaf)
+    named = flat(told(f"{MUJOCO} --forces", code=2))
+    assert "mujoco reports no forces; run it without, or another engine" in named
+    usual = flat(told(f"{ONCE} --no-convergence --forces"))
+    assert "forces: mujoco reports none, and is run without" in usual
+
+
+@pytest.mark.parametrize("verb", ["verify", "sweep"])
+def test_a_scene_without_mass_is_refused(verb: str, tmp_path: Path) -> None:
+    text = scene_texts([SCENE])[SCENE]
+    path = tmp_path / "light.toml"
+    path.write_text(text.replace("{ bar", "{ mass_kg = 0.0, inertia_kg_m2 = 0.0, bar"))
+    result = crank(verb, path, "--engine", "mujoco", "--forces", "-o", tmp_path / "out")
+    refused(result, "no link or slider has a mass and nothing loads them")
+
+
+def test_a_sweep_keeps_forces_beside_cells_without_and_reports_them(tmp_path: Path) -> None:
+    some = f"{SCENE} --steps-per-turn 90,180 --profile tuned --turns 1 --engine"
+    swept(f"{some} mujoco --forces", tmp_path)
+    swept(f"{some} pymunk", tmp_path)
+    cells, page = shown(tmp_path)
+    known = cells.set_index("engine")["torque_pure"]
+    assert known["mujoco"].between(1e-6, 1e-3).all()
+    assert known["pymunk"].isna().all()
+    assert "reactions in pins" in page
+    assert "2 were there" in swept(f"{some} mujoco --forces", tmp_path)
+
+
+def test_stability_tells_what_forces_are_off_by_and_grades_as_before() -> None:
+    options = ("--at", "10", "--engine", "mujoco", "--profile", "tuned")
+    asked, plain = (crank_alone("stability", "heavy-rocker", *options, *more)
+                    for more in (["--forces"], []))  # fmt: skip
+    assert (asked.exit_code, plain.exit_code) == (0, 0)
+    more = [line for line in asked.output.splitlines() if line not in plain.output.splitlines()]
+    assert len(more) == 1
+    assert "error of forces, over the largest: 4" in more[0]
+
+
+def test_a_matrix_keeps_forces_where_they_are_known(tmp_path: Path) -> None:
+    blank = Graded("case", "mujoco", "tuned", 1.0, "1", "ok", "")
+    plain = Matrix({}, (), (blank,), ())
+    known = Matrix({}, (), (replace(blank, force=1e-4), blank), ())
+    assert "force" not in to_json(plain)
+    (tmp_path / FILE).write_text(to_json(known))
+    first, second = read_matrix(tmp_path).runs
+    assert first.force == 1e-4
+    assert math.isnan(second.force)
+
+
+def test_selftest_plants_faults_of_forces_where_it_is_asked() -> None:
+    output = told("selftest --fault torque-off --engine mujoco --jobs 1")
+    assert "1 of 1 fault caught by the named rule" in output
+    assert "CC123" in output
+
+
+def test_what_is_let_go_is_within_and_has_a_table_of_its_own(tmp_path: Path) -> None:
+    text = flat(told(f"{FREE} -o", tmp_path))
+    assert "free motion, profile tuned (gated)" in text
+    assert "WITHIN TOLERANCE: all 2 cells (1 scene x 2 engines)" in text
+    assert "dt 0.001 s over 0.1 s" in text
+    cells = pd.read_csv(tmp_path / "verify.csv")
+    assert list(cells["drive"]) == ["free", "free"]
+    assert (cells["phase_pure"] <= cells["phase_limit_pure"]).all()
+    assert list(cells["horizon_1e-1_s"]) == pytest.approx([0.1, 0.1])
+    assert not {"drive_pure", "drive_error_rad", "reaction_pure"} & set(cells)
+    content = json.loads((tmp_path / "verify.json").read_text())["cells"]
+    found = {finding["rule"] for cell in content for finding in cell["findings"]}
+    assert {"CC127", "CC128", "CC110", "CC115", "CC117"} <= found
+    assert "CC102" not in found
+    assert "NOT WORSE" in told(f"{FREE} --baseline", tmp_path)
+
+
+def test_a_limit_that_is_not_kept_ends_with_1() -> None:
+    text = flat(told(f"{FREE} --engine pymunk --tol phase=1e-9", code=1))
+    assert "CC127 phase: driver crank:" in text
+    assert "over the sensitivity" in text
+
+
+def test_driven_scenes_are_let_go_with_free_and_stay_driven_without() -> None:
+    both = plan(VerifyRequest((SCENE, SWING), engines=("pymunk",), turns=1.0))
+    drives = {(cell.scene.name, cell.drive) for cell in both}
+    assert drives == {(SCENE, "prescribed"), (SWING, "free")}
+    cells = plan(VerifyRequest((SCENE,), engines=("pymunk",), free=True))
+    assert {cell.drive for cell in cells} == {"free"}
+    assert cells[0].dt_s == 1e-3
+    period_s = load_scene(SCENE).driver.law.period_s
+    assert abs(cells[0].steps * cells[0].dt_s - 10.0 * period_s) < 1e-3
+
+
+def test_a_scene_without_a_mass_that_moves_is_refused_before_anything_runs(tmp_path: Path) -> None:
+    path = tmp_path / "bare.toml"
+    text = scene_text(load_scene(SWING))
+    path.write_text(re.sub("^mass_kg.*", "mass_kg = 0.0", text, flags=re.MULTILINE))
+    with pytest.raises(CrankcheckError):
+        plan(VerifyRequest((str(path),)))
+
+
+def test_a_sweep_of_what_is_let_go_is_kept_shown_and_compared(tmp_path: Path) -> None:
+    swept(f"{SWING} --free --dt 1e-3,5e-4 --duration 0.1 --profile tuned", tmp_path)
+    cells, page = shown(tmp_path)
+    assert len(cells) == 4
+    assert set(cells["drive"]) == {"free"}
+    assert set(cells["dt_s"]) == {1e-3, 5e-4}
+    assert cells["precision"].str.contains("1e-3|1e-1|fine|common").all()
+    assert "Let go" in page
