@@ -1,0 +1,173 @@
+"""What a command reads is never written over, no output takes the place of another, and none goes
+through a symbolic link to what it leads to."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from models.files import shipped
+from tests.worlds.command_line import crank, crank_alone, flat
+from tests.worlds.tiers import few
+from tests.worlds.without_pdf import without_pdf
+
+
+def files(place: Path) -> dict[Path, bytes]:
+    """All that there is below a folder."""
+    return {path: path.read_bytes() for path in place.rglob("*") if path.is_file()}
+
+
+@pytest.fixture
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a scene, a log and a map."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    Path("sub").mkdir()
+    Path("out", "mujoco-3.7.0").mkdir(parents=True)
+    named = ("mine.toml", "mine.csv", "mine.xml", "mine.gif", "fourbar-lecture-1.gif", "mine.db")
+    kept = ("manifest.json", "history.csv", "verify.csv", "mujoco-3.7.0/verify.json")
+    for name in (*named, *(f"out/{name}" for name in kept)):
+        shutil.copy(shipped()["fourbar-lecture-1"], name)
+    Path("x.csv").write_text("time_s,rocker_deg\n0,110\n0.01,111\n0.02,112\n0.03,113\n")
+    Path("link.csv").symlink_to("x.csv")
+    Path("map.toml").write_text('[time]\ncolumn = "time_s"\n')
+    return tmp_path
+
+
+JUDGE = "judge mine.toml x.csv --target 1e-3"
+COARSE = "--steps-per-turn 90 --turns 1"
+ADVISE = "--dt 0.01 --speed 10 --target 0.1"
+HISTORY = "history mujoco 3.7.0 -o out --scene"
+REFUSED = {
+    f"{JUDGE} --write-map mine.toml": "--write-map mine.toml: .* read",
+    f"{JUDGE} --map map.toml --write-map sub/../map.toml":
+        "--write-map sub/../map.toml: that is map.toml, which is read",
+    f"{JUDGE} --json x.csv": "--json x.csv: that is x.csv, which is read",
+    f"{JUDGE} --junit ./sub/../x.csv": "--junit .*: that is x.csv",
+    "judge mine.toml link.csv --target 1e-3 --json x.csv": "--json x.csv: that is link.csv",
+    f"{JUDGE} -o a.html --json a.html": "-o and --json: both name a.html",
+    f"{JUDGE} --json a --junit sub/../a": "--json and --junit: both name",
+    f"run mine.csv {COARSE} -o mine.csv": "-o mine.csv: .* is read",
+    f"advise mine.toml {ADVISE} --json mine.toml": "--json mine.toml: .* is read",
+    f"verify mine.toml {COARSE} --csv mine.toml": "--csv .* is read",
+    f"verify out/verify.csv {COARSE} -o out":
+        "-o out/verify.csv: that is out/verify.csv, which is read",
+    "solve mine.csv -o mine.csv": "-o mine.csv: .* is read",
+    "cycle mine.csv -o mine.csv": "-o mine.csv: .* is read",
+    "flywheel mine.toml --delta 0.02 --write sub/../mine.toml":
+        "--write .*: that is mine.toml, which is read",
+    "export mine.xml -o sub/../mine.xml": "-o .*: that is mine.xml",
+    "view mine.gif -o mine.gif": "-o mine.gif: .* is read",
+    "view fourbar-lecture-1.gif": "view four.*gif: .* is read",
+    "tune mine.db --engine mujoco --target 1e-3 -o mine.db": "-o mine.db: holds something else",
+    "sweep out/manifest.json -o out": "out",
+    "sweep --study mine.toml -o mine.toml": "mine.toml",
+    f"{HISTORY} out/history.csv": "-o out/history.csv: .* is read",
+    f"{HISTORY} out/mujoco-3.7.0/verify.json": "-o out/mujoco-3.7.0/verify.json: .* is read",
+    "diff out out -o out/manifest.json": "-o .*: .* is read",
+    "diff sub out --junit out/verify.csv": "--junit .*read",
+    f"advise {ADVISE} --study out --json out/manifest.json":
+        "--json out/manifest.json: .* is read",
+    f"verify mine.toml {COARSE} --baseline out --json out/verify.csv":
+        "--json out/verify.csv: .* is read",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("line", REFUSED)
+def test_a_file_that_is_read_or_written_twice_is_refused(line: str, place: Path) -> None:
+    before = files(place)
+    result = crank(*line.split())
+    assert result.exit_code == 2, result.output
+    assert re.search(REFUSED[line], flat(result.stderr)), result.stderr
+    assert files(place) == before
+
+
+SHORT = "fourbar-lecture-1 --engine pymunk --profile tuned"
+VERIFY = f"verify {SHORT} --turns 0.2 --no-convergence"
+SWEEP = f"sweep {SHORT} --steps-per-turn 90 --no-timing"
+COMMANDS = {
+    f"{VERIFY} -o out": 0,
+    f"{VERIFY} --csv out.csv --json out.json --junit out.xml": 2,
+    f"{SWEEP} -o out": 0,
+    f"{SWEEP} -o out --keep-trajectories --again": 0,
+    "report kept -o out.html": 2,
+    "diff kept kept -o out.md --junit out.xml": 2,
+    "figures kept -o out --only convergence": 0,
+    "solve fourbar-lecture-1 -o out.csv": 2,
+    "export fourbar-lecture-1 -o out.xml": 2,
+    "view fourbar-lecture-1 -o out.png": 2,
+    "cycle shaper -o out.csv": 2,
+    "cycle shaper --figures out": 0,
+    "flywheel shaper --delta 0.02 -o out.json --write out.toml": 2,
+    "selftest --engine pymunk --fault nan-at-end -o out": 0,
+    "tune fourbar-lecture-1 --engine pymunk --target 1e-2 --budget 1 --no-timing -o out.db": 2,
+}
+"""Each with its exit code where its files are links: those in a folder are replaced."""
+
+
+def ran(line: str) -> int:
+    with without_pdf():
+        return crank_alone(*line.split()).exit_code
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A store of one cell."""
+    folder = tmp_path_factory.mktemp("kept")
+    assert ran(f"{SWEEP} -o {folder}") == 0
+    return folder
+
+
+QUICK = [line for line in COMMANDS if not line.startswith(("cycle shaper --fig", "tune"))]
+
+
+@pytest.mark.parametrize(
+    "line", few(COMMANDS, QUICK, "a second each, for what writes as the others do")
+)
+def test_what_links_lead_to_stays(
+    line: str, kept: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    work, others = tmp_path / "work", tmp_path / "others"
+    work.mkdir()
+    monkeypatch.chdir(work)
+    Path("kept").symlink_to(kept)
+    assert ran(line) == 0
+    found = (*work.glob("out.*"), *work.rglob("out/**/*"))
+    written = [path for path in found if path.is_file() and not path.name.startswith(".")]
+    for path in written:
+        other = others / path.relative_to(work)
+        other.parent.mkdir(parents=True, exist_ok=True)
+        path.rename(other)
+        other.write_bytes(b"of another" + other.read_bytes()[10:])
+        path.symlink_to(other)
+    before = files(others)
+    assert len(before) == len(written)
+    assert ran(line) == COMMANDS[line]
+    assert files(others) == before
+
+
+@pytest.mark.parametrize(
+    ("line", "lock"), [(f"{SWEEP} -o out", "out/.lock"), ([*COMMANDS][-1], ".out.db.lock")]
+)
+def test_a_lock_that_is_a_link_is_refused(
+    line: str, lock: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("other").write_text("of another")
+    Path(lock).parent.mkdir(exist_ok=True)
+    Path(lock).symlink_to(tmp_path / "other")
+    assert ran(line) == 2
+    assert Path("other").read_text() == "of another"
+
+
+@pytest.mark.parametrize("name", ["cells", "timings", "trajectories", "damaged"])
+def test_a_folder_of_a_store_that_is_a_link_is_refused(name: str, tmp_path: Path) -> None:
+    (tmp_path / "other").mkdir()
+    (tmp_path / "store").mkdir()
+    (tmp_path / "store" / name).symlink_to(tmp_path / "other")
+    assert ran(f"{SWEEP} -o {tmp_path / 'store'}") == 2
+    assert not list((tmp_path / "other").iterdir())
