@@ -116,8 +116,7 @@ def reaching(mutant: Mutant, record: Reached) -> list[str]:
         by_line = record.by_line(mutant.file)
         tests = {t for line in range(first, last + 1) for t in by_line.get(line, ())}
     else:
-        files = _files(mutant, record.root)
-        tests = {t for file in files for each in record.by_line(file).values() for t in each}
+        tests = set().union(*map(record.by_file, _files(mutant, record.root)))
     good = tests - record.failed
     return sorted(good, key=lambda name: (-_near(mutant.file, name), record.seconds[name], name))
 

@@ -10,16 +10,18 @@ Which test reaches which file is recorded once (`make record`, in `.recorded/`),
 from __future__ import annotations
 
 import ast
+import functools
 import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterable, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from tests.recorded import chosen, recording
 from tests.recorded.reached import Reached
-from tests.recorded.recording import PACKAGES, ROOT
+from tests.recorded.recording import OURS, ROOT
 
 FOLDER = ROOT / ".recorded"
 DONE = FOLDER / "done"
@@ -81,7 +83,7 @@ def tests_of(files: Iterable[str], reached: Reached) -> tuple[set[str], set[str]
             whole.add(file)
         elif top in DOCUMENTS:
             whole.update(DOCUMENTS[top])
-        elif top in (*PACKAGES, "tests"):
+        elif top in OURS:
             found = _reach(file, reached)
             tests |= found
             if not found:
@@ -92,27 +94,29 @@ def tests_of(files: Iterable[str], reached: Reached) -> tuple[set[str], set[str]
 def _reach(file: str, reached: Reached) -> set[str]:
     """The tests that run lines of a file; of what has none that run (constants, templates, scenes),
     those of what imports it, or of the code beside it."""
-    own = {test for tests in reached.by_line(file).values() for test in tests}
-    if own:
+    if own := reached.by_file(file):
         return own
     name = file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
     beside = sorted((ROOT / file).parent.glob("*.py")) if not file.endswith(".py") else []
     others = [path.relative_to(ROOT).as_posix() for path in beside] or importers(name)
-    return {t for other in others for tests in reached.by_line(other).values() for t in tests}
+    return set().union(*map(reached.by_file, others))
 
 
 def importers(module: str, root: Path = ROOT) -> list[str]:
     """The files of the packages and of the tests that import from a module."""
-    found = []
-    for path in (path for top in (*PACKAGES, "tests") for path in (root / top).rglob("*.py")):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        for node in ast.walk(tree):
-            if isinstance(node, ast.ImportFrom) and module in (
-                node.module,
-                *(f"{node.module}.{alias.name}" for alias in node.names),
-            ):
-                found.append(path.relative_to(root).as_posix())
-                break
+    return sorted(_importers(root)[module])
+
+
+@functools.cache
+def _importers(root: Path) -> Mapping[str, set[str]]:
+    """The files that import from each module."""
+    found = defaultdict[str, set[str]](set)
+    for path in (path for top in OURS for path in (root / top).rglob("*.py")):
+        file = path.relative_to(root).as_posix()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module:
+                for name in (node.module, *(f"{node.module}.{each.name}" for each in node.names)):
+                    found[name].add(file)
     return found
 
 

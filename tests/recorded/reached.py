@@ -32,6 +32,7 @@ class Reached:
             self._users[shared].add(user)
         self.seconds: dict[str, float] = defaultdict(float)
         self.failed = set[str]()
+        self._of_file: dict[str, set[str]] = {}
         for name, _, seconds, outcome in self._rows(SECONDS):
             self.seconds[name] += seconds
             if outcome == "failed":
@@ -53,6 +54,12 @@ class Reached:
         """The tests that run each line of a file (its path in the checkout), imports apart."""
         found = self._data.contexts_by_lineno(str(self.root / file))
         return {line: self._tests(names) for line, names in found.items()}
+
+    def by_file(self, file: str) -> set[str]:
+        """The tests that run any line of a file, as above."""
+        if file not in self._of_file:
+            self._of_file[file] = set().union(*self.by_line(file).values())
+        return self._of_file[file]
 
     def _tests(self, names: Iterable[str]) -> set[str]:
         """The tests of these names, and the users of what these names made for many."""
