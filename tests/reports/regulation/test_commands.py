@@ -5,37 +5,37 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-from typer.testing import CliRunner, Result
 
 import crankcheck
 from analytic.regulation.cycle_search import cycle_of
 from analytic.regulation.turning_machine import TurningMachine
 from models.characteristics import Polynomial, Sine
 from models.files import load_scene
-from models.scene import Scene
 from models.scene_text import scene_text
-from reports.cli import app
 from tests.analytic.regulation.worked import shaft, yoke
+from tests.worlds.command_line import crank, refused
 from tests.worlds.tiers import few, slowly
 
-Crank = Callable[..., Result]
 
-
-@pytest.fixture
-def crank(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Crank:
-    """Run the command with arguments in a folder of its own, which has the shaft of 40 J."""
+@pytest.fixture(autouse=True)
+def _in_a_folder_with_the_shaft_of_40_j(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     scene = shaft({"pull": (Sine(20.0, math.tau), "angle")})
     Path("shaft.toml").write_text(scene_text(scene), encoding="utf-8")
-    runner = CliRunner()
-    return lambda *args: runner.invoke(app, list(args), catch_exceptions=False)
+
+
+def told(line: str) -> str:
+    """What a line of the command prints."""
+    result = crank(*line.split())
+    assert result.exit_code == 0, result.output
+    assert max(len(line.rstrip()) for line in result.output.splitlines()) <= 100
+    return result.output
 
 
 def numbers(output: str, start: str) -> list[float]:
@@ -44,20 +44,21 @@ def numbers(output: str, start: str) -> list[float]:
     return [float(each) for each in re.findall(r"[-+]?[\d.]+(?:e[-+]?\d+)?(?= |$)", words)]
 
 
-def test_a_cycle_is_told(crank: Crank) -> None:
-    result = crank("cycle", "shaft.toml")
-    assert result.exit_code == 0
-    assert max(len(line.rstrip()) for line in result.output.splitlines()) <= 100
-    assert numbers(result.output, "largest speed") == [11.0, 180.0]
-    assert numbers(result.output, "smallest speed")[0] == 9.0
-    assert numbers(result.output, "coefficient of fluctuation") == [0.2]
-    assert numbers(result.output, "surplus of work") == [40.0]
-    assert numbers(result.output, "loads.pull") == [0.0, 0.0]
-    assert "closes the balance of work." in " ".join(result.output.split())
+FLYWHEEL = "flywheel shaft.toml --delta 0.02"
 
 
-def test_the_drive_that_closes_the_balance_is_told(crank: Crank) -> None:
-    output = crank("cycle", "compressor").output
+def test_a_cycle_is_told() -> None:
+    output = told("cycle shaft.toml")
+    assert numbers(output, "largest speed") == [11.0, 180.0]
+    assert numbers(output, "smallest speed")[0] == 9.0
+    assert numbers(output, "coefficient of fluctuation") == [0.2]
+    assert numbers(output, "surplus of work") == [40.0]
+    assert numbers(output, "loads.pull") == [0.0, 0.0]
+    assert "closes the balance of work." in " ".join(output.split())
+
+
+def test_the_drive_that_closes_the_balance_is_told() -> None:
+    output = told("cycle compressor")
     found = cycle_of(TurningMachine.of(load_scene("compressor")))
     torque, *_ = numbers(output, "torque of the drive")
     assert torque == pytest.approx(found.drive_n_m, rel=1e-6)
@@ -65,21 +66,18 @@ def test_the_drive_that_closes_the_balance_is_told(crank: Crank) -> None:
     assert "here it gives 12.6045 N m" in " ".join(output.split())
 
 
-def test_a_flywheel_is_told(crank: Crank) -> None:
-    result = crank("flywheel", "shaft.toml", "--delta", "0.02")
-    assert result.exit_code == 0
-    assert max(len(line.rstrip()) for line in result.output.splitlines()) <= 100
-    assert numbers(result.output, "exact, of the full equation") == [18.0]
-    assert numbers(result.output, "coefficient of fluctuation") == [0.2, 0.02]
-    assert numbers(result.output, "largest speed") == [11.0, 10.1]
-    assert "tan psi_max = 51.005" in " ".join(result.output.split())
+def test_a_flywheel_is_told() -> None:
+    output = told(FLYWHEEL)
+    assert numbers(output, "exact, of the full equation") == [18.0]
+    assert numbers(output, "coefficient of fluctuation") == [0.2, 0.02]
+    assert numbers(output, "largest speed") == [11.0, 10.1]
+    assert "tan psi_max = 51.005" in " ".join(output.split())
 
 
-def test_files_hold_all_digits(crank: Crank) -> None:
-    assert crank("cycle", "shaft.toml", "-o", "c.csv").exit_code == 0
-    assert crank("flywheel", "shaft.toml", "--delta", "0.02", "-o", "f.csv").exit_code == 0
-    assert crank("flywheel", "shaft.toml", "--delta", "0.02", "-o", "f.json").exit_code == 0
-    assert crank("cycle", "shaft.toml", "-o", "c.json").exit_code == 0
+def test_files_hold_all_digits_and_what_is_written_is_shown_as_well() -> None:
+    for line, name in (("cycle shaft.toml", "c"), (FLYWHEEL, "f")):
+        assert crank(*line.split(), "-o", f"{name}.csv").output.endswith(told(line))
+        assert crank(*line.split(), "-o", f"{name}.json").exit_code == 0
     frame = pd.read_csv("c.csv")
     assert len(frame) == 721
     theta, omega = (frame[f"crank_{name}"].to_numpy() for name in ("theta_rad", "omega_rad_s"))
@@ -89,50 +87,49 @@ def test_files_hold_all_digits(crank: Crank) -> None:
     both = pd.read_csv("f.csv")
     np.testing.assert_allclose(both["bare_crank_omega_rad_s"], omega, rtol=1e-9)
     assert np.ptp(both["crank_omega_rad_s"]) == pytest.approx(0.2, rel=1e-4)
-    told = json.loads(Path("f.json").read_text())
-    assert told["flywheel_kg_m2"]["exact"] == pytest.approx(18.0, rel=1e-11)
-    assert told["without"]["delta"] == pytest.approx(0.2, rel=1e-12)
-    assert told["cycle"]["largest_at_deg"] == pytest.approx(180.0)
+    found = json.loads(Path("f.json").read_text())
+    assert found["flywheel_kg_m2"]["exact"] == pytest.approx(18.0, rel=1e-11)
+    assert found["without"]["delta"] == pytest.approx(0.2, rel=1e-12)
+    assert found["cycle"]["largest_at_deg"] == pytest.approx(180.0)
     assert json.loads(Path("c.json").read_text())["cycle"]["delta"] == pytest.approx(0.2)
 
 
 @pytest.mark.parametrize("free", few([False, True], {True}, "the driven scene: half a second"))
-def test_the_written_scene_has_the_flywheel(crank: Crank, free: bool) -> None:
-    options = ["--write", "w.toml", *(["--free"] * free)]
-    result = crank("flywheel", "compressor", "--delta", "0.03", *options)
-    assert result.exit_code == 0
+def test_the_written_scene_has_the_flywheel(free: bool) -> None:
+    told(f"flywheel compressor --delta 0.03 --write w.toml {'--free' * free}")
     assert "flywheel_kg_m2 = 0.0" in Path("w.toml").read_text()
     scene = load_scene("w.toml")
     assert scene.is_free is free
     assert ("drive" in scene.loads) is free
-    again = crank("cycle", "w.toml", "-o", "again.json")
-    assert again.exit_code == 0
+    told("cycle w.toml -o again.json")
     delta = json.loads(Path("again.json").read_text())["cycle"]["delta"]
     # Let go its mean speed is that of its start, which the cycle has elsewhere.
     assert delta == pytest.approx(0.03, rel=0.1 if free else 1e-9)
 
 
+def pictures(page: str) -> int:
+    return Path(page).read_text(encoding="utf-8").count("data:image/svg+xml;base64,")
+
+
 @pytest.mark.parametrize(
-    "figures", [(), slowly(("--figures", "figs"), reason="a second for three figures of two kinds")]
+    "figures", ["", slowly("--figures figs", reason="a second for three figures of two kinds")]
 )
-def test_pages_and_figures_are_written(crank: Crank, figures: tuple[str, ...]) -> None:
+def test_pages_and_figures_are_written(figures: str) -> None:
     Path("yoke.toml").write_text(scene_text(yoke(40.0)), encoding="utf-8")
-    options = ["-o", "p.html", *figures]
-    assert crank("flywheel", "yoke.toml", "--delta", "0.02", *options).exit_code == 0
+    told(f"flywheel yoke.toml --delta 0.02 -o p.html {figures}")
+    assert pictures("p.html") == 3
     text = Path("p.html").read_text(encoding="utf-8")
-    assert text.count("data:image/svg+xml;base64,") == 3
     body = text.partition("<main")[2].partition("<script")[0]
     assert "Wittenbauer" in body
     assert "nan" not in body.lower().split()
-    if figures:
-        names = {f"{name}.{kind}" for name in ("speed", "torques", "energy-mass")
-                 for kind in ("svg", "pdf")}  # fmt: skip
-        assert {path.name for path in Path("figs").iterdir()} == names
+    names = {f"{name}.{kind}" for name in ("speed", "torques", "energy-mass")
+             for kind in ("svg", "pdf")}  # fmt: skip
+    assert {path.name for path in Path().glob("figs/*")} == (names if figures else set())
 
 
-def test_a_shaft_of_constant_moment_of_inertia_has_no_energy_mass_diagram(crank: Crank) -> None:
-    assert crank("cycle", "shaft.toml", "-o", "s.html", "--figures", "two").exit_code == 0
-    assert Path("s.html").read_text(encoding="utf-8").count("data:image/svg+xml;base64,") == 2
+def test_a_shaft_of_constant_moment_of_inertia_has_no_energy_mass_diagram() -> None:
+    told("cycle shaft.toml -o s.html --figures two")
+    assert pictures("s.html") == 2
     names = {"speed.svg", "speed.pdf", "torques.svg", "torques.pdf"}
     assert {path.name for path in Path("two").iterdir()} == names
 
@@ -156,30 +153,28 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize("name", MISTAKES)
-def test_a_mistake_ends_with_2_one_message_and_nothing_written(crank: Crank, name: str) -> None:
+def test_a_mistake_ends_with_2_one_message_and_nothing_written(name: str) -> None:
     line, words = MISTAKES[name]
     before = set(Path().iterdir())
     result = crank(*line.split())
-    assert result.exit_code == 2, result.output
-    assert words in " ".join(result.stderr.split())
+    refused(result, words)
     assert result.stdout == ""
     assert set(Path().iterdir()) == before
 
 
-def motorised() -> Scene:
-    loads = {"pull": (Sine(20.0, math.tau), "angle"), "motor": (Polynomial((30.0, -3.0)), "omega")}
-    return shaft(loads, free=True)  # type: ignore[arg-type]  # literals
+MOTOR = {"pull": (Sine(20.0, math.tau), "angle"), "motor": (Polynomial((30.0, -3.0)), "omega")}
+MOTORISED = shaft(MOTOR, free=True)  # type: ignore[arg-type]  # literals
 
 
 def test_in_python_results_are_small_values_that_print_as_the_commands() -> None:
-    found = crankcheck.cycle(motorised())
+    found = crankcheck.cycle(MOTORISED)
     assert found.mean_rad_s == pytest.approx(10.0, rel=0.01)
     assert found.drive_n_m == 0.0
     assert "Let go: the loads alone settle the speed." in str(found)
     assert found.frame()["crank_omega_rad_s"].max() == pytest.approx(
         found.extreme_speeds_rad_s[0], rel=1e-5
     )
-    wheel = crankcheck.flywheel(motorised(), 0.01)
+    wheel = crankcheck.flywheel(MOTORISED, 0.01)
     assert wheel.cycle.delta == pytest.approx(0.01, rel=1e-10)
     again = crankcheck.cycle(wheel.scene)
     assert again.delta == pytest.approx(0.01, rel=1e-10)
@@ -190,14 +185,7 @@ def test_in_python_results_are_small_values_that_print_as_the_commands() -> None
 
 
 def test_in_python_messages_name_arguments() -> None:
-    scene = replace(motorised(), name="shaft")
+    scene = replace(MOTORISED, name="shaft")
     for delta in (0.0, "much", True):
         with pytest.raises(crankcheck.CrankcheckError, match=r"^delta"):
             crankcheck.flywheel(scene, delta)  # type: ignore[arg-type]  # that is what is refused
-
-
-@pytest.mark.parametrize("words", ["cycle shaft.toml", "flywheel shaft.toml --delta 0.02"])
-def test_what_is_written_is_shown_as_well(crank: Crank, words: str) -> None:
-    shown = crank(*words.split()).output
-    told = crank(*words.split(), "-o", "cycle.csv").output
-    assert told.endswith(shown)
