@@ -27,12 +27,9 @@ def random_curve(rng: np.random.Generator) -> CouplerCurve:
         if one.family == "limited":
             continue
         turn = np.linspace(0.0, math.tau, 100)
-        off = np.zeros(len(turn))
-        wide = float(np.std(one.at(turn)))
-        good = Candidate(one, turn, off).least_sine > math.sin(LEAST_TRANSMISSION)
-        if good and one.size < LARGEST * wide:
-            by, onto = rng.normal(size=2), rng.normal(size=2)
-            return one.moved(complex(*by), complex(*onto))
+        good = Candidate(one, turn, np.zeros(100)).least_sine > math.sin(LEAST_TRANSMISSION)
+        if good and one.size < LARGEST * float(np.std(one.at(turn))):
+            return one.moved(complex(*rng.normal(size=2)), complex(*rng.normal(size=2)))
 
 
 def random_path(
@@ -50,6 +47,6 @@ def random_path(
             break
     points = one.at(angles)
     off = rng.normal(size=count) + 1j * rng.normal(size=count)
-    points = points + noise * np.std(points) * off
+    points += noise * np.std(points) * off
     crank = tuple((angles - 3.0).tolist()) if timed else None
     return one, angles, PathTask(tuple(points.tolist()), crank, closed)

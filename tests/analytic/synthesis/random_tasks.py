@@ -21,38 +21,31 @@ Draw = np.random.Generator
 HEAD = {"name": "random", "source": "a test"}
 
 
-def _place(draw: Draw, size: float = 1.0) -> list[float]:
-    return [float(x) for x in draw.uniform(-size, size, 2)]
+def _two(draw: Draw) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Two points."""
+    return tuple(map(tuple, draw.uniform(-1.0, 1.0, (2, 2)).tolist()))
 
 
 def _poses(draw: Draw, count: int) -> list[dict[str, object]]:
     """A body that goes on, and turns one way by up to 50 degrees at a time."""
     way = np.cumsum(draw.uniform(0.1, 0.5, (count, 2)) * [1.0, draw.uniform(-1.0, 1.0)], axis=0)
     turns = np.cumsum(draw.uniform(5.0, 50.0, count)) * draw.choice([-1.0, 1.0])
-    return [
-        {"point_m": [float(x), float(y)], "angle_deg": float(turn)}
-        for (x, y), turn in zip(way, turns, strict=True)
-    ]
+    pairs = zip(way.tolist(), turns.tolist(), strict=True)
+    return [{"point_m": place, "angle_deg": turn} for place, turn in pairs]
 
 
 def two_positions(draw: Draw) -> TaskTable:
-    distances = draw.uniform(0.3, 2.0, 2) * draw.choice([-1.0, 1.0], 2)
-    return CouplerTask(
-        **HEAD,
-        positions=_poses(draw, 2),
-        moving_m=(tuple(_place(draw)), tuple(_place(draw))),
-        distances_m=(float(distances[0]), float(distances[1])),
-    )
+    far = tuple((draw.uniform(0.3, 2.0, 2) * draw.choice([-1.0, 1.0], 2)).tolist())
+    positions = _poses(draw, 2)
+    return CouplerTask(**HEAD, positions=positions, moving_m=_two(draw), distances_m=far)
 
 
 def three_positions(draw: Draw) -> TaskTable:
-    moving = (tuple(_place(draw)), tuple(_place(draw)))
-    return CouplerTask(**HEAD, positions=_poses(draw, 3), moving_m=moving)
+    return CouplerTask(**HEAD, moving_m=_two(draw), positions=_poses(draw, 3))
 
 
 def given_pivots(draw: Draw) -> TaskTable:
-    fixed = (tuple(_place(draw)), tuple(_place(draw)))
-    return CouplerTask(**HEAD, positions=_poses(draw, 3), fixed_m=fixed)
+    return CouplerTask(**HEAD, fixed_m=_two(draw), positions=_poses(draw, 3))
 
 
 def four_positions(draw: Draw) -> TaskTable:
@@ -72,15 +65,13 @@ def five_positions(draw: Draw) -> TaskTable:
         arm = d - pin
         cosine = (abs(arm) ** 2 + b**2 - c**2) / (2.0 * abs(arm) * b)
         along = arm / abs(arm) * np.exp(1j * math.acos(cosine))
-        place = pin + along * own
-        angle = math.degrees(float(np.angle(along)))
+        place, angle = pin + along * own, math.degrees(float(np.angle(along)))
         poses.append({"point_m": [float(place.real), float(place.imag)], "angle_deg": angle})
     return CouplerTask(**HEAD, positions=poses)
 
 
 def driving_dyad(draw: Draw) -> TaskTable:
-    task = two_positions(draw).model_dump()
-    return CouplerTask(**{**task, "driving_dyad": True})
+    return CouplerTask(**{**two_positions(draw).model_dump(), "driving_dyad": True})
 
 
 def rocker_by_angle(draw: Draw) -> TaskTable:
@@ -123,34 +114,16 @@ def whitworth(draw: Draw) -> TaskTable:
 
 
 def crank_rocker(draw: Draw) -> TaskTable:
-    return QuickReturnTask(
-        **HEAD,
-        mechanism="crank-rocker",
-        time_ratio=float(draw.uniform(1.05, 1.5)),
-        rocker_m=float(draw.uniform(0.05, 1.0)),
-        swing_deg=float(draw.uniform(20.0, 90.0)),
-    )
+    ratio, rocker, swing = draw.uniform([1.05, 0.05, 20.0], [1.5, 1.0, 90.0]).tolist()
+    own = {"time_ratio": ratio, "rocker_m": rocker, "swing_deg": swing}
+    return QuickReturnTask(**HEAD, mechanism="crank-rocker", **own)
 
 
-TASKS: Mapping[str, Callable[[Draw], TaskTable]] = {
-    each.__name__: each
-    for each in (
-        two_positions,
-        three_positions,
-        given_pivots,
-        four_positions,
-        five_positions,
-        driving_dyad,
-        rocker_by_angle,
-        rocker_by_positions,
-        central,
-        offset,
-        stroke_and_ratio,
-        slotted_lever,
-        whitworth,
-        crank_rocker,
-    )
-}
+TASKS: Mapping[str, Callable[[Draw], TaskTable]] = {each.__name__: each for each in (
+    two_positions, three_positions, given_pivots, four_positions, five_positions, driving_dyad,
+    rocker_by_angle, rocker_by_positions, central, offset, stroke_and_ratio, slotted_lever,
+    whitworth, crank_rocker,
+)}  # fmt: skip
 
 
 def random_task(kind: str, number: int) -> TaskTable:

@@ -1,37 +1,42 @@
-"""What is proposed for random tasks meets every position, and has the defects that it is said to
-have: seen by following the scene's own law, which knows nothing of circuits."""
+"""Random tasks: what is proposed meets every position, and turns back where it was asked to."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.synthesis.examine import Examined
+from analytic.mechanism.travel import travel
+from analytic.synthesis.asked import AskedSlide
+from analytic.synthesis.examine import Examined, examine
 from analytic.synthesis.passing import passing_times
+from analytic.synthesis.solutions import Solutions, followed, solutions_of
+from analytic.synthesis.strokes import stroke_proposals
 from models.errors import CrankcheckError, ReachError
 from models.laws import Oscillating
-from tests.analytic.synthesis.random_tasks import TASKS, random_solutions
-from tests.worlds.tiers import at_length, slowly
+from models.tasks.stroke import StrokeTask
+from tests.analytic.synthesis.random_tasks import HEAD, TASKS, random_solutions
+from tests.worlds.tiers import at_length, few, slowly
 
 MET = 1e-10
 """Of the size, over the square of the sine of the worst transmission in a position: near a limit
 places are worse conditioned than anywhere else."""
 
 
-def followed(one: Examined) -> tuple[float, float]:
+def passed(one: Examined) -> tuple[float, float]:
     """How far the scene is from the positions when its driver goes through them [of the size], and
     the least sine there; inf where it can not, or meets them in another order."""
     law = one.scene.driver.law
-    at_s = passing_times(law, [position.driver_rad for position in one.positions])
+    angles = np.array([position.driver_rad for position in one.positions])
+    at_s = passing_times(law, angles.tolist())
     if np.any(np.diff(at_s) <= 0.0) or np.ptp(at_s) > law.period_s * (1.0 + 1e-9):
         return math.inf, 1.0
-    if isinstance(law, Oscillating):
-        angles = np.array([position.driver_rad for position in one.positions])
-        if np.max(np.abs(angles - law.centre_rad)) > abs(law.amplitude_rad) * (1.0 + 1e-9):
-            return math.inf, 1.0
+    aside = np.max(np.abs(angles - law.centre_rad)) if isinstance(law, Oscillating) else 0.0
+    if aside and aside > abs(law.amplitude_rad) * (1.0 + 1e-9):
+        return math.inf, 1.0
     try:
         on_the_way = np.linspace(0.0, at_s.max(), 200)
         motion = solve(one.scene, np.concatenate([at_s, on_the_way]), bound=False)
@@ -52,7 +57,7 @@ def hold(kind: str, number: int) -> tuple[int, int]:
             raise
         return 0, 0
     for one in found:
-        off, sine = followed(one)
+        off, sine = passed(one)
         if one.defects:
             assert off > 1e-6, (kind, number, one.defects, one.text)
         else:
@@ -76,3 +81,54 @@ RARE = {"three_positions", "given_pivots", "four_positions"}
 def test_solutions_do_what_is_said_of_them(kind: str, numbers: range) -> None:
     sound = [hold(kind, number) for number in numbers]
     assert sum(some for some, _ in sound) > 0.05 * sum(every for _, every in sound)
+
+
+RATIOS = ("stroke_and_ratio", "slotted_lever", "whitworth", "crank_rocker")
+
+
+@pytest.mark.parametrize("number", few(range(2), [0], "another random task"))
+@pytest.mark.parametrize("kind", RATIOS)
+def test_the_reference_measures_the_time_ratio_that_was_asked_for(kind: str, number: int) -> None:
+    found = random_solutions(kind, number)
+    assert found.sound
+    for one in found.sound[:3]:
+        measured = travel(one.scene, one.proposal.turns_back).time_ratio
+        assert measured == pytest.approx(found.task.time_ratio, rel=1e-8)
+        assert f"time ratio {measured:.6g}" in one.notes[-1]
+
+
+def test_a_turn_that_is_claimed_wrongly_is_a_fault() -> None:
+    """Two places of a slider that it passes, and does not turn back in."""
+    (proposal,), _ = stroke_proposals(StrokeTask(**HEAD, stroke_m=0.2, rod_m=0.5))
+    first, last = proposal.positions
+    passed = 0.1 * math.cos(0.3) + math.sqrt(0.25 - (0.1 * math.sin(0.3)) ** 2) - 0.4
+    short = replace(last, driver_rad=0.3, asked=(AskedSlide("B", passed),))
+    one = followed(examine(replace(proposal, positions=(first, short))))
+    assert max(one.off) < 1e-14
+    assert one.defects == ["goes 0.2 m, time ratio 1: take a longer rod"]
+
+
+def offset(**given: float) -> Solutions:
+    return solutions_of(StrokeTask(**HEAD, stroke_m=0.1, form="offset", **given))
+
+
+LIMITS = [1.000001, 2.9, 2.99, 2.995]
+
+
+@pytest.mark.parametrize("ratio", few(LIMITS, [2.995], "the other limit is no harder"))
+def test_ratios_near_their_limits_keep_their_digits(ratio: float) -> None:
+    found = offset(time_ratio=ratio)
+    assert len(found.sound) == 12
+    for one in found.sound:
+        assert max(one.off) < 1e-15 / one.least_sine**2
+        folded, stretched = (position.driver_rad for position in one.positions)
+        low, high = sorted(((stretched - folded) % math.tau, (folded - stretched) % math.tau))
+        assert high / low == pytest.approx(ratio, rel=1e-13)
+
+
+def test_a_ratio_that_hardly_transmits_is_refused_and_offsets_of_a_nanometre_keep_digits() -> None:
+    with pytest.raises(CrankcheckError, match="has one below 3, and transmits"):
+        offset(time_ratio=2.9999)
+    (one,) = offset(time_ratio=1.0001, offset_m=1e-9).sound
+    assert -one.scene.sliders["B"].through_m[1] == pytest.approx(1e-9, rel=1e-12)
+    assert max(one.off) < 1e-14

@@ -1,23 +1,29 @@
-"""Coupler curves: their derivatives, limits, cognates, and the order of angles."""
+"""Coupler curves: derivatives, limits, cognates, orders of angles, what an atlas tells apart."""
 
 from __future__ import annotations
 
+import cmath
 import math
 
 import numpy as np
 import pytest
 
 from analytic.kinematics import solve_driven
+from analytic.synthesis.path.arc_length import at_shares, shares, smooth
+from analytic.synthesis.path.atlas import atlas, closed_starts, curves, similar
 from analytic.synthesis.path.candidate import in_order
 from analytic.synthesis.path.coupler_curve import CouplerCurve, assembled, cognates
-from analytic.synthesis.path.fit import Fitted, _Problem, placed
+from analytic.synthesis.path.descriptors import descriptors, match
+from analytic.synthesis.path.fit import _Problem, placed
 from analytic.synthesis.path.path_draft import drafted
+from analytic.synthesis.path.pieces import open_starts, pieces
 from analytic.synthesis.path.spread import spread
 from analytic.synthesis.path.task import UnitPath
 from analytic.synthesis.path.timed_starts import _costs, timed_starts
 from analytic.synthesis.path.unit_four_bar import (
     BOUNDS,
     FULL,
+    Complexes,
     Family,
     closes_between,
     direction,
@@ -26,6 +32,7 @@ from analytic.synthesis.path.unit_four_bar import (
     lengths,
 )
 from models.array import Array
+from models.errors import CrankcheckError
 from tests.analytic.synthesis.random_paths import random_curve, random_path
 
 FAMILIES: tuple[Family, ...] = (*FULL, "limited")
@@ -67,8 +74,7 @@ def test_the_numbers_of_a_shape_keep_a_crank_that_turns_fully(family: Family) ->
 
 
 def test_limits_and_transmission_angles_are_those_of_many_looks() -> None:
-    rng = np.random.default_rng(5)
-    seen = [0, 0]
+    rng, seen = np.random.default_rng(5), [0, 0]
     for _ in range(300):
         a, b, c = np.exp(rng.uniform(-1.5, 1.5, 3)).tolist()
         low = rng.uniform(-7.0, 7.0)
@@ -91,19 +97,16 @@ def test_a_coupler_curve_is_that_of_the_reference(seed: int) -> None:
     draft = drafted("curve", "a test", one).driven({"link": "input", "speed_rad_s": 1.0})
     found = []
     for sign in (1, -1):
-        scene = draft.scene
-        key = next(iter(scene.branch), "B")
-        scene = draft.with_branch({key: sign}).scene
+        scene = draft.with_branch({next(iter(draft.scene.branch), "B"): sign}).scene
         angles = np.linspace(0.0, 6.0, 25)
         motion = solve_driven(scene, angles, np.ones(1), np.zeros(1), bound=False)
-        place = motion.points["P"].position
-        found.append(float(np.max(np.abs(place[:, 0] + 1j * place[:, 1] - one.at(angles)))))
+        place = motion.points["P"].position @ (1.0, 1j)
+        found.append(float(np.max(np.abs(place - one.at(angles)))))
     assert min(found) < 1e-12 * max(1.0, one.size) < max(found)
 
 
-def test_cognates_draw_the_same_curve() -> None:
-    rng = np.random.default_rng(8)
-    full = 0
+def test_cognates_draw_the_same_curve_and_a_point_on_a_pin_has_none() -> None:
+    rng, full = np.random.default_rng(8), 0
     for _ in range(20):
         one = random_curve(rng)
         for angle in (0.3, 2.0, 5.1):
@@ -121,10 +124,8 @@ def test_cognates_draw_the_same_curve() -> None:
     # Of the other two, one has a crank where the given one is a crank-rocker, driven at one pivot;
     # of a drag link all have, at both.
     assert full >= 20
-
-
-def test_a_coupler_point_on_a_pin_has_no_cognates() -> None:
-    assert not cognates(CouplerCurve(0j, 1.0 + 0j, 0.3, 0.8, 0.9, 0.8 + 0j, 1), 0.4)
+    on_a_pin = CouplerCurve(0j, 1.0 + 0j, 0.3, 0.8, 0.9, 0.8 + 0j, 1)
+    assert not cognates(on_a_pin, 0.4)
 
 
 def test_assembling_keeps_all_places() -> None:
@@ -132,8 +133,7 @@ def test_assembling_keeps_all_places() -> None:
     for _ in range(20):
         o2, a, b, o4, p = rng.normal(size=5) + 1j * rng.normal(size=5)
         one, angle = assembled(o2, a, b, o4, p)
-        first, second = (pin[0] for pin in one.pins(np.array([angle])))
-        assert [first, second] == pytest.approx([a, b])
+        assert [pin[0] for pin in one.pins(np.array([angle]))] == pytest.approx([a, b])
         assert one.at(np.array([angle]))[0] == pytest.approx(p)
 
 
@@ -148,20 +148,17 @@ def test_angles_in_order_are_the_nearest_ones() -> None:
 
 def test_the_look_at_timed_shapes_tells_the_least_sum_of_squares() -> None:
     _, _, task = random_path(3, 11, timed=True, closed=True, noise=0.1)
-    path = task.unit
-    assert path.turned is not None
-    x, start = shapes("crank-rocker", 40), np.linspace(0.0, 6.0, 40)
+    path, x, start = task.unit, shapes("crank-rocker", 40), np.linspace(0.0, 6.0, 40)
     cost = _costs(path, "crank-rocker", x, start)
-    told = 0
-    for k in np.flatnonzero(np.isfinite(cost)):
+    told = np.flatnonzero(np.isfinite(cost))
+    assert len(told) > 20
+    for k in told:
         phi = start[k] + path.turned
         a, b, c = lengths("crank-rocker", x[:, k])
         origin, ground, arm = placed((a, b, c), phi, path.points)
         u, _ = direction((a, b, c), phi)
         off = origin + ground * a * np.exp(1j * phi) + arm * u - path.points
         assert cost[k] == pytest.approx(float(np.sum(np.abs(off) ** 2)), rel=1e-6)
-        told += 1
-    assert told > 20
 
 
 def test_timed_starts_are_the_better_the_earlier_and_apart() -> None:
@@ -169,7 +166,6 @@ def test_timed_starts_are_the_better_the_earlier_and_apart() -> None:
     starts = timed_starts(task.unit, 10, 0, limited=False)
     costs = [start.cost for start in starts]
     assert costs == sorted(costs)
-    assert isinstance(starts[0], Fitted)
     assert {start.family for start in starts} <= set(FULL)
     assert math.isfinite(costs[-1])
 
@@ -179,3 +175,112 @@ def test_numbers_are_spread_evenly() -> None:
     counts, _, _ = np.histogram2d(*points.T, bins=8, range=[[0, 1], [0, 1]])
     assert np.max(np.abs(counts - 64)) < 8  # of random ones it is over 20
     assert not np.allclose(points, spread(4096, 2, seed=4))
+
+
+def closed_curve(seed: int, count: int = 400, start: float = 0.0) -> Complexes:
+    one = random_curve(np.random.default_rng(seed))
+    curve = one.at(start + np.linspace(0.0, math.tau, count + 1))
+    curve[-1] = curve[0]
+    return curve
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_place_size_turn_and_start_do_not_change_a_descriptor_s_match(seed: int) -> None:
+    curve = closed_curve(seed)
+    moved = 7.3 * cmath.exp(1.9j) * closed_curve(seed, start=2.2) + (4.0 - 9.0j)
+    other = closed_curve(seed + 50)
+    one, two, three = descriptors(np.array([curve, moved, other]))
+    same = match(one, two[None])
+    # The start is found to half a place of 128, of which the highest harmonics see a little.
+    assert same.similarity[0] > 0.998
+    assert match(one, three[None]).similarity[0] < same.similarity[0] - 2e-4
+    # What is lacking are the harmonics that are left out.
+    assert 0.999 < match(one, one[None]).similarity[0] < 1.0 + 1e-6
+
+
+def test_a_start_is_found_where_it_is() -> None:
+    curve = closed_curve(3)
+    later = np.concatenate([curve[100:], curve[1:101]])
+    found = match(descriptors(later[None])[0], descriptors(curve[None]))
+    assert found.start[0] == pytest.approx(shares(curve[None])[0, 100], abs=1.0 / 64.0)
+
+
+def test_a_descriptor_tells_the_sense_and_the_mirror_image_and_not_how_fast_it_is_drawn() -> None:
+    curve = closed_curve(4)
+    one, back, mirror = descriptors(np.array([curve, curve[::-1], curve.conj()]))
+    assert match(one, back[None]).similarity[0] < 0.9
+    assert match(one, mirror[None]).similarity[0] < 0.9
+    drawn, even = random_curve(np.random.default_rng(2)), np.linspace(0.0, math.tau, 801)
+    first, second = descriptors(np.array([drawn.at(even), drawn.at(even + 0.5 * np.sin(even))]))
+    assert match(first, second[None]).similarity[0] > 0.9999
+
+
+@pytest.mark.parametrize("family", FULL)
+def test_an_entry_of_the_atlas_is_found_by_its_own_curve(family: Family) -> None:
+    book = atlas(family)
+    for k in (11, 1234):
+        curve = curves(family, book.x[:, [k]], book.arm[[k]])[0, :-1]
+        found = similar((2.0 * cmath.exp(1j) * curve + 3.0).tolist(), 5)
+        assert found[0].similarity > 0.998
+        similarities = [one.similarity for one in found]
+        assert similarities == sorted(similarities, reverse=True)
+
+
+def test_similar_curves_lie_over_the_given_one() -> None:
+    curve = closed_curve(1, 60)[:-1]
+    found = similar(curve.tolist(), 3)
+    size = float(np.std(curve))
+    for one in found:
+        assert one.similarity > 0.97
+        drawn = one.four_bar.at(np.linspace(0.0, math.tau, 2000))
+        off = np.min(np.abs(curve[:, None] - drawn[None]), axis=1)
+        assert math.sqrt(float(np.mean(off**2))) < 0.2 * size
+
+
+def test_no_curve_is_similar_to_a_zigzag_and_one_of_three_points_is_refused() -> None:
+    star = [cmath.exp(2j * math.pi * k / 20) * (1.0 if k % 2 else 0.3) for k in range(20)]
+    assert similar(star, 1)[0].similarity < 0.95
+    with pytest.raises(CrankcheckError, match="path of 3 points"):
+        similar([0j, 1 + 0j, 1j])
+
+
+def test_the_atlas_is_built_once_and_the_same() -> None:
+    first = atlas("crank-rocker")
+    assert atlas("crank-rocker") is first
+    assert np.array_equal(atlas.__wrapped__("crank-rocker").descriptors, first.descriptors)
+    assert len(first.arm) > 5000
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_starts_lie_near_the_path(closed: bool) -> None:
+    _, _, task = random_path(2, 25, timed=False, closed=closed)
+    starts = (closed_starts if closed else open_starts)(task.unit, 6)
+    assert len(starts) == 6
+    for start in starts:
+        steps = np.diff(start.phi)
+        assert np.all(steps > 0.0) or np.all(steps < 0.0)
+        assert abs(start.phi[-1] - start.phi[0]) < math.tau
+
+
+def test_pieces_with_limits_close_all_along() -> None:
+    book = pieces("limited")
+    assert len(book.arm) > 5000
+    assert np.isfinite(book.places).all()
+    assert np.sum(np.abs(book.places) ** 2, axis=1) == pytest.approx(1.0)
+
+
+def test_shares_are_those_of_the_length() -> None:
+    line = np.array([[0.0, 1.0, 3.0, 4.0], [0.0, 2.0, 2.5, 10.0]]) * (1.0 + 1j)
+    share = shares(line)
+    assert share == pytest.approx(np.array([[0.0, 0.25, 0.75, 1.0], [0.0, 0.2, 0.25, 1.0]]))
+    wanted = np.array([[0.0, 0.5, 1.0], [0.1, 0.225, 1.0]])
+    places = at_shares(share, line, wanted)
+    assert places == pytest.approx(np.array([[0.0, 2.0, 4.0], [1.0, 2.25, 10.0]]) * (1.0 + 1j))
+
+
+def test_a_smooth_curve_of_a_circle_is_one() -> None:
+    points = np.exp(2j * np.pi * np.arange(12) / 12)
+    curve, share = smooth(points, closed=True)
+    assert np.abs(curve) == pytest.approx(1.0, abs=1e-3)
+    assert share == pytest.approx(np.arange(12) / 12, abs=1e-4)
+    assert curve[-1] == pytest.approx(curve[0])
