@@ -191,7 +191,7 @@ def test_times_far_from_zero_keep_their_digits(wide: Tab, written: Write) -> Non
     assert float(told[2]) == pytest.approx(late[-1], abs=1e-4)
 
 
-@slow("`test_log_page` reads the spike that the page carries, `test_log_curves` how it is thinned")
+@slow("`test_log_page` reads the spike that the page carries, `test_log_sections` how it thins")
 def test_the_spike_of_a_long_log_is_seen_and_looked_at_closely(wide: Tab, written: Write) -> None:
     motion = motion_of(turns=40.0, samples=40_001)
     off = np.zeros(40_001)

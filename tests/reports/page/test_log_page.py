@@ -7,10 +7,12 @@ import json
 import os
 import re
 import tomllib
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from rich.console import Console
 
@@ -23,6 +25,7 @@ from reports.logs.map_file import ChannelTable, Map
 from reports.own_log.judged import JudgedLog
 from reports.page.build import _plotly
 from reports.page.log_page import log_page
+from reports.page.log_sections.curves import curves
 from reports.page.log_sections.motion import stretches
 from reports.page.log_sections.verdict import map_lines
 from tests.reports.page.hostile import EVIL, Outline, stands_alone
@@ -36,8 +39,12 @@ NASTY = f"{EVIL} %{{x}} $x^2$ \u0645\u0631 {ACTING}"
 MEGABYTES_3 = 3_000_000
 
 
-def page(one: JudgedLog) -> str:
-    return log_page(one, FACTS)
+ONE = {"rocker_deg": angles(MOTION)["rocker_deg"]}
+
+
+def page(columns: Mapping[str, object], *asked: object, **more: object) -> str:
+    """The page of a log at the instants of `MOTION`, where it is of no other scene."""
+    return log_page(judged(TIME_S, columns, *asked, **more), FACTS)
 
 
 def embedded(text: str, name: str) -> dict[str, object]:
@@ -64,14 +71,11 @@ def out() -> JudgedLog:
 
 @pytest.fixture(scope="module")
 def text(out: JudgedLog) -> str:
-    return page(out)
-
-
-def test_every_section_is_there_in_its_order_and_nothing_is_loaded(text: str) -> None:
-    stands_alone(text, SECTIONS)
+    return log_page(out, FACTS)
 
 
 def test_the_verdict_is_told_with_the_errors_in_the_units_of_the_columns(text: str) -> None:
+    stands_alone(text, SECTIONS)
     told = words(text)
     assert "✗ OUT OF TOLERANCE: 1 of 6 errors over 361 samples of fourbar-lecture-1" in told
     assert "✗ OUT rocker_deg angle of rocker 0.5 deg 0.00873 rad 0.001 --target 873%" in told
@@ -81,8 +85,12 @@ def test_the_verdict_is_told_with_the_errors_in_the_units_of_the_columns(text: s
     assert "Not judged, as the log has none: gap of A, D, B, C" in told
 
 
-def test_a_column_leads_to_its_curve(text: str) -> None:
-    channels = embedded(text, "channels")["channels"]
+def test_a_column_leads_to_its_curve_and_columns_of_the_same_rows_share_their_instants(
+    text: str,
+) -> None:
+    carried = embedded(text, "channels")
+    channels = carried["channels"]
+    assert len(carried["axes"]) == 1
     links = [each for each in Outline(text).named("a") if "data-channel" in each]
     assert len(links) == len(channels) == 8
     (rocker,) = re.findall(r'data-channel="(\d+)"><bdi>rocker_deg<', text)
@@ -90,14 +98,11 @@ def test_a_column_leads_to_its_curve(text: str) -> None:
     assert rocker == "0"  # the worst is the first
 
 
-def test_a_log_within_tolerance_says_so_and_needs_no_why() -> None:
-    told = words(page(judged(TIME_S, angles(MOTION, rocker=1e-4))))
+def test_a_log_within_tolerance_needs_no_why_and_a_fitted_drive_is_told_with_its_doubt() -> None:
+    told = words(page(angles(MOTION, rocker=1e-4)))
     assert "✓ WITHIN TOLERANCE: 3 errors" in told
     assert "Why" not in told
-
-
-def test_the_fitted_drive_is_told_with_its_doubt() -> None:
-    told = words(page(judged(TIME_S * 1.01, angles(MOTION), drive="fitted")))
+    told = words(log_page(judged(TIME_S * 1.01, angles(MOTION), drive="fitted"), FACTS))
     assert "Drive fitted to 361 angles of the crank: speed 9.9009901 rad/s (within" in told
 
 
@@ -115,21 +120,18 @@ def test_what_to_write_in_the_map_is_told_by_column_and_is_toml() -> None:
 
 def test_causes_are_told_with_their_lines(out: JudgedLog) -> None:
     cause = Cause("zero", ("rocker_deg",), f"{NASTY} is 0.5 deg off", {"offset": -0.5}, 0.0)
-    told = page(replace(out, causes=(cause,)))
+    told = log_page(replace(out, causes=(cause,)), FACTS)
     assert "offset = -0.5" in told
     assert "Why" in words(told)
     assert "No cause that is known" not in words(told)
     assert [tag for tag, _ in Outline(told).elements].count("img") == 0
 
 
-def test_a_log_of_rates_alone_has_no_drawing_and_says_so() -> None:
-    found = page(judged(TIME_S, {"rocker_rad_s": MOTION.links["rocker"].omega}))
+def test_what_is_drawn_of_a_partial_log_is_said_and_that_rates_alone_have_no_drawing() -> None:
+    found = page({"rocker_rad_s": MOTION.links["rocker"].omega})
     assert Outline(found).sections() == ["verdict", "channels", "made"]
     assert "no mechanism to be drawn" in words(found)
-
-
-def test_what_is_drawn_of_a_partial_log_is_said() -> None:
-    told = words(page(judged(TIME_S, {"rocker_deg": angles(MOTION)["rocker_deg"]})))
+    told = words(page(ONE))
     assert "rocker: its angle, about D" in told
     assert "Left out, as the log does not say where they are: crank, coupler." in told
 
@@ -151,18 +153,15 @@ def test_text_of_the_file_stays_text_and_acts_on_nothing() -> None:
     own = found.replace(_plotly(), "")
     assert not re.search("[\x00-\x08\x0e-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]", own)
     assert "\\u202e" in words(found)
-    json.loads(json.dumps(embedded(found, "channels")))
+    assert embedded(found, "channels")
 
 
-def test_a_file_whose_name_is_no_text_has_a_page(tmp_path: Path) -> None:
-    one = judged(TIME_S, {"rocker_deg": angles(MOTION)["rocker_deg"]})
+def test_a_file_whose_name_is_no_text_has_a_page_and_a_long_name_is_cut() -> None:
+    one = judged(TIME_S, {**ONE, "x" * 5000: TIME_S})
     one = replace(one, log=replace(one.log, source=os.fsdecode(b"\xff\xfe.csv")))
-    (tmp_path / "page.html").write_text(page(one), encoding="utf-8")
-
-
-def test_a_long_name_is_cut() -> None:
-    one = judged(TIME_S, {"rocker_deg": angles(MOTION)["rocker_deg"], "x" * 5000: TIME_S})
-    assert "x" * 100 not in page(one).replace(_plotly(), "")
+    text = log_page(one, FACTS)
+    assert text.encode("utf-8")
+    assert "x" * 100 not in text.replace(_plotly(), "")
 
 
 def test_a_long_log_of_many_channels_stays_small_with_its_spike() -> None:
@@ -172,7 +171,7 @@ def test_a_long_log_of_many_channels_stays_small_with_its_spike() -> None:
     columns |= {f"{n}_rad_s": each.omega for n, each in motion.links.items()}
     columns["lever_deg"] = columns["lever_deg"].copy()
     columns["lever_deg"][17_000] += 3.0
-    found = page(judged(motion.time_s, columns, scene))
+    found = log_page(judged(motion.time_s, columns, scene), FACTS)
     assert len(found.encode()) - len(_plotly().encode()) < MEGABYTES_3
     first = embedded(found, "channels")["channels"][0]
     assert first["label"] == "lever_deg"
@@ -181,13 +180,9 @@ def test_a_long_log_of_many_channels_stays_small_with_its_spike() -> None:
     assert "the smallest and the largest of each stretch" in " ".join(first["told"])
 
 
-def test_channels_of_the_same_rows_share_their_instants(text: str) -> None:
-    assert len(embedded(text, "channels")["axes"]) == 1
-
-
 def test_times_far_from_zero_keep_their_digits() -> None:
     late = 12345.678 + TIME_S
-    found = page(judged(late, angles(solve(SCENE, late))))
+    found = log_page(judged(late, angles(solve(SCENE, late))), FACTS)
     (axis,) = embedded(found, "channels")["axes"]
     after = np.frombuffer(base64.b64decode(axis["time"]["singles"]), "<f4").astype(float)
     assert np.allclose(float(axis["start"]) + after, late, rtol=0, atol=1e-6)
@@ -198,21 +193,15 @@ def test_times_far_from_zero_keep_their_digits() -> None:
 
 
 def test_of_many_turns_the_first_the_last_and_the_worst_are_drawn() -> None:
-    from reports.page.log_sections.curves import curves
-
     motion = motion_of(turns=6.0, samples=601)
-    off = np.zeros(601)
-    off[300] = 1.0
-    one = judged(motion.time_s, angles(motion, rocker=off))
-    names = [each.name for each in stretches(one, curves(one, 100_000))]
-    assert names == ["the turn of the largest error", "the first turn", "the last turn"]
-    off[300], off[70] = 0.0, 1.0  # 0.7 of a turn: its own turn begins at 0.2
-    one = judged(motion.time_s, angles(motion, rocker=off))
-    found = stretches(one, curves(one, 100_000))
-    assert [each.name for each in found] == [
-        "the turn of the largest error, the first turn",
-        "the last turn",
-    ]
+    for row, names in (
+        (300, ["the turn of the largest error", "the first turn", "the last turn"]),
+        (70, ["the turn of the largest error, the first turn", "the last turn"]),
+    ):
+        one = judged(motion.time_s, angles(motion, rocker=np.eye(601)[row]))
+        found = stretches(one, curves(one, 100_000))
+        assert [each.name for each in found] == names
+    # 0.7 of a turn: its own turn begins at 0.2
     assert found[0].start_s == pytest.approx(0.2 * TURN_S)
     assert found[1].end_s == pytest.approx(motion.time_s[-1])
 
@@ -221,18 +210,16 @@ def test_of_many_turns_the_first_the_last_and_the_worst_are_drawn() -> None:
 def test_every_drive_and_a_moved_guide_have_a_page(drive: str) -> None:
     scene = load_scene("shaper")
     motion = motion_of(scene)
-    columns = angles(motion, rod=0.1) | {
-        "B_slider_displacement_mm": 1e3 * motion.sliders["B"].displacement,
-        "F_slider_speed_m_s": motion.sliders["F"].speed,
-    }
-    found = page(judged(motion.time_s, columns, scene, drive=drive))
+    columns = angles(motion, rod=0.1)
+    columns["B_slider_displacement_mm"] = 1e3 * motion.sliders["B"].displacement
+    columns["F_slider_speed_m_s"] = motion.sliders["F"].speed
+    found = log_page(judged(motion.time_s, columns, scene, drive=drive), FACTS)
     assert Outline(found).sections() == SECTIONS
 
 
 def test_the_command_writes_the_page_of_a_log(tmp_path: Path) -> None:
     log, target = tmp_path / "log.csv", tmp_path / "page.html"
-    rows = zip(TIME_S, angles(MOTION, rocker=0.5)["rocker_deg"], strict=True)
-    log.write_text("time_s,rocker_deg\n" + "\n".join(f"{t},{x}" for t, x in rows))
+    pd.DataFrame({"time_s": TIME_S, "rocker_deg": ONE["rocker_deg"] + 0.5}).to_csv(log, index=False)
     request = JudgeRequest("fourbar-lecture-1", log, target=("1e-3",), output=target)
     with (tmp_path / "said.txt").open("w") as said:
         assert run_judge(request, Console(file=said)) == 1
