@@ -51,27 +51,6 @@ def test_the_run_that_was_asked_for_is_taken(
     assert said(cell(scene, name, profile=profile, drive=drive)) == ""
 
 
-@EVERY
-@SCENES
-def test_a_run_without_the_settings_of_its_cell_is_refused(scene: str, name: str) -> None:
-    def without(*args: Any, settings: Any, **options: Any) -> Run:
-        return run(*args, settings=None, **options)
-
-    asked = cell(scene, name, settings={"iterations": 77})
-    assert said(asked) == ""
-    assert "setting iterations: asked for 77, the run has" in said(asked, without)
-
-
-@EVERY
-@SCENES
-def test_the_tuned_run_is_none_of_profile_as_shipped(scene: str, name: str) -> None:
-    def tuned(one: Any, state: Any, engine: str, _: str, **options: Any) -> Run:
-        return run(one, state, engine, "tuned", **options)
-
-    found = said(cell(scene, name, profile="as-shipped"), tuned)
-    assert "profile: asked for 'as-shipped', the run has 'tuned'" in found
-
-
 FIELDS: dict[str, Any] = {
     **dict.fromkeys(("scene", "engine", "profile"), "another"),
     "version": "0.0",
