@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import functools
+import itertools
 import math
 from dataclasses import replace
 
@@ -11,24 +12,25 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.synthesis.asked import AskedAngle, AskedPlace
+from analytic.synthesis.asked import Asked
 from analytic.synthesis.examine import Examined
 from analytic.synthesis.passing import passing_times
 from analytic.synthesis.solutions import solutions_of
+from models.errors import CrankcheckError
 from models.laws import ConstantSpeed, Oscillating
+from models.scene import span
 from models.tasks.coupler import CouplerTask
 from models.tasks.files import load_task, shipped_tasks
 from models.tasks.task import TaskTable
 from reports.synthesis.proof import by_reference, proven
-from tests.worlds.tiers import slowly
+from tests.analytic.synthesis.random_tasks import TASKS, random_solutions
+from tests.worlds.tiers import at_length, slowly
 
 QUICK = (
     *("three-positions", "five-positions", "given-pivots", "by-angle", "central", "isosceles"),
     *("slotted-lever", "whitworth", "power-4-points", "power-5-points", "evans", "peaucellier"),
 )
-SLOWER = (
-    "test_random_proof.py proves all kinds; many solutions, or one more of a kind, take seconds"
-)
+SLOWER = "random tasks are of all kinds; many solutions, or one more of a kind, take seconds"
 EVERY = [
     (kind, name) if name in QUICK else slowly(kind, name, reason=SLOWER)
     for kind, names in shipped_tasks().items()
@@ -69,21 +71,13 @@ def _hold(one: Examined, task: TaskTable, name: str) -> None:
 
 def moved(one: Examined, by: float) -> Examined:
     """The same, asked for places and angles that it does not come to."""
-    positions = tuple(
-        replace(
-            position,
-            asked=tuple(
-                replace(each, place=each.place + by)
-                if isinstance(each, AskedPlace)
-                else replace(each, angle=each.angle + by)
-                if isinstance(each, AskedAngle)
-                else replace(each, displacement=each.displacement + by)
-                for each in position.asked
-            ),
-        )
-        for position in one.positions
-    )
-    return replace(one, positions=positions)
+
+    def shifted(asked: Asked) -> Asked:
+        (name,) = {"place", "angle", "displacement"} & {*vars(asked)}
+        return replace(asked, **{name: vars(asked)[name] + by})
+
+    positions = [replace(p, asked=tuple(map(shifted, p.asked))) for p in one.positions]
+    return replace(one, positions=tuple(positions))
 
 
 @pytest.mark.parametrize(
@@ -100,22 +94,16 @@ def test_what_is_not_met_is_seen(kind: str, name: str) -> None:
 
 def test_a_driver_a_degree_off_is_seen() -> None:
     one, task = best("coupler", "three-positions")
-    law = one.scene.driver.law.turned(math.radians(1.0))
-    late = replace(one, scene=replace(one.scene, driver=replace(one.scene.driver, law=law)))
-    positions = tuple(
-        replace(p, driver_rad=p.driver_rad + math.radians(1.0)) for p in one.positions
-    )
-    assert not all(met.within for met in proven(replace(late, positions=positions), task, "mujoco"))
+    by = math.radians(1.0)
+    driver = replace(one.scene.driver, law=one.scene.driver.law.turned(by))
+    positions = tuple(replace(p, driver_rad=p.driver_rad + by) for p in one.positions)
+    late = replace(one, scene=replace(one.scene, driver=driver), positions=positions)
+    assert not all(met.within for met in proven(late, task, "mujoco"))
 
 
-def test_a_step_that_is_too_long_is_seen() -> None:
+def test_a_step_that_is_too_long_is_seen_and_tolerances_are_those_of_the_task() -> None:
     one, task = best("coupler", "three-positions")
-    every = proven(one, task, "pymunk", steps_per_turn=12.0)
-    assert not all(met.within for met in every)
-
-
-def test_tolerances_are_those_of_the_task() -> None:
-    one, task = best("coupler", "three-positions")
+    assert not all(met.within for met in proven(one, task, "pymunk", steps_per_turn=12.0))
     tight = task.model_copy(update={"tolerance_m": 1e-12, "tolerance_deg": 1e-12})
     assert all(met.limit <= 1e-12 for met in by_reference(one, tight))
     assert not all(met.within for met in proven(one, tight, "mujoco"))
@@ -139,23 +127,23 @@ def test_the_scene_is_the_file() -> None:
 
 def test_what_lies_before_the_first_sample_is_not_read() -> None:
     one, task = best("rocker", "by-angle")
-    back = replace(one.positions[1], driver_rad=2.0 * one.positions[0].driver_rad
-                   - one.positions[1].driver_rad)  # fmt: skip
-    every = proven(replace(one, positions=(one.positions[0], back)), task, "mujoco")
+    first, second = one.positions
+    back = replace(second, driver_rad=2.0 * first.driver_rad - second.driver_rad)
+    every = proven(replace(one, positions=(first, back)), task, "mujoco")
     assert [math.isnan(met.off) for met in every] == [False, True]
 
 
 def test_a_parallelogram_is_driven_the_way_that_its_positions_lie() -> None:
     """Three translations on a circle: the coupler passes a change point between them."""
-    places = [0.1 * cmath.exp(1j * math.radians(angle)) for angle in (200.0, 170.0, 150.0)]
-    task = CouplerTask.model_validate(
-        {
-            "name": "x",
-            "source": "a test",
-            "positions": [{"point_m": [p.real, p.imag], "angle_deg": 0.0} for p in places],
-            "moving_m": [[places[0].real, places[0].imag], [places[0].real + 0.3, places[0].imag]],
-        }
-    )
+    turns = [cmath.rect(0.1, math.radians(angle)) for angle in (200.0, 170.0, 150.0)]
+    points = [[turn.real, turn.imag] for turn in turns]
+    named = {
+        "name": "x",
+        "source": "a test",
+        "moving_m": [points[0], [0.3 + points[0][0], points[0][1]]],
+    }
+    positions = [{"point_m": point, "angle_deg": 0.0} for point in points]
+    task = CouplerTask.model_validate({**named, "positions": positions})
     for one in solutions_of(task).sound:
         at_s = passing_times(one.scene.driver.law, [p.driver_rad for p in one.positions])
         assert np.all(np.diff(at_s) > 0.0)
@@ -170,3 +158,63 @@ def test_a_straight_line_is_gone_from_end_to_end(linkage: str) -> None:
     x = solve(one.scene, time_s, bound=False).points["P"].position[:, 0]
     assert x.min() < 1e-6
     assert x.max() > 0.1 - 1e-6
+
+
+# Where a transmission angle comes below `LEAST_DEG`, or two pins of a link lie close together
+# beside the size of others, engines are not asked: these are hard cases of their own. With pins
+# 0.08 m apart on a coupler between links of 2.3 m pymunk tuned flies apart, where as shipped it
+# holds.
+LEAST_DEG = 20.0
+LONGEST, OF_SIX_BARS = 4.0, 12.0
+"""Of a link of what carries a body, over the least distance of two pins of one."""
+CARRIES = ("two_positions", "three_positions", "given_pivots", "four_positions", "five_positions",
+           "driving_dyad")  # fmt: skip
+FIRST = {"given_pivots": 2002, "four_positions": 2004, "five_positions": 2001, "driving_dyad": 2001}
+"""After them a task that is easy comes at once."""
+ENGINES = ("mujoco", "pymunk", "exudyn")
+
+
+def is_easy(kind: str, one: Examined) -> bool:
+    pins = [
+        math.dist(link.points[p], link.points[q])
+        for link in one.scene.links.values()
+        for p, q in itertools.combinations(link.points, 2)
+        if len(one.scene.pins[p]) > 1 and len(one.scene.pins[q]) > 1
+    ]
+    spans = [*pins, *(span(link.points) for link in one.scene.links.values())]
+    most = OF_SIX_BARS if kind == "driving_dyad" else LONGEST
+    even = kind not in CARRIES or max(spans) < most * min(pins)
+    return even and math.degrees(one.least_transmission_rad) > LEAST_DEG
+
+
+@pytest.mark.parametrize(
+    ("count", "engines"),
+    [
+        (1, ENGINES[:2]),
+        slowly(4, ENGINES, reason="random tasks, and an engine that may be missing"),
+        at_length(50, ENGINES, reason="an engine that flies apart in one task of fifty"),
+    ],
+    ids=["1", "4", "50"],
+)
+@pytest.mark.parametrize("kind", TASKS)
+def test_engines_meet_what_the_reference_meets(
+    kind: str, count: int, engines: tuple[str, ...]
+) -> None:
+    """Tasks whose best solution transmits well enough."""
+    if "exudyn" in engines:
+        pytest.importorskip("exudyn")
+    first = FIRST.get(kind, 2000) if count == 1 else 3000
+    done, number = 0, first
+    while done < count:
+        number += 1
+        assert number < first + 40 * count, (kind, done)
+        try:
+            solutions = random_solutions(kind, number, 4 if count > 1 else 2)
+        except CrankcheckError:
+            continue
+        good = [one for one in solutions.sound if is_easy(kind, one)]
+        done += bool(good)
+        for engine in engines if good else ():
+            every = proven(good[0], solutions.task, engine)
+            off = max(met.off / met.limit for met in every)
+            assert all(met.within for met in every), (kind, number, engine, off, good[0].text)
