@@ -1,29 +1,33 @@
-"""The sheet of vector polygons, measured as one measures a drawing."""
+"""The sheet of vector polygons, measured as one measures a drawing, and what their page holds;
+`tests.reports.page` opens it."""
 
 from __future__ import annotations
 
+import base64
 import io
+import json
 import math
 import re
 from functools import cache
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from analytic.drawings.drawn_polygons import draw_polygons
-from analytic.drawings.placed_mechanism import DriverState
+from analytic.drawings.placed_mechanism import DriverState, PlacedMechanism
 from analytic.kinematics import solve_driven
+from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.sheets.paper import Paper
 from reports.sheets.polygons.polygon_files import polygon_file, turning_file
+from reports.sheets.polygons.polygon_instant import placed_at_angle
+from reports.sheets.polygons.polygon_page import INSTANTS, polygon_page
 from reports.sheets.polygons.polygon_sheet import PolygonSheet, draw_lines, draw_sheet, laid_out
+from tests.reports.sheets.measured import TENTH_MM, drawn_lines
 from tests.worlds.tiers import few, slow
 
-MM_PER_POINT = 25.4 / 72.0
-TENTH_MM = 0.1
 LECTURED = (
     "fourbar-lecture-1",
     "slider-crank-offset",
@@ -31,23 +35,10 @@ LECTURED = (
     "shaper",
     "sixbar-stephenson",
 )
-SVG = "{http://www.w3.org/2000/svg}"
 
 
 def sheet_of(name: str, theta: float, paper: str = "A4", k: float | None = None) -> PolygonSheet:
     return laid_out(draw_polygons(load_scene(name), DriverState(theta, 10.0)), Paper.of(paper), k)
-
-
-def drawn_lines(svg: bytes) -> dict[str, np.ndarray]:
-    """The straight lines of a drawing by name, from their start to their end [mm], y upwards."""
-    found = {}
-    for group in ElementTree.fromstring(svg).iter(f"{SVG}g"):
-        path = group.find(f"{SVG}path")
-        if path is not None and re.match(r"(velocity|acceleration)-", group.get("id", "")):
-            numbers = np.array(re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", path.get("d", "")), float)
-            start, end = numbers[:2], numbers[-2:]
-            found[group.get("id")] = (end - start) * (1.0, -1.0) * MM_PER_POINT
-    return found
 
 
 TURN = math.pi / 2 + np.arange(24) * math.tau / 24
@@ -68,14 +59,15 @@ def test_measured_lengths_are_the_reference_over_a_turn(name: str) -> None:
 
 def check_measured(name: str, theta: float) -> None:
     """Every vector of both polygons to a tenth of a millimetre on paper."""
-    ones = np.ones(1)
     sheet = sheet_of(name, theta)
     measured = drawn_lines(draw_lines(sheet, "").saved("svg", "lines"))
-    solved = solve_driven(load_scene(name), theta * ones, 10.0 * ones, 0.0 * ones, bound=False)
+    driven = np.array([[theta], [10.0], [0.0]])
+    solved = solve_driven(load_scene(name), *driven, bound=False)
     for drawn in (sheet.velocity, sheet.acceleration):
         quantity, nodes = drawn.polygon.quantity, drawn.polygon.nodes
         for vector in drawn.polygon.vectors:
-            length = measured[f"{quantity}-{vector.name}"]
+            (line,) = measured[f"{quantity}-{vector.name}"]
+            length = (line[-1] - line[0]) * (1.0, -1.0)
             assert length == pytest.approx(vector.value / drawn.scale, abs=TENTH_MM)
         for point in nodes.keys() & solved.points.keys():
             ways = [v for v in drawn.polygon.vectors if np.array_equal(v.end, nodes[point])]
@@ -91,18 +83,14 @@ def svg_of(name: str, theta: float) -> bytes:
 
 def test_layers_stand_in_the_order_of_drawing() -> None:
     layers = re.findall(r'inkscape:label="([^"]*)"', svg_of("shaper", 1.2).decode())
-    assert layers[:3] == ["frame", "scheme", "table"]
-    assert layers[3:6] == [
-        "velocity-1-driver-crank",
-        "velocity-2-RPR--lever--block-B",
-        "velocity-3-RRP--rod--block-F",
-    ]
+    groups = ["1-driver-crank", "2-RPR--lever--block-B", "3-RRP--rod--block-F"]
+    assert layers[:6] == ["frame", "scheme", "table", *(f"velocity-{group}" for group in groups)]
 
 
-@pytest.mark.parametrize(
-    "at",
-    few([("shaper", 1.2), ("fourbar-lecture-1", 1.0)], [("shaper", 1.2)], "pins alone"),
-)
+TWO = [("shaper", 1.2), ("fourbar-lecture-1", 1.0)]
+
+
+@pytest.mark.parametrize("at", few(TWO, TWO[:1], "pins alone"))
 def test_the_same_sheet_has_the_same_bytes(at: tuple[str, float]) -> None:
     sheet = sheet_of(*at)
     assert polygon_file(sheet, ".svg") == svg_of(*at)
@@ -151,15 +139,11 @@ def test_directions_that_hardly_cross_are_told() -> None:
     assert any(word.startswith("flat: RRR (coupler, rocker): its directions") for word in words)
 
 
-def test_the_book_s_scale_draws_the_crank_s_vectors_k_times_the_crank() -> None:
+def test_the_book_s_scale_draws_vectors_k_times_the_crank_where_the_paper_has_room() -> None:
     sheet = sheet_of("fourbar-lecture-1", 1.0, k=2.0)
-    crank = 0.1 / sheet.length_scale
-    velocity, acceleration = sheet.velocity, sheet.acceleration
-    assert velocity.polygon.vectors[0].size / velocity.scale == pytest.approx(2.0 * crank)
-    assert acceleration.polygon.vectors[0].size / acceleration.scale == pytest.approx(2.0 * crank)
-
-
-def test_a_k_for_which_the_paper_is_too_small_is_refused_with_what_it_needs() -> None:
+    for drawn in (sheet.velocity, sheet.acceleration):
+        size = drawn.polygon.vectors[0].size / drawn.scale
+        assert size == pytest.approx(2.0 * 0.1 / sheet.length_scale)
     with pytest.raises(CrankcheckError, match=r"needs \d+ x \d+ mm .* larger paper, or a smaller"):
         sheet_of("fourbar-lecture-1", 1.0, k=20.0)
 
@@ -177,3 +161,44 @@ def test_a_k_for_which_the_paper_is_too_small_is_refused_with_what_it_needs() ->
 def test_paper_that_can_not_be_drawn_on_is_refused(paper: str, told: str) -> None:
     with pytest.raises(CrankcheckError, match=told):
         Paper.of(paper)
+
+
+def embedded(page: str) -> dict:
+    match = re.search(r'id="embedded-polygons">(.*?)</script>', page)
+    return json.loads(match[1])  # type: ignore[no-any-return]  # an object, as it was written
+
+
+def unpacked(packed: dict) -> Array:
+    whole = np.frombuffer(base64.b64decode(packed["base64"]), "<i2").astype(float)
+    whole[whole == -32768] = np.nan
+    return whole.reshape(-1, packed["samples"]) * np.array(packed["scales"])[:, None]
+
+
+def test_the_page_holds_the_polygons_of_each_instant() -> None:
+    placed = placed_at_angle(load_scene("slotted-lever"), 50.0)
+    own = embedded(polygon_page(placed))
+    at = own["home"]
+    assert own["drawing"]["told"]["at"][at] == pytest.approx(50.0)
+    drawn = draw_polygons(placed.scene, placed.driver)
+    for packed, polygon in zip(own["polygons"], (drawn.velocity, drawn.acceleration), strict=True):
+        rows = unpacked(packed["rows"])[:, at].reshape(-1, 4)
+        assert [one["name"] for one in packed["vectors"]] == [v.name for v in polygon.vectors]
+        exact = np.array([[*v.start, *v.end] for v in polygon.vectors])
+        assert rows == pytest.approx(exact, abs=2e-4 * np.abs(rows).max())
+
+
+def test_of_a_link_that_does_not_turn_the_page_has_rates_of_exactly_0() -> None:
+    own = embedded(polygon_page(placed_at_angle(load_scene("scotch-yoke"), 50.0)))
+    rows = unpacked(own["links"]["rows"])
+    number = own["links"]["names"].index("yoke")
+    assert np.all(rows[2 * number : 2 * number + 2] == 0.0)
+
+
+def test_a_speed_of_ones_own_is_that_of_a_whole_turn_if_the_driver_goes_through_one() -> None:
+    placed = placed_at_angle(load_scene("fourbar-swing"), 90.0, 3.0)
+    at = embedded(polygon_page(placed, steady=True))["drawing"]["told"]["at"]
+    assert at[-1] - at[0] == pytest.approx(360.0)
+    assert len(at) == INSTANTS
+    scene = load_scene("fourbar-double-rocker")  # whose driver goes through no turn
+    with pytest.raises(CrankcheckError):
+        polygon_page(PlacedMechanism.of(scene, DriverState(1.0, 1.0)), steady=True)
