@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from html.parser import HTMLParser
+from typing import Any
 
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
@@ -63,6 +64,23 @@ def stands_alone(text: str, sections: list[str]) -> None:
     assert "@import" not in style
 
 
+def shown_and_not_read(text: str, scripts: int) -> None:
+    """Hostile text of a page made no element, and no script beside our own."""
+    outline = Outline(text)
+    assert outline.open == []
+    assert outline.named("img") == []
+    assert not [each for _, each in outline.elements if "onerror" in each]
+    ours = [each for each in outline.named("script") if each.get("type") != "application/json"]
+    assert len(ours) == scripts
+
+
+def embedded_in(text: str, name: str) -> dict[str, Any]:
+    """What a section of a page carries for its scripts."""
+    found = re.search(rf'id="embedded-{name}">(.*?)</script>', text, re.DOTALL)
+    assert found
+    return json.loads(found[1])
+
+
 def evil(stored: Stored) -> Stored:
     """The store with hostile text wherever a file may have it; drawings keep the scenes' names."""
     cells = stored.cells.copy()
@@ -70,13 +88,9 @@ def evil(stored: Stored) -> Stored:
         cells[column] = [f"{EVIL}{value}" if value != "ok" else value for value in cells[column]]
     cells["scene"] = [f"{EVIL}{name}" for name in cells["scene"]]
     cells["asked"] = [json.dumps({EVIL: EVIL, **json.loads(asked)}) for asked in cells["asked"]]
-    scenes = {
-        f"{EVIL}{name}": text.replace("Crank-rocker", "</script><script>window.hacked=1//")
-        for name, text in stored.manifest.scenes.items()
-    }
-    runs = (
-        {"command": [EVIL], "started": EVIL, "study": {EVIL: EVIL}, "provenance": {EVIL: EVIL}},
-    )
-    found = Stored(stored.folder, Manifest(scenes, runs), cells, stored.timings)
+    hacked = ("Crank-rocker", "</script><script>window.hacked=1//")
+    scenes = {f"{EVIL}{k}": text.replace(*hacked) for k, text in stored.manifest.scenes.items()}
+    run = {"command": [EVIL], "started": EVIL, "study": {EVIL: EVIL}, "provenance": {EVIL: EVIL}}
+    found = Stored(stored.folder, Manifest(scenes, (run,)), cells, stored.timings)
     vars(found)["_traces"] = stored._traces
     return found

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import json
 import os
 import re
 import tomllib
@@ -28,7 +27,7 @@ from reports.page.log_page import log_page
 from reports.page.log_sections.curves import curves
 from reports.page.log_sections.motion import stretches
 from reports.page.log_sections.verdict import map_lines
-from tests.reports.page.hostile import EVIL, Outline, stands_alone
+from tests.reports.page.hostile import EVIL, Outline, embedded_in, stands_alone
 from tests.reports.page.judged_logs import FACTS, SCENE, TURN_S, angles, judged, motion_of, points
 
 MOTION = motion_of()
@@ -45,12 +44,6 @@ ONE = {"rocker_deg": angles(MOTION)["rocker_deg"]}
 def page(columns: Mapping[str, object], *asked: object, **more: object) -> str:
     """The page of a log at the instants of `MOTION`, where it is of no other scene."""
     return log_page(judged(TIME_S, columns, *asked, **more), FACTS)
-
-
-def embedded(text: str, name: str) -> dict[str, object]:
-    """What a section carries for its scripts."""
-    found = re.search(rf'id="embedded-{name}">(.*?)</script>', text, re.DOTALL)
-    return json.loads(found[1])
 
 
 def words(text: str) -> str:
@@ -88,7 +81,7 @@ def test_the_verdict_is_told_with_the_errors_in_the_units_of_the_columns(text: s
 def test_a_column_leads_to_its_curve_and_columns_of_the_same_rows_share_their_instants(
     text: str,
 ) -> None:
-    carried = embedded(text, "channels")
+    carried = embedded_in(text, "channels")
     channels = carried["channels"]
     assert len(carried["axes"]) == 1
     links = [each for each in Outline(text).named("a") if "data-channel" in each]
@@ -153,7 +146,7 @@ def test_text_of_the_file_stays_text_and_acts_on_nothing() -> None:
     own = found.replace(_plotly(), "")
     assert not re.search("[\x00-\x08\x0e-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]", own)
     assert "\\u202e" in words(found)
-    assert embedded(found, "channels")
+    assert embedded_in(found, "channels")
 
 
 def test_a_file_whose_name_is_no_text_has_a_page_and_a_long_name_is_cut() -> None:
@@ -173,7 +166,7 @@ def test_a_long_log_of_many_channels_stays_small_with_its_spike() -> None:
     columns["lever_deg"][17_000] += 3.0
     found = log_page(judged(motion.time_s, columns, scene), FACTS)
     assert len(found.encode()) - len(_plotly().encode()) < MEGABYTES_3
-    first = embedded(found, "channels")["channels"][0]
+    first = embedded_in(found, "channels")["channels"][0]
     assert first["label"] == "lever_deg"
     scale = first["whole"]["error"]["scales"][0]
     assert 32767 * scale == pytest.approx(3.0, rel=1e-3)
@@ -183,10 +176,10 @@ def test_a_long_log_of_many_channels_stays_small_with_its_spike() -> None:
 def test_times_far_from_zero_keep_their_digits() -> None:
     late = 12345.678 + TIME_S
     found = log_page(judged(late, angles(solve(SCENE, late))), FACTS)
-    (axis,) = embedded(found, "channels")["axes"]
+    (axis,) = embedded_in(found, "channels")["axes"]
     after = np.frombuffer(base64.b64decode(axis["time"]["singles"]), "<f4").astype(float)
     assert np.allclose(float(axis["start"]) + after, late, rtol=0, atol=1e-6)
-    (turn,) = embedded(found, "motion")["stretches"]
+    (turn,) = embedded_in(found, "motion")["stretches"]
     assert (float(turn["start"]), float(turn["end"])) == pytest.approx(
         (late[0], late[-1]), rel=1e-12
     )

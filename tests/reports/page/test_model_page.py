@@ -16,9 +16,9 @@ from reports.own_model.judged import JudgedModel, judged_model
 from reports.page.build import _plotly
 from reports.page.model_page import model_page
 from sim.own_models import Disturbance
-from tests.reports.page.hostile import Outline, stands_alone
+from tests.reports.page.hostile import Outline, embedded_in, stands_alone
 from tests.reports.page.tab import OUT, Tab
-from tests.reports.page.test_log_page import NASTY, embedded, words
+from tests.reports.page.test_log_page import NASTY, words
 from tests.worlds.own_models import ACTUATORS, CROWDED, FACTS, SLIDER_CRANK, judged
 from tests.worlds.tiers import slow
 
@@ -57,10 +57,10 @@ def test_it_tells_the_lines_the_joints_and_the_diff(text: str, rubbing: JudgedMo
     for line in rubbing.patch.splitlines():
         assert escape(line).replace("&quot;", "&#34;") in text
     assert "piston touches rod in 100% of the poses" in told
-    lines = embedded(text, "lines")["lines"]
+    lines = embedded_in(text, "lines")["lines"]
     assert len(lines) == 3
     assert all(line["course"]["error"]["samples"] > 100 for line in lines)
-    assert [line["look"] for line in embedded(text, "motion")["lines"]] == [0, 1, 2]
+    assert [line["look"] for line in embedded_in(text, "motion")["lines"]] == [0, 1, 2]
 
 
 def test_many_disturbances_of_a_kind_stand_in_a_drawer() -> None:
