@@ -1,8 +1,11 @@
-"""A process apart: what it may take, what ends it, and what is told of that."""
+"""A process apart: what it may take, what ends it, and what is told of that; many at a time; and
+one thread for linear algebra in each, unless the user says how many."""
 
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -10,13 +13,17 @@ from contextlib import closing
 from pathlib import Path
 from typing import ClassVar
 
+import psutil
 import pytest
 
-from models.errors import SceneError
+from models.errors import CrankcheckError, SceneError
 from reports.workers import isolated as isolation
 from reports.workers.isolated import Isolated, Limits, Lost
-from tests.worlds.jobs import be_odd, be_strange, fail, hold, refuse_scene
-from tests.worlds.programs import ROOT
+from reports.workers.one_thread import CHOICES, THREADS, one_thread
+from reports.workers.scheduler import FEW, as_they_end, run_all
+from tests.worlds import jobs
+from tests.worlds.programs import ROOT, until
+from tests.worlds.tiers import slowly
 
 LIMIT_S = 900.0
 """That of a job, which no job here takes."""
@@ -24,7 +31,7 @@ LIMIT_S = 900.0
 
 def test_a_child_that_keeps_memory_is_replaced() -> None:
     with closing(Isolated[int](Limits(LIMIT_S, 0.4))) as isolated:
-        pids = {isolated.call(hold, 120_000_000) for _ in range(3)}
+        pids = {isolated.call(jobs.hold, 120_000_000) for _ in range(3)}
     assert not any(isinstance(pid, Lost) for pid in pids)
     assert len(pids) > 1
 
@@ -34,10 +41,9 @@ def test_the_time_limit_is_for_each_job(monkeypatch: pytest.MonkeyPatch) -> None
         assert isolated.call(time.sleep, 3600.0) == Lost("timeout", "no end within 0.3 s")
         monkeypatch.setattr(isolation.threading, "Timer", Noted)
         isolated.limits = Limits(LIMIT_S)
-        for jobs in (1, 2):
+        for count in (1, 2):
             assert isolated.call(time.sleep, 0.0) is None
-            assert Noted.limits_s.count(LIMIT_S) == jobs
-            assert Noted.running == 0
+            assert (Noted.limits_s.count(LIMIT_S), Noted.running) == (count, 0)
 
 
 class Noted(threading.Timer):
@@ -88,18 +94,11 @@ def test_a_limit_that_ends_with_the_job_does_not_end_the_next(
     assert len(set(pids)) == 2
 
 
-def test_a_closed_one_starts_nothing() -> None:
-    isolated: Isolated[None] = Isolated(Limits())
-    isolated.close()
-    assert isolated.call(time.sleep, 0.0) == Lost("crashed", "the sweep was ended")
-
-
 def test_what_the_function_imports_is_not_of_the_memory_of_a_job(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "large.py").write_text(
-        "held = bytearray(300_000_000)\ndef size():\n    return len(held)\n"
-    )
+    text = "held = bytearray(300_000_000)\ndef size():\n    return len(held)\n"
+    (tmp_path / "large.py").write_text(text)
     monkeypatch.syspath_prepend(tmp_path)
     from large import size  # type: ignore[import-not-found]  # made just now
 
@@ -110,22 +109,17 @@ def test_what_the_function_imports_is_not_of_the_memory_of_a_job(
 
 def test_what_was_raised_comes_with_the_place_where_it_was() -> None:
     with closing(Isolated[object](Limits(LIMIT_S))) as isolated:
-        lost = isolated.call(fail)
-        refused = isolated.call(refuse_scene, "scene.toml", ["one", "two"])
-        odd = isolated.call(be_odd)
-        strange = isolated.call(be_strange)
-    assert isinstance(lost, Lost)
+        lost = isolated.call(jobs.fail)
+        refused = isolated.call(jobs.refuse_scene, "scene.toml", ["one", "two"])
+        odd, strange = isolated.call(jobs.be_odd), isolated.call(jobs.be_strange)
     assert isinstance(lost.error, ZeroDivisionError)
     assert "in fail" in lost.error.__notes__[0]
-    assert isinstance(refused, Lost)
     assert isinstance(refused.error, SceneError)
     assert refused.error.faults == ("one", "two")
     assert odd == Lost("crashed", "OddError: 1 and 2")
-    assert isinstance(odd, Lost)
-    assert odd.error is None, "it cannot travel"
     assert strange == Lost("crashed", "StrangeError: of a module that is there alone")
-    assert isinstance(strange, Lost)
-    assert strange.error is None
+    assert odd.error is strange.error is None, "it cannot travel"
+    assert isolated.call(time.sleep, 0.0) == Lost("crashed", "the sweep was ended")
 
 
 def test_a_child_that_does_not_start_in_time_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -144,6 +138,91 @@ class AtOnce(threading.Timer):
 
     def join(self, timeout: float | None = None) -> None:
         """No thread was started."""
+
+
+MANY = list(range(FEW + 2))
+MUCH = Limits(3600.0)
+
+
+def lost(number: int, how: Lost) -> str:
+    return f"{number}: {how.reason}"
+
+
+def test_results_come_in_order_and_what_is_lost_has_one_too() -> None:
+    heard: list[str] = []
+    results = run_all(jobs.unlucky, MANY, 2, MUCH, lost, heard.append)
+    assert results == ["0", "1", "2: the engine ended its process (exit code 3)", "3", "4", "5"]
+    assert sorted(heard) == sorted(results)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "at_once", "limit_s"),
+    [
+        ([3600] * 2, 2, 0.2),
+        slowly([0, *[3600] * FEW], 3, 10.0, reason="a child that was ended has another one's turn"),
+    ],
+)
+def test_what_takes_too_long_is_lost(seconds: list[int], at_once: int, limit_s: float) -> None:
+    wanted = [f"{each}: no end within {limit_s:g} s" if each else "0" for each in seconds]
+    assert run_all(jobs.sleepy, seconds, at_once, Limits(limit_s), lost, apart=True) == wanted
+
+
+def test_few_are_done_here() -> None:
+    here = str(os.getpid())
+    assert run_all(jobs.where, MANY[:FEW], 2, MUCH, lost) == [here] * FEW
+    assert run_all(jobs.where, MANY, 1, MUCH, lost) == [here] * len(MANY)
+    assert here not in run_all(jobs.where, MANY[: FEW + 1], 2, MUCH, lost)
+
+
+@pytest.mark.parametrize("at_once", [1, 2])
+def test_few_are_apart_where_they_have_to_be_and_what_the_work_raises_is_raised_here(
+    at_once: int,
+) -> None:
+    results = run_all(jobs.unlucky, [1, 2], at_once, MUCH, lost, apart=True)
+    assert results == ["1", "2: the engine ended its process (exit code 3)"]
+    with pytest.raises(CrankcheckError, match="no 3"):
+        run_all(jobs.refuse, MANY, at_once, MUCH, lost)
+
+
+def test_at_the_end_all_children_are_ended_in_the_middle_of_their_work() -> None:
+    def drive(child: Isolated[None], seconds: float) -> object:
+        return child.call(time.sleep, seconds)
+
+    others = set(psutil.Process().children())  # a browser that other tests have opened
+    with closing(as_they_end(drive, [0.0, 600.0, 600.0], 2, MUCH)) as ends:
+        assert next(ends) == (0, None)
+        until(lambda: len({*psutil.Process().children()} - others) == 2)
+    assert {*psutil.Process().children()} <= others
+    assert list(as_they_end(drive, [], 0, MUCH)) == []  # nothing to do
+
+
+def test_a_worker_has_one_thread_and_what_the_user_says_stays(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for name in CHOICES:
+        monkeypatch.delenv(name, raising=False)
+    for threads in ("1", "2"):
+        with closing(Isolated[str | None](Limits(LIMIT_S))) as isolated:
+            assert isolated.call(os.getenv, THREADS) == threads
+        assert THREADS not in os.environ or threads == "2"  # this process is the user's own
+        monkeypatch.setenv(THREADS, "2")
+    for name in CHOICES:
+        one_thread(variables := {name: "3"})
+        assert variables == {name: "3"}
+
+
+def test_the_command_asks_before_numpy_is_imported() -> None:
+    program = (
+        "import os, sys, crankcheck.__main__ as command, reports.workers.one_thread as own\n"
+        "def seen(variables):\n"
+        "    print('numpy' in sys.modules, variables is os.environ)\n"
+        "own.one_thread = seen\n"
+        "sys.argv = ['crankcheck', '--version']\n"
+        "command.main()\n"
+    )
+    command, pipes = [sys.executable, "-c", program], {"capture_output": True, "text": True}
+    done = subprocess.run(command, cwd=ROOT, check=False, **pipes)
+    assert done.stdout.splitlines()[0] == "False True", done.stderr
 
 
 @pytest.fixture(autouse=True)

@@ -36,11 +36,7 @@ own.wait()
     ],
 )
 def test_a_signal_ends_it_with_all_that_it_started(
-    patience_s: float,
-    hears: str,
-    how: signal.Signals,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    patience_s: float, hears: str, how: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A program that is told to end may take its time to do so, which here it does not need."""
     sign = tmp_path / "sign"
