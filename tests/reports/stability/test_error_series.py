@@ -1,45 +1,54 @@
-"""Logs that look well at their end, and are not: what is seen of them is not graded as good."""
+"""What of the errors of a run counts, and in which way: of logs that look well at their end and are
+not, of a machine that is let go, and of throws at a toggle."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from models.motion import Motion
+from benchmarks.toggle import LINES, RandomThrow, Thrown, right_from, threw, throws, told
+from models.array import Array
+from models.errors import CrankcheckError
+from models.files import load_scene
+from reports.cli.commands.stability import _cases
+from reports.compare.free.toggle_passage import toggle_passage
 from reports.stability.case import Trial
 from reports.stability.catalogue import CATALOGUE
-from reports.stability.error_series import error_series
+from reports.stability.catalogue.free_motion import from_rest
+from reports.stability.error_series import ErrorSeries, error_series
+from reports.stability.free_error_series import free_error_series, free_start
 from reports.stability.grades import outcome
+from reports.stability.grading import graded
 from reports.stability.limit import at_limit
-from sim.engine import Run
+from reports.stability.toggle import at_toggle, thrown_start
+from sim.engine import Energy, Run
 from sim.run import run
 
 
-def done(trial: Trial) -> Run:
-    """A healthy run of MuJoCo, tuned."""
-    return run(
-        trial.scene,
-        solve(trial.scene, np.zeros(1)).state(),
-        "mujoco",
-        dt_s=trial.dt_s,
-        steps=trial.steps,
-        every=trial.every,
-        drive=trial.drive,
-    )
+def done(trial: Trial, start: Any = None, **other: Any) -> Run:
+    """A run of MuJoCo, tuned; a healthy one, unless it is of something else."""
+    asked = {"dt_s": trial.dt_s, "steps": trial.steps, "every": trial.every, "drive": trial.drive}
+    scene = other.pop("scene", trial.scene)
+    return run(scene, start or solve(scene, np.zeros(1)).state(), "mujoco", **{**asked, **other})
 
 
-def moved(found: Run) -> Motion:
-    return found.motion
+def with_link(found: Run, name: str, theta: Array) -> Run:
+    """The run with other angles of a link."""
+    links = {**found.motion.links, name: replace(found.motion.links[name], theta=theta)}
+    return replace(found, motion=replace(found.motion, links=links))
 
 
-def with_crank(found: Run, theta: np.ndarray) -> Run:
-    motion = moved(found)
-    links = {**motion.links, "crank": replace(motion.links["crank"], theta=theta)}
-    return replace(found, motion=replace(motion, links=links))
+def cut(found: Run, samples: int) -> Run:
+    """Only the first samples are logged, and the engine says that all is well."""
+    motion = found.motion.each_series(lambda series: series[:samples])
+    short = replace(motion, time_s=motion.time_s[:samples])
+    return replace(found, motion=short, gaps={n: gap[:samples] for n, gap in found.gaps.items()})
 
 
 def with_gap(found: Run, gap: float) -> Run:
@@ -51,15 +60,15 @@ def with_gap(found: Run, gap: float) -> Run:
 
 def stuck(found: Run) -> Run:
     """The crank never moves."""
-    theta = moved(found).links["crank"].theta
-    return with_crank(found, np.full_like(theta, theta[0]))
+    theta = found.motion.links["crank"].theta
+    return with_link(found, "crank", np.full_like(theta, theta[0]))
 
 
 def overshot(found: Run) -> Run:
     """The crank goes a radian beyond its limit in mid-run, and comes back."""
-    theta = moved(found).links["crank"].theta.copy()
+    theta = found.motion.links["crank"].theta.copy()
     theta[len(theta) // 2] += 1.0
-    return with_crank(found, theta)
+    return with_link(found, "crank", theta)
 
 
 @pytest.mark.parametrize(
@@ -81,16 +90,12 @@ def test_a_crank_is_locked_only_at_its_limit_with_its_joints_closed_throughout(
     assert outcome(at_limit(trial, spoil(done(trial))), case.within).outcome == ending
 
 
-def cut(found: Run) -> Run:
-    """Only the first fifth is logged, and the engine says that all is well."""
-    keep = slice(0, len(moved(found).time_s) // 5)
-    motion = moved(found).each_series(lambda series: series[keep])
-    short = replace(motion, time_s=motion.time_s[keep])
-    return replace(found, motion=short, gaps={n: gap[keep] for n, gap in found.gaps.items()})
-
-
 @pytest.mark.parametrize(
-    ("spoil", "word"), [(cut, "samples"), (lambda found: replace(found, gaps={}), "no gap of")]
+    ("spoil", "word"),
+    [
+        (lambda found: cut(found, found.motion.time_s.size // 5), "samples"),
+        (lambda found: replace(found, gaps={}), "no gap of"),
+    ],
 )
 def test_a_log_with_holes_is_not_held(spoil: Callable[[Run], Run], word: str) -> None:
     trial = CATALOGUE["coarse-step"].trial(90.0)
@@ -100,20 +105,165 @@ def test_a_log_with_holes_is_not_held(spoil: Callable[[Run], Run], word: str) ->
 
 
 def test_a_branch_left_before_the_run_has_settled_does_not_count() -> None:
-    case = CATALOGUE["open-joint"]
-    scene = case.trial(1e-3).scene
-    trial = Trial(scene)
-    healthy = done(trial)
+    scene = CATALOGUE["open-joint"].trial(1e-3).scene
+    strayed = done(Trial(scene))
+    motion = strayed.motion
     other = replace(scene, branch={name: -sign for name, sign in scene.branch.items()})
-    motion = moved(healthy)
     wrong = solve(other, motion.time_s, bound=False)
     at = np.arange(len(motion.time_s))
-    early = (at > 20) & (at < 100)
-
-    def mixed(name: str) -> np.ndarray:
-        return np.where(early, wrong.links[name].theta, motion.links[name].theta)
-
-    links = {name: replace(link, theta=mixed(name)) for name, link in motion.links.items()}
-    strayed = replace(healthy, motion=replace(motion, links=links))
+    for name, link in motion.links.items():
+        early = np.where((at > 20) & (at < 100), wrong.links[name].theta, link.theta)
+        strayed = with_link(strayed, name, early)
     assert outcome(error_series(scene, strayed), 1e-2).outcome == "branch-changed"
     assert outcome(error_series(scene, strayed, settled_turns=1.0), 1e-2).outcome == "ok"
+
+
+@pytest.fixture(scope="module")
+def trial() -> Trial:
+    """One that is let go, long enough for means over windows."""
+    return from_rest(load_scene("fourbar-swing"), 0.0, 0.5)
+
+
+@pytest.fixture(scope="module")
+def good(trial: Trial) -> Run:
+    return done(trial, free_start(trial), drive="free")
+
+
+def worst(errors: ErrorSeries) -> float:
+    return errors.worst(errors.place)[0]
+
+
+def test_a_run_that_holds_is_ok_and_its_growth_told_over_the_time(trial: Trial, good: Run) -> None:
+    errors = free_error_series(trial, good)
+    assert worst(errors) < 1e-5
+    assert outcome(errors, 1e-2).outcome == "ok"
+    assert errors.per_turn == "in 0.5 s"
+    assert replace(errors, drive=np.zeros_like(errors.place)).per_turn == "a turn"
+
+
+def test_energy_that_is_lost_is_an_error_of_its_size_and_named(trial: Trial, good: Run) -> None:
+    kinetic = good.energy.kinetic_j
+    lost = np.linspace(0.0, 0.1, kinetic.size) * np.max(kinetic)
+    leaking = replace(good, energy=Energy(kinetic - lost, good.energy.potential_j))
+    errors = free_error_series(trial, leaking)
+    assert worst(errors) == pytest.approx(0.05, rel=0.05)  # between two halves
+    reason = outcome(errors, 1e-2).reason
+    assert reason == "the energy, over the largest kinetic one, is off by 0.05"
+
+
+def test_a_phase_that_runs_away_is_an_error_as_long_as_it_is_followed(trial: Trial) -> None:
+    """With a tenth less of gravity it is late, closed, and loses nothing."""
+    light = replace(trial.scene, gravity_m_s2=(0.0, -0.9 * 9.81))
+    slow = done(trial, free_start(trial), scene=light, drive="free")
+    followed = free_error_series(trial, slow)
+    assert worst(followed) > 1e-2
+    assert outcome(followed, 1e-2).outcome == "degraded"
+    assert worst(free_error_series(replace(trial, followed_s=0.02), slow)) < 2e-3
+
+
+def test_places_at_the_runs_own_angle_count_after_the_phase(trial: Trial, good: Run) -> None:
+    off = good.motion.links["rocker"].theta + np.where(good.motion.time_s > 0.3, 0.04, 0.0)
+    errors = free_error_series(replace(trial, followed_s=0.1), with_link(good, "rocker", off))
+    assert worst(errors) == pytest.approx(0.04, rel=1e-3)
+    assert errors.time_s[errors.first(errors.place, 1e-2)] == pytest.approx(0.301, abs=2e-3)
+
+
+def test_numbers_that_are_not_finite_have_diverged(trial: Trial, good: Run) -> None:
+    theta = np.where(good.motion.time_s > 0.4, np.nan, good.motion.links["crank"].theta)
+    errors = free_error_series(trial, with_link(good, "crank", theta))
+    assert outcome(errors, 1e-2).outcome == "diverged"
+
+
+def test_a_step_that_is_too_large_is_seen_and_nothing_said_of_a_crank_that_nobody_drives() -> None:
+    """Of an open joint not what the crank shows, and of the crank no error of 0."""
+    case = CATALOGUE["free-coarse-step"]
+    coarse, _ = graded(case, "mujoco", "tuned", 5e-2, draw=False)
+    fine, _ = graded(case, "mujoco", "tuned", 1e-2, draw=False)
+    assert (fine.outcome, coarse.outcome) == ("ok", "silently-open")
+    assert coarse.reason.startswith("a joint is open by")
+    assert "crank" not in coarse.reason
+    assert np.isnan(coarse.drive)
+
+
+def test_cases_of_free_motion_are_run_when_asked_for() -> None:
+    def named(*names: str, free: bool = False, elastic: bool = False) -> list[str]:
+        return [case.name for case in _cases([*names], free=free, elastic=elastic)]
+
+    free, driven, elastic = named(free=True), named(), named(elastic=True)
+    assert {*free} == {n for n, case in CATALOGUE.items() if case.judge in ("let-go", "toggle")}
+    assert {*elastic} == {case.name for case in CATALOGUE.values() if case.elastic}
+    assert sorted(free + driven + elastic) == sorted(CATALOGUE)
+    assert named("free-long") == ["free-long"]
+    with pytest.raises(CrankcheckError, match="--free and kite: no case of free motion; those are"):
+        named("free-long", "kite", free=True)
+
+
+OVER, SHORT = (CATALOGUE[f"toggle-{name}"].trial(1e-2) for name in ("over", "short"))
+
+
+@pytest.fixture(scope="module")
+def runs() -> dict[str, Run]:
+    """A run that gets over, and one that falls back."""
+    thrown = {"over": OVER, "short": SHORT}
+    return {name: done(one, thrown_start(one), drive="free") for name, one in thrown.items()}
+
+
+def test_a_throw_is_graded_by_what_its_energy_says(runs: dict[str, Run]) -> None:
+    for trial, name in ((OVER, "over"), (SHORT, "short")):
+        assert outcome(at_toggle(trial, runs[name]), 1e-2).outcome == "ok"
+    grade = outcome(at_toggle(SHORT, runs["over"]), 1e-2)
+    assert grade.outcome == "branch-changed"
+    assert grade.reason == "rocker went over to the other assembly"
+
+
+def test_falling_back_with_the_energy_is_degraded_by_what_it_was_short_of(
+    runs: dict[str, Run],
+) -> None:
+    errors, barrier = at_toggle(OVER, runs["short"]), OVER.throw.barrier
+    nearest = toggle_passage(barrier, runs["short"]).nearest_rad
+    assert outcome(errors, 1e-2).outcome == "degraded"
+    assert 0.0 < nearest < 0.2 * abs(barrier.open_rad)
+    assert worst(errors) == pytest.approx(nearest + 0.5 * abs(barrier.open_rad), rel=1e-12)
+
+
+def test_a_run_that_ends_too_soon_is_undecided_and_one_that_comes_open_broken(
+    runs: dict[str, Run],
+) -> None:
+    over, barrier = runs["over"], OVER.throw.barrier
+    early = cut(over, 100)
+    apart = replace(over, gaps={name: gap + 0.1 for name, gap in over.gaps.items()})
+    passages = [early, replace(early, status="diverged"), apart]
+    found = [toggle_passage(barrier, each).outcome for each in passages]
+    assert found == ["undecided", "broken", "broken"]
+    assert outcome(at_toggle(OVER, early), 1e-2).outcome != "ok"
+
+
+@pytest.mark.parametrize("name", ["toggle-over", "toggle-short"])
+def test_every_engine_holds_a_margin_of_a_tenth(name: str) -> None:
+    for engine, profile in LINES:
+        assert graded(CATALOGUE[name], engine, profile, 0.1, draw=False)[0].outcome == "ok"
+
+
+def test_throws_of_the_benchmark_are_told_from_their_truth() -> None:
+    """A small version of `benchmarks/toggle.py`: a throw of which both truths agree."""
+    few = list(throws(1))
+    assert few == list(throws(2))[:1]
+    for throw in few:
+        result = threw(throw)
+        assert result.gets_over == (result.truth == "over")
+        tuned = [result.outcomes[k] for k, (_, profile) in enumerate(LINES) if profile == "tuned"]
+        assert tuned[0] == result.truth
+        assert set(result.outcomes) <= {"over", "back"}
+
+
+def test_the_margin_from_which_all_are_right_ends_at_the_largest_that_is_not() -> None:
+    lengths = (0.2, 0.25, 0.3, 0.5)
+    results = [
+        Thrown(RandomThrow(lengths, margin), margin > 0.0, (came,))
+        for margin, came in ((0.05, "over"), (-2e-3, "back"), (1e-3, "back"), (1e-5, "over"))
+    ]
+    assert right_from(results, 0) == 2e-3
+    assert right_from(results[2:], 0) == math.inf
+    assert told(results, 0).split()[:6] == ["0/0", "1/1", "0/0", "1/2", "1/1", "3"]
+    assert told(results, 0).endswith("over -> back: 1")
+    assert np.isfinite(right_from(results[3:], 0))

@@ -158,7 +158,7 @@ def test_the_command_repeats_the_value_as_it_is_told() -> None:
 @pytest.mark.parametrize(
     ("good", "holds", "fails", "words"),
     [
-        (lambda _: True, 0.1, math.nan, "holds all"),
+        (lambda _: True, 0.1, math.nan, "holds all, error up to 1e-03"),
         (lambda _: False, math.nan, 1.0, "branch-changed at once"),
         (lambda v: v != 1.0, math.nan, 1.0, "branch-changed at 1, holds 2 of 3"),
     ],
@@ -170,7 +170,7 @@ def test_a_line_that_holds_everywhere_or_not_at_once_is_not_bisected(
     found, runs = held(case(1.0, 0.3, 0.1), good)
     assert len(runs) == 3
     assert (found.holds, found.fails) == pytest.approx((holds, fails), rel=0, abs=0, nan_ok=True)
-    assert words in found.words
+    assert found.words == words
 
 
 def test_only_the_values_before_the_first_failure_count_as_held() -> None:
