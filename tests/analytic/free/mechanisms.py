@@ -3,61 +3,27 @@
 from __future__ import annotations
 
 import pickle
-from dataclasses import replace
 from functools import cache
 
 from analytic.free.free_motion import FreeMotion
 from analytic.free.release import release
-from models.files import parse_scene
 from models.scene import Scene, as_bytes
-
-FOURBAR = """
-name = "{name}"
-source = "test"
-gravity_m_s2 = [0.0, -9.81]
-[ground]
-points = {{ A = [0.0, 0.0], D = [{d}, 0.0] }}
-[links]
-crank = {{ bar = ["A", "B"], length_m = {a} }}
-coupler = {{ bar = ["B", "C"], length_m = {b} }}
-rocker = {{ bar = ["D", "C"], length_m = {c} }}
-[driver]
-link = "crank"
-law = "free"
-start_deg = {start_deg}
-speed_rad_s = {speed_rad_s}
-duration_s = 10.0
-[branch]
-C = {branch}
-"""
-SLIDER_CRANK = """
-name = "slider-crank"
-source = "test"
-gravity_m_s2 = [0.0, -9.81]
-[ground]
-points = {{ A = [0.0, 0.0] }}
-[links]
-crank = {{ bar = ["A", "B"], length_m = {r} }}
-rod = {{ bar = ["B", "C"], length_m = {l} }}
-[sliders]
-C = {{ point = "C", on = "ground", through_m = [0.0, {offset}], direction_deg = 0, mass_kg = 1 }}
-[driver]
-link = "crank"
-law = "free"
-start_deg = {start_deg}
-speed_rad_s = {speed_rad_s}
-duration_s = 10.0
-"""
+from tests.analytic.multibody.scenes import scene
 
 
-def released(scene: Scene, until_s: float) -> FreeMotion:
+def released(mechanism: Scene, until_s: float) -> FreeMotion:
     """Its free motion, integrated once for all tests."""
-    return _released(as_bytes(scene), until_s)
+    return _released(as_bytes(mechanism), until_s)
 
 
 @cache
 def _released(pickled: bytes, until_s: float) -> FreeMotion:
     return release(pickle.loads(pickled), until_s)
+
+
+def _driver(start_deg: float, speed_rad_s: float) -> str:
+    start = f"start_deg = {start_deg}, speed_rad_s = {speed_rad_s}"
+    return f'driver = {{ link = "crank", law = "free", {start}, duration_s = 10.0 }}'
 
 
 def fourbar(
@@ -72,11 +38,15 @@ def fourbar(
 ) -> Scene:
     """A four-bar of rods; by default the lecture's, let go from rest a right angle above the
     bottom."""
-    text = FOURBAR.format(
-        name="fourbar", a=a, b=b, c=c, d=d,
-        start_deg=start_deg, speed_rad_s=speed_rad_s, branch=branch,
-    )  # fmt: skip
-    return parse_scene(text, "fourbar")
+    return scene(f"""
+ground = {{ points = {{ A = [0.0, 0.0], D = [{d}, 0.0] }} }}
+{_driver(start_deg, speed_rad_s)}
+branch = {{ C = {branch} }}
+[links]
+crank = {{ bar = ["A", "B"], length_m = {a} }}
+coupler = {{ bar = ["B", "C"], length_m = {b} }}
+rocker = {{ bar = ["D", "C"], length_m = {c} }}
+""")
 
 
 def past_limits(**start: float) -> Scene:
@@ -92,11 +62,11 @@ def slider_crank(
     start_deg: float = -70.0,
     speed_rad_s: float = 0.0,
 ) -> Scene:
-    text = SLIDER_CRANK.format(
-        r=r, l=l, offset=offset, start_deg=start_deg, speed_rad_s=speed_rad_s
-    )
-    return parse_scene(text, "slider-crank")
-
-
-def weightless(scene: Scene) -> Scene:
-    return replace(scene, gravity_m_s2=(0.0, 0.0))
+    return scene(f"""
+ground = {{ points = {{ A = [0.0, 0.0] }} }}
+{_driver(start_deg, speed_rad_s)}
+sliders = {{ C = {{ on = "ground", through_m = [0.0, {offset}], mass_kg = 1 }} }}
+[links]
+crank = {{ bar = ["A", "B"], length_m = {r} }}
+rod = {{ bar = ["B", "C"], length_m = {l} }}
+""")

@@ -1,4 +1,5 @@
-"""The equation of a machine by another method: steps of order 8, to instants of no window."""
+"""The equation of a machine by another method: steps of order 8, to instants of no window; and the
+equations of all its bodies."""
 
 from __future__ import annotations
 
@@ -7,10 +8,13 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from analytic.check.constraints import Constraints
 from analytic.free.chart import Chart
 from analytic.free.machine import Machine
 from analytic.free.machine_motion import MachineMotion
 from models.array import Array
+from models.poses import centre_of, mass_of
+from models.scene import Scene
 
 STEP_RAD = 0.06
 """The longest step, by what the driver turns in it: left to itself the method takes longer ones,
@@ -65,3 +69,22 @@ def _moved(old: Chart, new: Chart, state: Array) -> Array:
     phi, slope, _ = (float(row[0]) for row in old.driver(state[:1]))
     u = math.sqrt(new.limit.side * (new.limit.driver_rad - phi))
     return np.array([u, slope * state[1] / (-2.0 * new.limit.side * u)])
+
+
+def newton_euler(scene: Scene, system: Constraints, q: Array, rates: Array) -> Array:
+    """The accelerations of all bodies, whose centres lie on their x-axes: M q'' + Phi_q^T lambda =
+    F, Phi_q q'' = gamma, without the driver's equation."""
+    size = system.size
+    mass, force = np.zeros((size, size)), np.zeros(size)
+    for name in scene.links:
+        i, (m, inertia), x = system.at[name], mass_of(scene, name), centre_of(scene, name)[0]
+        c, s = x * math.cos(q[i + 2]), x * math.sin(q[i + 2])
+        carry = np.array([[1.0, 0.0, -s], [0.0, 1.0, c]])  # of the centre, from the frame
+        mass[i : i + 3, i : i + 3] = m * carry.T @ carry
+        mass[i + 2, i + 2] += inertia
+        pull = np.array(scene.gravity_m_s2) + rates[i + 2] ** 2 * np.array([c, s])
+        force[i : i + 3] = m * carry.T @ pull
+    phi_q = system.jacobian(q)[:-1]
+    whole = np.block([[mass, phi_q.T], [phi_q, np.zeros((len(phi_q), len(phi_q)))]])
+    right = np.concatenate([force, system.gamma(q, rates, 0.0)[:-1]])
+    return np.linalg.solve(whole, right)[:size]

@@ -1,47 +1,40 @@
-"""Free motion against a second method, the equations of all bodies, and periods by quadrature."""
+"""Free motion against a second method, by its energy, and of the mechanism turned, moved, mirrored,
+larger or faster."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
-from analytic.check.constraints import Constraints
 from analytic.free.formula_change import FormulaChange
+from analytic.free.free_motion import FreeMotion
 from analytic.free.machine import Machine
 from analytic.free.release import release
 from analytic.free.window import WindowSolution
 from analytic.free.window_kinks import WindowKinks
 from analytic.kinematics import reach, solve
 from analytic.multibody.release_multibody import release_multibody
-from models.array import Array
 from models.characteristics import Constant
 from models.errors import CrankcheckError
-from models.files import parse_scene
+from models.files import load_scene, parse_scene
 from models.friction import ConstantFriction, CoulombFriction
 from models.loads import Load
-from models.poses import centre_of, mass_of
-from models.released import let_go
 from models.scene import Scene
 from models.springs import LineSpring, PinSpring
 from models.staircase import Staircase
 from models.start import Start
 from models.tabulated import Tabulated
 from models.waves import Pulse
-from tests.analytic.free.mechanisms import (
-    SLIDER_CRANK,
-    fourbar,
-    past_limits,
-    released,
-    slider_crank,
-    weightless,
-)
+from tests.analytic.free.mechanisms import fourbar, past_limits, released, slider_crank
 from tests.analytic.free.second_method import driver_by_steps
-from tests.worlds.loading import loaded_mechanism
+from tests.worlds.let_go import EVERYTHING
+from tests.worlds.loading import massless
+from tests.worlds.other_way import MOVES, faster
 from tests.worlds.tiers import few, slow, slowly
 
 
@@ -53,6 +46,7 @@ SPRINGS = {
     "line": LineSpring("line", 200.0, 1.0, 0.1, ("A", "C")),
     "pin": PinSpring("pin", 0.5, 0.01, 0.0, "A", ("ground", "crank")),
 }
+RUBBING = {"C": ConstantFriction("C", 0.02)}
 TABLE = Tabulated((0.0, 1.0, 2.5, 4.0), (0.1, 0.6, 0.3, 0.1), "linear", math.tau)
 SHIPPED_SHOW_IT = "steps of a library are slow; those of shipped scenes show the same"
 KINKED = {
@@ -96,94 +90,9 @@ def test_loads_with_kinks_are_integrated_from_kink_to_kink(name: str) -> None:
         assert np.abs(at[:, None] - places).min(axis=1).max() < 1e-12
 
 
-def bodies_after(scene: Scene, until_s: float) -> Array:
-    """The coordinates of all bodies, from Newton's equations with a multiplier per constraint."""
-    system, state = Constraints(scene), released(scene, 0.9).at(np.zeros(1)).state()
-    start = np.zeros(2 * system.size)
-    size = system.size
-    for name, link in scene.links.items():
-        i, (point, local) = system.at[name], next(iter(link.points.items()))
-        assert local == (0.0, 0.0)
-        start[i : i + 3] = *state.position[point], state.theta[name]
-        start[size + i : size + i + 3] = *state.velocity[point], state.omega[name]
-
-    def rates(_: float, y: Array) -> Array:
-        q, v = y[:size], y[size:]
-        mass, force = np.zeros((size, size)), np.zeros(size)
-        for name in scene.links:
-            i, (m, inertia) = system.at[name], mass_of(scene, name)
-            x, c, s = centre_of(scene, name)[0], math.cos(q[i + 2]), math.sin(q[i + 2])
-            carry = np.array([[1.0, 0.0, -x * s], [0.0, 1.0, x * c]])
-            mass[i : i + 3, i : i + 3] = m * carry.T @ carry
-            mass[i + 2, i + 2] += inertia
-            pull = np.array(scene.gravity_m_s2) + v[i + 2] ** 2 * x * np.array([c, s])
-            force[i : i + 3] = m * carry.T @ pull
-        phi_q = system.jacobian(q)[:-1]
-        whole = np.block([[mass, phi_q.T], [phi_q, np.zeros((len(phi_q), len(phi_q)))]])
-        right = np.concatenate([force, system.gamma(q, v, 0.0)[:-1]])
-        return np.concatenate([v, np.linalg.solve(whole, right)[:size]])
-
-    done = solve_ivp(rates, (0.0, until_s), start, "DOP853", rtol=1e-12, atol=1e-12)
-    return np.array([done.y[system.at[name] + 2, -1] for name in scene.links])
-
-
-@pytest.mark.parametrize(
-    "until_s", [0.4, slowly(0.9, reason="a second: the other limit, which the first is like")]
-)
-def test_past_limits_the_motion_is_that_of_all_bodies(until_s: float) -> None:
-    """Through two limits, each of which puts the dyad into its other assembly."""
-    scene = past_limits()
-    free = released(scene, 0.9)
-    assert [passage.dyad for passage in free.passages] == ["C", "C"]
-    first, second = free.passages
-    cosine = (0.45**2 - 0.2**2 - 0.4**2) / (-2.0 * 0.2 * 0.4)
-    assert second.driver_rad == pytest.approx(math.acos(cosine), abs=1e-15)
-    assert first.driver_rad == pytest.approx(-math.acos(cosine), abs=1e-15)
-    motion = free.at(np.array([until_s]))
-    found = np.array([link.theta[0] for link in motion.links.values()])
-    assert np.abs(found - bodies_after(scene, until_s)).max() < 1e-10
-
-
-PASSING = "smaller steps, of a faster one and of a slider"
-
-
-@pytest.mark.parametrize(
-    ("scene", "until_s", "samples"),
-    [
-        (past_limits(), 0.9, 601),
-        *(
-            slowly(each, 1.0, 1501, reason=PASSING)
-            for each in (
-                past_limits(),
-                past_limits(start_deg=20.0, speed_rad_s=15.0),
-                slider_crank(0.3, 0.2, 0.05, start_deg=20.0, speed_rad_s=8.0),
-            )
-        ),
-    ],
-)
-def test_past_limits_everything_goes_on_smoothly_in_the_right_assembly(
-    scene: Scene, until_s: float, samples: int
-) -> None:
-    free = released(scene, until_s)
-    assert len(free.passages) > 1
-    near = [p.time_s + x for p in free.passages for x in (-1e-4, -1e-7, 0.0, 1e-7, 1e-4)]
-    even = np.linspace(0.0, until_s, samples)
-    time_s = np.sort(np.concatenate([even, np.clip(near, 0.0, until_s)]))
-    motion, step = free.at(time_s), np.diff(time_s)
-    for link in motion.links.values():
-        steady = 0.5 * (link.omega[1:] + link.omega[:-1])
-        off = np.abs(np.diff(link.theta) - steady * step)
-        assert np.all(off <= 0.2 * np.abs(link.alpha).max() * step**2 + 1e-12)
-    beside = free.beside(motion)
-    for name, point in motion.points.items():
-        assert np.abs(beside.points[name].position - point.position).max() < 1e-12
-    for name, link in motion.links.items():
-        assert np.abs(beside.links[name].theta - link.theta).max() < 1e-7
-
-
 @pytest.mark.parametrize(
     "scene", [fourbar(), past_limits(), replace(fourbar(), springs=SPRINGS),
-              replace(fourbar(), friction={"C": ConstantFriction("C", 0.02)}),
+              replace(fourbar(), friction=RUBBING),
               *(scene for scene, _ in KINKED.values())],
 )  # fmt: skip
 @pytest.mark.parametrize("until_s", [0.4, slowly(0.6, reason="energy that goes by and by")])
@@ -198,19 +107,17 @@ def test_energy_balances(scene: Scene, until_s: float) -> None:
     [
         (0.1, {}),
         slowly(0.0, {}, reason="as with a damper"),
-        slowly(
-            0.0, {"friction": {"C": ConstantFriction("C", 0.02)}}, reason="the jump is the spring's"
-        ),
+        slowly(0.0, {"friction": RUBBING}, reason="the jump is the spring's"),
     ],
 )
 def test_a_spring_whose_points_pass_one_another_turns_over(
     damping: float, more: dict[str, Any]
 ) -> None:
     """The slider comes through the other end of its spring twice a turn; the pull jumps there."""
-    ends = SLIDER_CRANK.replace("A = [0.0, 0.0]", "A = [0.0, 0.0], E = [0.3, 0.0]")
-    text = ends.format(r=0.1, l=0.3, offset=0.0, start_deg=30.0, speed_rad_s=12.0)
     across = LineSpring("across", 40.0, damping, 0.05, ("E", "C"))
-    free = release(replace(parse_scene(text, "across"), springs={"across": across}, **more), 1.0)
+    scene = slider_crank(offset=0.0, start_deg=30.0, speed_rad_s=12.0)
+    ground = {**scene.ground, "E": (0.3, 0.0)}
+    free = release(replace(scene, ground=ground, springs={"across": across}, **more), 1.0)
     points = free.at(np.array(free.edges_s)).points
     apart = np.abs(points["C"].position - points["E"].position).max(axis=1)
     assert np.count_nonzero(apart < 1e-13) >= 3
@@ -276,18 +183,6 @@ def test_a_window_that_leads_out_of_reach_is_made_shorter(monkeypatch: pytest.Mo
     assert parts.law.at(end)[0] == pytest.approx(whole.law.at(end)[0], abs=1e-12)
 
 
-def test_a_limit_with_another_singular_position_beside_it_is_passed() -> None:
-    """Less than 0.1 of the range beyond a limit of the driver an earlier dyad is open as well."""
-    scene, _ = loaded_mechanism(36)
-    scene = let_go(replace(scene, loads={}), 0.2)
-    free = release(scene, 0.2)
-    time_s = np.array([0.1, 0.2])
-    near = solve(scene, np.zeros(1), bound=False).state()
-    here, there = free.at(time_s), release_multibody(scene, 0.2, near=near).at(time_s)
-    for name, link in here.links.items():
-        assert np.abs(link.theta - there.links[name].theta).max() < 1e-10
-
-
 def test_friction_holds_a_mechanism_that_has_come_to_rest() -> None:
     scene = replace(fourbar(), friction={"A": ConstantFriction("A", 0.05)})
     free = release(scene, 3.0)
@@ -301,28 +196,12 @@ def test_friction_holds_a_mechanism_that_has_come_to_rest() -> None:
 
 def test_a_pin_spring_is_wound_up_by_whole_turns() -> None:
     spring = PinSpring("pin", 0.02, 0.0, 0.0, "A", ("ground", "crank"))
-    scene = replace(weightless(fourbar(speed_rad_s=30.0)), springs={"pin": spring})
-    time_s = np.linspace(0.0, 0.5, 101)
-    free = release(scene, 0.5)
+    scene = replace(fourbar(speed_rad_s=30.0), gravity_m_s2=(0.0, 0.0), springs={"pin": spring})
+    free, time_s = release(scene, 0.5), np.linspace(0.0, 0.5, 101)
     theta = free.law.at(time_s)[0]
     assert theta.max() > 1.5 * math.tau
     potential = free.energy(time_s).potential
     assert np.abs(potential - 0.01 * theta**2).max() < 1e-12
-
-
-def test_times_may_come_in_any_order() -> None:
-    free, time_s = released(past_limits(), 0.9), np.linspace(0.0, 0.9, 50)
-    forth, back = free.at(time_s), free.at(time_s[::-1])
-    assert np.array_equal(forth.links["rocker"].theta, back.links["rocker"].theta[::-1])
-    assert np.array_equal(
-        forth.bound.points["C"].position,
-        back.bound.points["C"].position[::-1],  # type: ignore[union-attr]
-    )
-
-
-STILL = {
-    name: replace(one, mass_kg=0.0, inertia_kg_m2=0.0) for name, one in fourbar().links.items()
-}
 
 
 @pytest.mark.parametrize(
@@ -331,7 +210,7 @@ STILL = {
         (replace(fourbar(), start=Start(angles_rad={"rocker": 1.0})), "angles_deg.rocker: .* open"),
         (replace(fourbar(), start=Start(rates_rad_s={"rocker": 1.0})), "rates_rad_s.rocker: "),
         (replace(slider_crank(), start=Start(displacements_m={"C": 1.0})), "it is open by .* m;"),
-        (replace(fourbar(), links=STILL), "nothing that moves has a mass"),
+        (massless(fourbar()), "nothing that moves has a mass"),
         (replace(fourbar(), friction={"A": CoulombFriction("A", 0.1, 0.01)}), "friction.A follows"),
         (past_limits(start_deg=120.0), "cannot close at C"),
         (fourbar(0.2, 0.3, 0.2, 0.3), "at rest in the change point of C"),
@@ -353,15 +232,74 @@ def test_random_slider_cranks_and_fourbars_keep_their_energy(seed: int) -> None:
     rng = np.random.default_rng(seed)
     a, b, c, d = rng.uniform(0.1, 0.5, 4).round(3).tolist()
     start = {"start_deg": float(rng.uniform(-60.0, 60.0)), "speed_rad_s": 5.0}
-    four = fourbar(a, b, c, d, **start)  # type: ignore[arg-type]
-    slider = slider_crank(a, b, 0.01, **start)
-    for scene in (four, slider):
+    for scene in (fourbar(a, b, c, d, **start), slider_crank(a, b, 0.01, **start)):  # type: ignore[arg-type]
         theta = math.remainder(math.radians(start["start_deg"]), math.tau)
         if not any(low <= theta <= high for low, high in reach(scene)):
             continue
         free = release(scene, 0.5)
         energy = free.energy(np.linspace(0.0, 0.5, 101))
         assert np.ptp(energy.balance) <= 1e-9 * energy.kinetic.max()
-        end = np.array([0.5])
-        growth = float(free.sensitivity(end)[0])
-        assert float(free.error_rad(end)[0]) < 1e-11 * max(1.0, growth / 100.0)
+        growth, error = (each(np.array([0.5]))[0] for each in (free.sensitivity, free.error_rad))
+        assert error < 1e-11 * max(1.0, growth / 100.0)
+
+
+ALLOWED = 1e-9
+"""Times the sensitivity, of a turn, of the longest link, and of their rates: each scene is
+integrated by itself, with roundings of its own."""
+SCENES: dict[str, tuple[Scene, float, float]] = {
+    "everything that acts": (parse_scene(EVERYTHING, "everything"), 0.3, 0.8),
+    "swing": (load_scene("fourbar-swing"), 0.5, 1.0),
+    "limits": (load_scene("fourbar-double-rocker-swing"), 0.45, 1.0),
+}
+"""Let go for a short and for a longer time [s]."""
+
+
+CHANGES = MOVES | {"faster": faster(5.0)}
+
+
+@cache
+def unmoved(name: str, until_s: float) -> FreeMotion:
+    """The motion that every change of a scene is held to."""
+    return release(SCENES[name][0], until_s)
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "until_s"),
+    [
+        *(
+            (name, change, short_s)
+            for name, (_, short_s, _) in SCENES.items()
+            for change in (CHANGES if name == "everything that acts" else ["mirrored"])
+        ),
+        *(
+            slowly(name, change, long_s, reason="roundings that grow with time")
+            for name, (_, _, long_s) in SCENES.items()
+            for change in CHANGES
+        ),
+    ],
+)
+def test_the_free_motion_of_the_moved_scene_is_the_moved_motion(
+    name: str, change: str, until_s: float
+) -> None:
+    scene, by = SCENES[name][0], CHANGES[change]
+    own, other = unmoved(name, until_s), release(by.of(scene), until_s / by.fast)
+    time_s = np.linspace(0.0, until_s, 25)
+    old, new = own.at(time_s, bound=False), other.at(time_s / by.fast, bound=False)
+    off = ALLOWED * own.sensitivity(time_s)
+    fastest = max(1.0, own.peak_speed_rad_s)
+    for link, was in old.links.items():
+        now = new.links[link]
+        apart = now.theta - by.side * was.theta - by.turn_rad
+        assert np.all(np.abs(apart - math.tau * np.round(apart[0] / math.tau)) <= off)
+        assert np.all(np.abs(now.omega / by.fast - by.side * was.omega) <= 10.0 * fastest * off)
+    for point, place in old.points.items():
+        wanted = by.grow * by.turned(place.position) + by.shift_m
+        assert np.all(
+            np.hypot(*(new.points[point].position - wanted).T)
+            <= off * (by.grow * scene.longest_m + np.hypot(*by.shift_m))
+        )
+    energy, again = own.energy(time_s), other.energy(time_s / by.fast)
+    gain = by.grow**3 * by.fast**2  # masses grow with lengths, and speeds too
+    largest = float(np.max(energy.kinetic))
+    assert np.all(np.abs(again.kinetic / gain - energy.kinetic) <= 10.0 * largest * off)
+    assert np.all(np.abs(again.work / gain - energy.work) <= 10.0 * largest * off)

@@ -1,12 +1,17 @@
-"""The shipped scenes of free motion: a second method, the multibody form, energy and periods, and
-what a kink costs."""
+"""The shipped scenes of free motion: a second method, the multibody form, energy and what a kink
+costs; and periods by quadrature, beside the integrated motion."""
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from analytic.dyads.chunk import Chunk
+from analytic.free.free_motion import FreeMotion
 from analytic.free.integration import Integration
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.period import period
@@ -15,10 +20,15 @@ from analytic.free.window_chain import ChainMotion
 from analytic.multibody.release_multibody import release_multibody
 from analytic.prepared import Prepared
 from models.array import Array
+from models.characteristics import Constant
+from models.errors import CrankcheckError
 from models.files import load_scene, shipped
+from models.loads import Load
+from models.scene import Scene
 from models.window_chain import Chain
-from tests.analytic.free.mechanisms import released
+from tests.analytic.free.mechanisms import fourbar, past_limits, released, slider_crank
 from tests.analytic.free.second_method import driver_by_steps
+from tests.analytic.multibody.scenes import scene
 from tests.worlds.tiers import slowly
 
 SHORT_S = {"engine-flywheel": 0.004, "squeezer": 0.03, "fourbar-double-rocker-swing": 0.35}
@@ -114,11 +124,11 @@ def test_the_period_of_the_chain_is_that_of_its_closed_form() -> None:
 
 @pytest.mark.parametrize("until_s", [1.2, slowly(10.0, reason="many swings")])
 def test_the_swing_is_back_at_rest_after_its_periods(until_s: float) -> None:
-    scene = load_scene("fourbar-swing")
-    one, free = period(scene), released(scene, until_s)
+    swing = load_scene("fourbar-swing")
+    one, free = period(swing), released(swing, until_s)
     time_s = one.time_s * np.arange(1, int(until_s / one.time_s) + 1)
     theta, omega, alpha = free.law.at(time_s)
-    assert np.abs(theta - scene.driver.law.start_rad).max() < 1e-11
+    assert np.abs(theta - swing.driver.law.start_rad).max() < 1e-11
     late_s = omega / alpha
     assert np.abs(np.diff(late_s, prepend=0.0)).max() < 1e-12
 
@@ -147,3 +157,73 @@ def test_a_kink_over_the_angle_asks_for_the_mechanism_about_twice(
     motion = release(load_scene("engine-flywheel"), 0.03001)
     assert min(windows) > 35
     assert np.isfinite(motion.at(np.array([0.03])).links["crank"].theta).all()
+
+
+def on_top_of_its_swing() -> Scene:
+    """A rod that starts 0.001 deg below the top."""
+    return scene("""
+        ground = { points = { A = [0.0, 0.0] } }
+        links = { crank = { bar = ["A", "B"], length_m = 1.0 } }
+        driver = { link = "crank", law = "free", start_deg = 89.999 }
+    """)
+
+
+def times_of(free: FreeMotion, level: float, until_s: float) -> list[float]:
+    """When the driver passes an angle upwards."""
+    time_s = np.linspace(0.0, until_s, 4001)
+    off = free.law.at(time_s)[0] - level
+
+    def after(t: float) -> float:
+        return float(free.law.at(np.array([t]))[0][0]) - level
+
+    found = np.flatnonzero((off[:-1] < 0.0) & (off[1:] >= 0.0))
+    return [float(brentq(after, time_s[k], time_s[k + 1], xtol=1e-16)) for k in found]
+
+
+SWINGS = "other swings, and that one takes as long as the last"
+
+
+@pytest.mark.parametrize(
+    ("swung", "until_s"),
+    [
+        (fourbar(), None),
+        (slider_crank(), None),
+        slowly(fourbar(), 4.0, reason=SWINGS),
+        slowly(fourbar(start_deg=-85.0), 4.0, reason=SWINGS),
+        slowly(fourbar(speed_rad_s=5.0), 4.0, reason=SWINGS),
+        slowly(slider_crank(), 4.0, reason=SWINGS),
+    ],
+)
+def test_swings_take_the_period_that_quadrature_has(swung: Scene, until_s: float | None) -> None:
+    one = period(swung)
+    assert one.swing_rad is not None
+    until_s = until_s or 2.2 * one.time_s
+    times = times_of(release(swung, until_s), 0.5 * sum(one.swing_rad), until_s)
+    assert len(times) > 1
+    assert np.abs(np.diff(times) - one.time_s).max() < 1e-12
+
+
+@pytest.mark.parametrize("count", [3, slowly(5, reason="errors that grow with time")])
+def test_turns_take_the_period_that_quadrature_has(count: int) -> None:
+    turning = fourbar(speed_rad_s=40.0)
+    one = period(turning)
+    assert one.swing_rad is None
+    times = one.time_s * np.arange(count)
+    theta = release(turning, times[-1]).law.at(times)[0]
+    assert np.abs(theta - theta[0] - math.tau * np.arange(count)).max() < 1e-11
+
+
+MOTOR = Load("motor", "crank", None, Constant(1.0))
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "said"),
+    [
+        (replace(fourbar(), loads={"motor": MOTOR}), "loads, dampers or friction"),
+        (past_limits(), "comes to its limit"),
+        (on_top_of_its_swing(), "narrower than 0.5 deg"),
+    ],
+)
+def test_a_period_is_refused_where_there_is_none(mechanism: Scene, said: str) -> None:
+    with pytest.raises(CrankcheckError, match=said):
+        period(mechanism)
