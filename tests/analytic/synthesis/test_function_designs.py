@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +23,7 @@ from analytic.synthesis.function.structural_error import (
 from analytic.synthesis.function.task import FunctionTask, MechanismKind
 from models.draft import Draft
 from models.errors import CrankcheckError, ReachError
-from tests.analytic.synthesis.function_cases import known
+from tests.analytic.synthesis.test_function_solutions import known
 from tests.worlds.tiers import at_length, slowly
 
 POWER = GivenFunction.of_formula("x^1.6")
@@ -30,24 +31,17 @@ OUTPUTS = {"fourbar": math.radians(90.0), "slider-crank": 0.05}
 MET = 1e-10
 MANY = "26 or 48 designs to examine, of a grid of starts"
 OPEN = (None, None)
+KINDS: tuple[MechanismKind, ...] = ("fourbar", "slider-crank")
 
 
 def power_task(
     kind: MechanismKind, count: int, *, equal_ripple: bool = False, start: float | None = None
 ) -> FunctionTask:
     """x^1.6 on 1 to 2.5 over 60 degrees of the input, 90 degrees of the output, or 50 mm."""
-    return FunctionTask(
-        POWER,
-        1.0,
-        2.5,
-        math.radians(60.0),
-        OUTPUTS[kind],
-        kind,
-        count,
-        input_start_rad=math.radians(30.0) if count == 3 else start,
-        output_start=(math.radians(60.0) if kind == "fourbar" else 0.025) if count == 3 else None,
-        equal_ripple=equal_ripple,
-    )
+    output = {"fourbar": math.radians(60.0), "slider-crank": 0.025}[kind] if count == 3 else None
+    start = math.radians(30.0) if count == 3 else start
+    starts = {"input_start_rad": start, "output_start": output, "equal_ripple": equal_ripple}
+    return FunctionTask(POWER, 1.0, 2.5, math.radians(60.0), OUTPUTS[kind], kind, count, **starts)
 
 
 @functools.cache
@@ -58,11 +52,13 @@ def designs(task: FunctionTask) -> list[tuple[FunctionProposal, Examined]]:
 
 def best(task: FunctionTask) -> tuple[FunctionProposal, Examined, StructuralError]:
     """Of the mechanisms without defect that close over the range, that with the least error."""
-    found = []
-    for proposal, examined in designs(task):
-        if not examined.defects and "assembled over" not in proposal.doubt:
-            found.append((proposal, examined, structural_error(proposal, examined)))
-    return min(found, key=lambda one: one[2].largest)
+    found = [one for one in designs(task) if is_whole(*one)]
+    every = [(*one, structural_error(*one)) for one in found]
+    return min(every, key=lambda one: one[2].largest)
+
+
+def is_whole(proposal: FunctionProposal, examined: Examined) -> bool:
+    return not examined.defects and "assembled over" not in proposal.doubt
 
 
 @pytest.mark.parametrize(
@@ -76,20 +72,16 @@ def best(task: FunctionTask) -> tuple[FunctionProposal, Examined, StructuralErro
 def test_designs_of_random_solvable_tasks_meet_their_points(seed: int, trials: int) -> None:
     """And one of them makes the function of the mechanism that was drawn."""
     rng = np.random.default_rng(seed)
-    kinds: tuple[MechanismKind, ...] = ("fourbar", "slider-crank")
     givens = {3: [("input", "output")], 4: [("input",), ("output",)], 5: [()]}
     for number in range(trials):
-        kind, count = kinds[number % 2], 3 + number // 2 % 3
+        kind, count = KINDS[number % 2], 3 + number // 2 % 3
         choices = givens[count]
         case = known(rng, kind, count, choices[number % len(choices)])
-        proposals = function_designs(case.task)
-        errors = []
-        for proposal in proposals:
-            examined = examine(proposal)
+        found = [(one, examine(one)) for one in function_designs(case.task)]
+        for _, examined in found:
             if examined.least_sine > 1e-3:
                 assert max(examined.off) < MET, (number, examined.off, case)
-            if not examined.defects and "assembled" not in proposal.doubt:
-                errors.append(structural_error(proposal, examined).largest)
+        errors = [structural_error(*one).largest for one in found if is_whole(*one)]
         assert min(errors) < 1e-6 * case.task.output_scale, (number, errors, case)
 
 
@@ -129,10 +121,10 @@ def test_five_points_of_the_power_have_one_four_bar_with_a_branch_defect() -> No
 @pytest.mark.parametrize(
     ("kind", "count", "start"),
     [
-        *((kind, count, None) for kind in ("fourbar", "slider-crank") for count in (3, 5)),
+        *((kind, count, None) for kind in KINDS for count in (3, 5)),
         ("fourbar", 4, math.radians(7.5)),
         ("slider-crank", 4, math.radians(135.0)),
-        *(slowly(kind, 4, None, reason=MANY) for kind in ("fourbar", "slider-crank")),
+        *(slowly(kind, 4, None, reason=MANY) for kind in KINDS),
     ],
 )
 def test_equal_ripples_are_equal_and_no_larger_than_before(
@@ -169,15 +161,13 @@ def test_a_function_that_a_mechanism_generates_exactly_has_no_ripples() -> None:
         assert structural_error(proposal, examine(proposal)).largest < 1e-12
 
 
-def test_the_reference_and_the_closed_form_tell_one_error() -> None:
-    for kind in ("fourbar", "slider-crank"):
-        proposal, _, error = best(power_task(kind, 3))
-        task, own = proposal.task, proposal.generator
-        turns, ways = task.input_turn(error.x), task.output_scales(error.x)
-        sign = float(own.signs(turns, ways)[0])
-        np.testing.assert_allclose(
-            error.error, own.error(turns, ways, sign) * task.output_scale, atol=1e-12
-        )
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_reference_and_the_closed_form_tell_one_error(kind: MechanismKind) -> None:
+    proposal, _, error = best(power_task(kind, 3))
+    task, own = proposal.task, proposal.generator
+    turns, ways = task.input_turn(error.x), task.output_scales(error.x)
+    wanted = own.error(turns, ways, float(own.signs(turns, ways)[0])) * task.output_scale
+    np.testing.assert_allclose(error.error, wanted, atol=1e-12)
 
 
 def test_the_error_is_nothing_in_the_precision_points_and_has_the_sign_of_the_lecture() -> None:
@@ -204,16 +194,12 @@ def test_open_starts_are_tried_on_the_grid_that_is_told() -> None:
     found = function_designs(opened)
     assert len({proposal.chosen["input start"] for proposal in found}) == 24
     # The finer of a grid and one given are one mechanism, up to a half turn.
-    (own,) = function_designs(task)
-    near = min(
-        found,
-        key=lambda p: abs(
-            math.remainder(p.generator.input_start - own.generator.input_start, math.pi)
-        ),
-    )
-    np.testing.assert_allclose(near.generator.lengths, own.generator.lengths, rtol=1e-9)
-    examined = [examine(proposal) for proposal in found]
-    assert not ranked(examined)[0].defects
+    own = function_designs(task)[0].generator
+    every = [one.generator for one in found]
+    off = [abs(math.remainder(one.input_start - own.input_start, math.pi)) for one in every]
+    near = every[int(np.argmin(off))]
+    np.testing.assert_allclose(near.lengths, own.lengths, rtol=1e-9)
+    assert not ranked([examine(proposal) for proposal in found])[0].defects
 
 
 def test_a_start_that_came_out_turned_is_told() -> None:
@@ -226,16 +212,10 @@ def test_a_start_that_came_out_turned_is_told() -> None:
 
 
 def test_explicit_points_a_falling_function_and_clockwise_ranges() -> None:
-    task = FunctionTask(
-        GivenFunction.of_formula("1/x"),
-        1.0,
-        2.0,
-        math.radians(90.0),
-        math.radians(-90.0),
-        points=(1.9, 1.05, 1.5),
-        input_start_rad=math.radians(30.0),
-        output_start=math.radians(240.0),
-    )
+    starts = {"input_start_rad": math.radians(30.0), "output_start": math.radians(240.0)}
+    ranges = (1.0, 2.0, math.radians(90.0), math.radians(-90.0))
+    inverse = GivenFunction.of_formula("1/x")
+    task = FunctionTask(inverse, *ranges, points=(1.9, 1.05, 1.5), **starts)
     assert task.y_ends == pytest.approx((1.0, 0.5))
     np.testing.assert_allclose(task.output_way(np.array([1.0, 2.0])), [0.0, -math.pi / 2])
     (proposal,) = function_designs(task)
@@ -245,9 +225,10 @@ def test_explicit_points_a_falling_function_and_clockwise_ranges() -> None:
     assert not examined.defects
 
 
-@pytest.mark.parametrize(
-    "start", [math.radians(30.0), slowly(None, reason="156 designs, as both starts are open")]
-)
+BOTH = slowly(None, reason="156 designs, as both starts are open")
+
+
+@pytest.mark.parametrize("start", [math.radians(30.0), BOTH])
 def test_a_hump_and_a_table_are_generated(start: float | None) -> None:
     x = np.linspace(0.0, math.pi, 60)
     table = GivenFunction.of_table(x.tolist(), np.sin(x).tolist(), "a hump")
@@ -277,38 +258,31 @@ def test_the_steps_draw_the_links_where_the_reference_has_them(kind: MechanismKi
     (proposal,) = function_designs(power_task(kind, 3))
     examined = examine(proposal)
     points, result = proposal.steps
-    drawn = [e for e in result.elements if isinstance(e, Segment)]
-    lengths_m = [abs(each.end - each.start) for each in drawn]
-    assert lengths_m == pytest.approx(lengths(proposal.draft))
+    drawn = [abs(e.end - e.start) for e in result.elements if isinstance(e, Segment)]
+    assert drawn == pytest.approx(lengths(proposal.draft))
     angles = np.array([position.driver_rad for position in proposal.positions])
     motion = solve_driven(examined.scene, angles, np.ones(1), np.zeros(1), bound=False)
     dots = {e.letter: e.place for e in points.elements if isinstance(e, Dot)}
     for pin in "AB":
         places = [dots[f"{pin}{number}"] for number in (1, 2, 3)]
-        position = motion.points[pin].position
-        np.testing.assert_allclose(position[:, 0] + 1j * position[:, 1], places, atol=1e-12)
+        position = motion.points[pin].position @ (1.0, 1j)
+        np.testing.assert_allclose(position, places, atol=1e-12)
 
 
 def test_a_mechanism_that_opens_within_the_range_is_told() -> None:
     found = [p for p in function_designs(power_task("slider-crank", 4)) if "assembled" in p.doubt]
     assert found
     for proposal in found:
-        examined = examine(proposal)
         with pytest.raises(ReachError, match="does not close over the whole range"):
-            structural_error(proposal, examined)
+            structural_error(proposal, examine(proposal))
+
+
+WHOLE = {"function": POWER, "x_low": 1.0, "x_high": 2.5, "input_range_rad": 1.0}
 
 
 def refused(says: str, **changes: object) -> None:
-    whole: dict[str, object] = {
-        "function": POWER,
-        "x_low": 1.0,
-        "x_high": 2.5,
-        "input_range_rad": 1.0,
-        "output_range": 1.0,
-    }
-    with pytest.raises(CrankcheckError) as told:
-        function_designs(FunctionTask(**(whole | changes)))  # type: ignore[arg-type]
-    assert says in str(told.value)
+    with pytest.raises(CrankcheckError, match=re.escape(says)):
+        function_designs(FunctionTask(**{**WHOLE, "output_range": 1.0, **changes}))
 
 
 def test_what_is_no_task_is_refused() -> None:
@@ -335,24 +309,18 @@ def test_what_is_no_task_is_refused() -> None:
     refused("a whole turn of the input apart", points=(1.0, 1.5, 2.5), input_range_rad=math.tau)
     line = GivenFunction.of_formula("3*x - 1")
     refused("a whole family of mechanisms meets them", function=line, points=5)
-    refused(
-        "no fourbar meets the 4 precision points",
-        points=4,
-        input_start_rad=math.radians(30),
-        output_range=math.pi / 2,
-        input_range_rad=math.pi / 3,
-    )
+    ranges = {"output_range": math.pi / 2, "input_range_rad": math.pi / 3}
+    start = math.radians(30)
+    refused("no fourbar meets the 4 precision", points=4, input_start_rad=start, **ranges)
 
 
-def test_a_table_is_refused_where_it_is_none_or_too_short() -> None:
+def test_a_table_or_a_python_function_is_refused_where_it_is_none_or_too_short() -> None:
     with pytest.raises(CrankcheckError, match="have to increase"):
         GivenFunction.of_table([0.0, 0.0], [1.0, 2.0])
     with pytest.raises(CrankcheckError, match="finite numbers"):
         GivenFunction.of_table([0.0, 1.0], [1.0, math.nan])
     refused("its rows go from 1 to 2;", function=GivenFunction.of_table([1.0, 2.0], [0.0, 1.0]))
-
-
-def test_a_python_function_that_raises_is_not_defined_there() -> None:
+    # A Python function that raises is not defined there.
     refused("not defined at x = 1", function=GivenFunction.of_callable(lambda x: 1.0 / (x - 1.0)))
     root = GivenFunction.of_callable(lambda x: (2.0 - x) ** 0.5)  # complex beyond 2
     refused("is not defined at x = 2.0", function=root)

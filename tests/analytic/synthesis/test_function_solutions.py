@@ -1,9 +1,11 @@
-"""Freudenstein's equation: all its solutions, against Burmester's points and a search."""
+"""Freudenstein's equation: all solutions of tasks that have one, against Burmester and a search."""
 
 from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -12,13 +14,83 @@ from scipy.optimize import fsolve  # type: ignore[import-untyped]
 from analytic.synthesis.burmester import five_positions
 from analytic.synthesis.function.fourbar import FourBarGenerator, fourbars
 from analytic.synthesis.function.generator import Generator
-from analytic.synthesis.function.slider_crank import slider_cranks
+from analytic.synthesis.function.given import GivenFunction
+from analytic.synthesis.function.slider_crank import SliderCrankGenerator, slider_cranks
 from analytic.synthesis.function.task import FunctionTask, MechanismKind
 from analytic.synthesis.pose import Pose
 from models.array import Array
 from models.errors import CrankcheckError
-from tests.analytic.synthesis.function_cases import known
 from tests.worlds.tiers import slowly
+
+CLEAR = 0.15
+"""Of the discriminant: how far a made mechanism keeps from its limit positions."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """A mechanism, its assembly, and a task that it solves exactly."""
+
+    generator: Generator
+    sign: float
+    task: FunctionTask
+
+
+def random_generator(rng: np.random.Generator, kind: MechanismKind) -> Generator:
+    """Lengths of one order, starts anywhere."""
+    start = float(rng.uniform(-math.pi, math.pi))
+    if kind == "fourbar":
+        a, b, c = rng.uniform(0.3, 2.0, 3).tolist()
+        k = (1.0 / a, 1.0 / c, (a * a - b * b + c * c + 1.0) / (2.0 * a * c))
+        return FourBarGenerator(k, start, 0.0)
+    a, b = rng.uniform(0.3, 2.0, 2).tolist()
+    e = float(rng.uniform(-0.8, 0.8))
+    return SliderCrankGenerator((2.0 * a, 2.0 * a * e, b * b - a * a - e * e), start, 0.0)
+
+
+def known(
+    rng: np.random.Generator, kind: MechanismKind, count: int, given: tuple[str, ...]
+) -> Known:
+    """A task whose function a random mechanism generates over the whole range: ``given`` are the
+    starts that the task tells. x is the share of the input's range."""
+    while True:
+        own = random_generator(rng, kind)
+        turn = float(rng.choice([-1.0, 1.0]) * rng.uniform(0.7, 1.6))
+        sign = float(rng.choice([-1.0, 1.0]))
+        phi = own.input_start + turn * np.linspace(0.0, 1.0, 501)
+        if np.min(own.discriminant(phi)) < CLEAR:
+            continue
+        course = _whole(own, phi, sign)
+        span = float(course[-1] - course[0])
+        if abs(span) < 0.3 or np.ptp(np.sign(np.diff(course))) > 0.0:
+            continue  # an output that turns back is asked for in tests of its own
+        first = float(course[0])
+        function = GivenFunction("a known one", _function(own, turn, sign, first, span))
+        starts = {"input_start_rad": own.input_start} if "input" in given else {}
+        starts |= {"output_start": first} if "output" in given else {}
+        task = FunctionTask(function, 0.0, 1.0, turn, span, kind, count, **starts, ground_m=1.0)
+        return Known(own, sign, task)
+
+
+def _function(
+    own: Generator, turn: float, sign: float, first: float, span: float
+) -> Callable[[Array], Array]:
+    """The share of the output's way, over that of the input's."""
+
+    def at(x: Array) -> Array:
+        off = _whole(own, own.input_start + turn * np.append(0.0, x), sign)[1:] - first
+        if isinstance(own, FourBarGenerator):  # looks may lie far apart: the turn is the way's own
+            middle = 0.5 * span
+            off = middle + np.remainder(off - middle + math.pi, math.tau) - math.pi
+        return np.asarray(off / span)
+
+    return at
+
+
+def _whole(own: Generator, phi: Array, sign: float) -> Array:
+    """The output, of a four-bar without jumps by whole turns."""
+    output = own.output(phi, sign)
+    return np.unwrap(output) if isinstance(own, FourBarGenerator) else output
+
 
 CASES = [
     (kind, count, given)
@@ -37,11 +109,12 @@ def solved(task: FunctionTask) -> list[Generator]:
 
 def numbers(one: Generator) -> Array:
     """What tells mechanisms from each other, angles as directions."""
-    output = one.output_start
-    ends = (
-        [output] if not isinstance(one, FourBarGenerator) else [math.cos(output), math.sin(output)]
-    )
-    return np.array([*one.lengths, math.cos(one.input_start), math.sin(one.input_start), *ends])
+    ends = _direction(one.output_start) if isinstance(one, FourBarGenerator) else [one.output_start]
+    return np.array([*one.lengths, *_direction(one.input_start), *ends])
+
+
+def _direction(angle: float) -> list[float]:
+    return [math.cos(angle), math.sin(angle)]
 
 
 @pytest.mark.parametrize("tasks", [10, slowly(200, reason="random tasks, some near a limit")])
@@ -58,10 +131,8 @@ def test_the_mechanism_that_made_the_points_is_found(
         scale = 1.0 if kind == "fourbar" else abs(task.output_range)
         # The known one starts where its output is at the start of the range.
         start = float(own.output(np.array([own.input_start]), case.sign)[0]) / scale
-        lengths = np.array(own.lengths) / scale
-        angles = [math.cos(own.input_start), math.sin(own.input_start)]
-        ends = [math.cos(start), math.sin(start)] if kind == "fourbar" else [start]
-        target = np.array([*lengths, *angles, *ends])
+        ends = _direction(start) if kind == "fourbar" else [start]
+        target = np.array([*np.array(own.lengths) / scale, *_direction(own.input_start), *ends])
         off = min(float(np.max(np.abs(numbers(one) - target))) for one in found)
         assert off < 1e-5, (off, own)
 
@@ -82,23 +153,15 @@ def by_burmester(turns: Array, ways: Array) -> list[Array]:
     Held by the input, the output's pivot is at exp(-i turn), the output turned by way - turn, and
     its pin B on a circle about A. That the pivots O4 and O2 are such a pair is the trivial one.
     """
-    poses = [
-        Pose(cmath.exp(-1j * turn), way - turn)
-        for turn, way in zip(turns.tolist(), ways.tolist(), strict=True)
-    ]
-    return [
-        np.array(
-            [
-                abs(dyad.fixed),
-                dyad.radius(poses),
-                abs(dyad.moving),
-                *(dyad.fixed.real, dyad.fixed.imag) / np.abs(dyad.fixed),
-                *(dyad.moving.real, dyad.moving.imag) / np.abs(dyad.moving),
-            ]
-        )
-        for dyad in five_positions(poses)
-        if abs(dyad.fixed) + abs(dyad.moving) > 1e-9
-    ]
+    pairs = zip(turns.tolist(), ways.tolist(), strict=True)
+    poses = [Pose(cmath.exp(-1j * turn), way - turn) for turn, way in pairs]
+    found = []
+    for dyad in five_positions(poses):
+        if abs(dyad.fixed) + abs(dyad.moving) > 1e-9:
+            ends = [_direction(cmath.phase(pin)) for pin in (dyad.fixed, dyad.moving)]
+            lengths = [abs(dyad.fixed), dyad.radius(poses), abs(dyad.moving)]
+            found.append(np.array([*lengths, *ends[0], *ends[1]]))
+    return found
 
 
 def test_five_points_have_the_solutions_that_burmester_has() -> None:
@@ -169,8 +232,7 @@ def test_a_negative_length_is_told_and_turned() -> None:
     ways = own.output(0.3 + turns, 1.0) - 1.1
     (plain,) = fourbars(turns, ways, 0.3, 1.1)
     (turned,) = fourbars(turns, ways, 0.3 + math.pi, 1.1)
-    assert plain.turned == ()
-    assert turned.turned == ("input",)
+    assert (plain.turned, turned.turned) == ((), ("input",))
     np.testing.assert_allclose(turned.lengths, plain.lengths, rtol=1e-12)
     assert math.remainder(turned.input_start - 0.3, math.tau) == pytest.approx(0.0, abs=1e-12)
 
@@ -181,30 +243,16 @@ def test_an_output_in_proportion_is_a_family_of_parallelograms() -> None:
         fourbars(turns, turns)
 
 
-def test_the_gradient_is_that_of_differences() -> None:
-    rng = np.random.default_rng(2)
-    for kind in ("fourbar", "slider-crank"):
-        case = known(rng, kind, 5, ())
-        own, free = case.generator, ("input", "output")
-        turns = np.array([0.1, 0.3])
-        exact = own.gradient(turns, case.sign, free)
-        for k in range(5):
-            step = np.zeros(5)
-            step[k] = 1e-6
-            ends = [own.moved(s * step, free).error(turns, turns, case.sign) for s in (1.0, -1.0)]
-            np.testing.assert_allclose(
-                (ends[0] - ends[1]) / 2e-6, exact[:, k], rtol=1e-6, atol=1e-8
-            )
-
-
-def test_polishing_takes_away_what_rounding_left() -> None:
-    rng = np.random.default_rng(3)
-    for kind in ("fourbar", "slider-crank"):
-        case = known(rng, kind, 5, ())
-        turns = case.task.input_turn(case.task.x_points)
-        own = case.generator.output(case.generator.input_start + turns, case.sign)
-        free, step = ("input", "output"), 1e-7 * np.array([1.0, -1.0, 1.0, 1.0, -1.0])
-        rough = case.generator.moved(step, free)
-        assert np.max(np.abs(rough.error(turns, own, case.sign))) > 1e-9
-        fine = rough.polished(turns, own, free)
-        assert np.max(np.abs(fine.error(turns, own, case.sign))) < 1e-14
+@pytest.mark.parametrize("kind", ["fourbar", "slider-crank"])
+def test_polishing_by_a_gradient_takes_away_what_rounding_left(kind: MechanismKind) -> None:
+    case, free = known(np.random.default_rng(3), kind, 5, ()), ("input", "output")
+    own, sign, turns = case.generator, case.sign, case.task.input_turn(case.task.x_points)
+    exact = own.gradient(turns, sign, free)
+    for k, step in enumerate(1e-6 * np.eye(5)):
+        ends = [own.moved(s * step, free).error(turns, turns, sign) for s in (1.0, -1.0)]
+        np.testing.assert_allclose((ends[0] - ends[1]) / 2e-6, exact[:, k], rtol=1e-6, atol=1e-8)
+    ways = own.output(own.input_start + turns, sign)
+    rough = own.moved(1e-7 * np.array([1.0, -1.0, 1.0, 1.0, -1.0]), free)
+    assert np.max(np.abs(rough.error(turns, ways, sign))) > 1e-9
+    fine = rough.polished(turns, ways, free)
+    assert np.max(np.abs(fine.error(turns, ways, sign))) < 1e-14
