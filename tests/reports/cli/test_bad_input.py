@@ -1,6 +1,6 @@
 """What no command reads: each is refused with exit code 2 and one message, which names the place,
 the limit, what was found and what would work, after few calls of functions and in as little memory
-as a misspelt key."""
+as a misspelt key. Loads that a scene can not have, or not for so long, are refused as well."""
 
 from __future__ import annotations
 
@@ -61,6 +61,11 @@ def nested(levels: int, each: int) -> bytes:
     return "\n".join(["a0: &a0 [x]", *lines]).encode()
 
 
+def many(form: str, count: int) -> str:
+    """A text for each number, which stands in place of ``#``."""
+    return "".join(form.replace("#", str(k)) for k in range(count))
+
+
 SPECIAL: dict[str, tuple[Callable[[Path], object], str]] = {
     "3 GB": (sparse, "3000000000 bytes; at most 200000 are read"),
     "endless": (partial(os.symlink, "/dev/zero"), "a device, no plain file"),
@@ -69,98 +74,61 @@ SPECIAL: dict[str, tuple[Callable[[Path], object], str]] = {
     "folder": (os.mkdir, "a folder; name a plain text file of at most 200000 bytes"),
     "link to nothing": (partial(os.symlink, "nothing"), "neither a shipped scene|not there"),
 }
+MORE = r"unknown key.*and \d+ more"
+VALUES = "more than 40000 values, such as scenes.5"
 BOTH: dict[str, tuple[str, str]] = {
     "key of 60,000 dots": ("a." * 60_000 + "a = 1", r"line 1: a key of more than 10 parts"),
     "quoted key of many parts": ('"a".' * 40_000 + "a = 1", r"line 1: a key of more than 10 parts"),
     "brackets": ("a = " + "[" * 60_000, "lists or tables nested too deep, by more than 10"),
     "braces": ("a = " + "{a=" * 60_000, "lists or tables nested too deep|60001 keys"),
-    "deep keys in deep tables": (
-        "a = " + ("{" + "a." * 9 + "a = ") * 50 + "1" + "}" * 50,
-        "lists nested too deep, by more than 10",
-    ),
-    "headers of many parts": (
-        "".join(f"[a{k}{'.b' * 49}]\n" for k in range(1800)),
-        "line 1: a key of more than 10 parts; the deepest of scenes and studies has 4",
-    ),
-    "very many headers": ("".join(f"[a{k}]\n" for k in range(22_000)), "22000 keys, those of head"),
-    "headers of some parts": (
-        "".join(f"[a{k}{'.b' * 9}]\n" for k in range(7700)),
-        "77000 keys, those of headers and the parts between dots counted; at most 20000 are read",
-    ),
-    "headers of quoted parts": (
-        "".join(f'[[ a{k} . \'b\' . "b.\\"" ]]\n' for k in range(7000)),
-        "21000 keys",
-    ),
-    "keys of some parts": ("".join(f"a{k}{'.b' * 9}=1\n" for k in range(7700)), "77000 keys"),
-    "tables of some parts": (
-        "a = [" + "".join(f"{{a{k}.b.c.d = 1,b.c=1}}," for k in range(6000)) + "]",
-        "36001 keys",
-    ),
-    **{
-        f"{count} headers and keys": (
-            "".join(f"[a{k}{'.b' * 8}]\nc=1\n" for k in range(count)),
-            r"unknown key.*and \d+ more",
-        )
-        for count in (190, 1990)
-    },
-    **{
-        f"{count} values": ("scenes = [" + "1," * count + "]", words)
-        for count, words in {
-            3900: "scenes.* and 3|scenes: unknown key",
-            39_000: "scenes.* and 3|scenes: unknown key",
-            45_001: "more than 40000 values, such as scenes.5",
-            95_000: "more than 40000 values, such as scenes.5",
-        }.items()
-    },
-    "very many keys": ("".join(f"a{k}=1\n" for k in range(22_000)), "22000 keys, those of headers"),
-    **{
-        f"{count} keys": ("".join(f"a{k}=1\n" for k in range(count)), r"unknown key.*and \d+ more")
-        for count in (800, 18_000)
-    },
-    **{f"{count} tables": ("[[a]]\n" * count, "a: unknown key") for count in (900, 19_000)},
+    "deep keys in deep tables": ("a = " + ("{" + "a." * 9 + "a = ") * 50 + "1" + "}" * 50,
+        "lists nested too deep, by more than 10"),
+    "headers of many parts": (many(f"[a#{'.b' * 49}]\n", 1800),
+        "line 1: a key of more than 10 parts; the deepest of scenes and studies has 4"),
+    "very many headers": (many("[a#]\n", 22_000), "22000 keys, those of head"),
+    "headers of some parts": (many(f"[a#{'.b' * 9}]\n", 7700),
+        "77000 keys, those of headers and the parts between dots counted; at most 20000 are read"),
+    "headers of quoted parts": (many("[[ a# . 'b' . \"b.\\\"\" ]]\n", 7000), "21000 keys"),
+    "keys of some parts": (many(f"a#{'.b' * 9}=1\n", 7700), "77000 keys"),
+    "tables of some parts": ("a = [" + many("{a#.b.c.d = 1,b.c=1},", 6000) + "]", "36001 keys"),
+    **{f"{n} headers and keys": (many(f"[a#{'.b' * 8}]\nc=1\n", n), MORE) for n in (190, 1990)},
+    **{f"{n} values": ("scenes = [" + "1," * n + "]", "scenes.* and 3|scenes: unknown key")
+       for n in (3900, 39_000)},
+    **{f"{n} values": ("scenes = [" + "1," * n + "]", VALUES) for n in (45_001, 95_000)},
+    "very many keys": (many("a#=1\n", 22_000), "22000 keys, those of headers"),
+    **{f"{n} keys": (many("a#=1\n", n), MORE) for n in (800, 18_000)},
+    **{f"{n} tables": ("[[a]]\n" * n, "a: unknown key") for n in (900, 19_000)},
     "integer of 5000 digits": ("turns = " + "9" * 5000, "line 1: a number of more digits than"),
     "integer of 4000 digits": ("turns = " + "9" * 4000, "turns: a whole number of 13288 bits"),
     "hexadecimal of many digits": ("turns = 0x" + "f" * 9000, "turns: a whole number of 36000 bi"),
     "date": ("turns = 1979-05-27", "turns: "),
     "control character": ("turns = '\0'", "not valid TOML: Found invalid character"),
     "long text": ("turns = '" + "x" * 190_000 + "'", "turns: "),
-}
+}  # fmt: skip
 YAML: dict[str, tuple[bytes, str]] = {
-    "integer of 5000 digits": (
-        b"turns: " + b"9" * 5000,
-        r"line 1, column 8: found 9+\.\.\., a number of 5000 characters; use at most 100",
-    ),
+    "integer of 5000 digits": (b"turns: " + b"9" * 5000,
+        r"line 1, column 8: found 9+\.\.\., a number of 5000 characters; use at most 100"),
     "hexadecimal": (b"turns: 0x" + b"f" * 9000, "found 0xf+.*, a number of 9002 characters; use"),
     "hexadecimal of few digits": (b"turns: 0x" + b"f" * 90, "turns: a whole number of 360 bits"),
     "no digits": (b"turns: 0x_", "found 0x_; it can not be read as int"),
     "degrees": (b"turns: " + b":".join([b"59"] * 60_000), "found 59:59.*a number of 179999 char"),
     "degrees in a list": (b"turns: [" + b"1:" * 97_000 + b"1]", "column 9: found 1:1.*a number of"),
-    "degrees and parts": (
-        b"turns: " + b"1:" * 200 + b"1.0",
-        "column 8: found 1:1.*a number of 403",
-    ),
-    "degrees by another way": (
-        b"a: !!int {!!value b: !!str '" + b"1:" * 90_000 + b"1'}",
-        "a number",
-    ),
+    "degrees and parts": (b"turns: " + b"1:" * 200 + b"1.0",
+        "column 8: found 1:1.*a number of 403"),
+    "degrees by another way": (b"a: !!int {!!value b: !!str '" + b"1:" * 90_000 + b"1'}",
+        "a number"),
     "no integer": (b'turns: !!int ""', "line 1, column 8: found ; it can not be read as int"),
     "no float": (b'turns: !!float ""', "line 1, column 8: found ; it can not be read as float"),
     "integer of no digits": (b'turns: !!int "_"', "found _; it can not be read as int, write"),
     "float of no digits": (b'turns: !!float "_"', "found _; it can not be read as float, write"),
-    "no character": (
-        b'scenes: ["\\U00110000"]',
-        "line 1, column 13: an escape that is no character",
-    ),
+    "no character": (b'scenes: ["\\U00110000"]',
+        "line 1, column 13: an escape that is no character"),
     "no character at all": (b'scenes: ["\\Uffffffff"]', "line 1, column 13: an escape that is no"),
-    "half a character": (
-        b'scenes: ["\\ud800"]',
-        r"column 10: found .ud800; it can not be read as str",
-    ),
+    "half a character": (b'scenes: ["\\ud800"]',
+        r"column 10: found .ud800; it can not be read as str"),
     "half a character as a key": (b'"\\ud800": 1', r"column 1: found .ud800; it can not be"),
-    "version": (
-        b"%YAML " + b"9" * 5000 + b".1\n--- a",
-        "line 1, column 7: .*number of too many dig",
-    ),
+    "version": (b"%YAML " + b"9" * 5000 + b".1\n--- a",
+        "line 1, column 7: .*number of too many dig"),
     "date": (b"turns: 2020-12-25", "turns: found '2020-12-25'; input should be a valid number"),
     "date that is none": (b"turns: 2020-13-45", "turns: found '2020-13-45'; input should be"),
     "date as a key": (b"2020-12-25: 1", "2020-12-25: unknown key; known: scenes"),
@@ -173,15 +141,9 @@ YAML: dict[str, tuple[bytes, str]] = {
     "brackets": (b"a: " + b"[" * 90_000, "line 1, column 13: values nested more than 10 deep"),
     "steps": ("".join(" " * k + "a:\n" for k in range(600)).encode(), "nested more than 10 deep"),
     "dashes": (b"- " * 90_000, "nested more than 10 deep"),
-    **{
-        f"{count} keys": ("".join(f"a{k}: 1\n" for k in range(count)).encode(), words)
-        for count, words in {
-            200: "unknown key.*and 182 more",
-            2000: "unknown key.*and 1982 more",
-            5001: "more than 5000 values",
-            18_000: "more than 5000 values",
-        }.items()
-    },
+    "200 keys": (many("a#: 1\n", 200).encode(), "unknown key.*and 182 more"),
+    "2000 keys": (many("a#: 1\n", 2000).encode(), "unknown key.*and 1982 more"),
+    **{f"{n} keys": (many("a#: 1\n", n).encode(), "more than 5000 val") for n in (5001, 18_000)},
     "tag": (b"turns: !!python/object:os.system x", "could not determine a constructor"),
     "tag of a date": (b"turns: !!timestamp x", "could not determine a constructor"),
     "tag of a truth": (b"turns: !!bool x", "line 1, column 8: found x; it can not be read as bool"),
@@ -190,7 +152,7 @@ YAML: dict[str, tuple[bytes, str]] = {
     "NUL": (b"a: \0", "not valid YAML: unacceptable character"),
     "two": (b"a: 1\n---\nb: 2", "expected a single document"),
     "nothing": (b"", "a table of scenes, variants and steps_per_turn is needed"),
-}
+}  # fmt: skip
 OPTIONS = {
     "solve fourbar-lecture-1 --turns 1e12": "1.2e.13 samples; at most 1000000",
     "solve fourbar-lecture-1 --steps-per-turn 1000000000": "1e.09 samples; at most 1000000",
@@ -218,10 +180,10 @@ def cases() -> Iterator[tuple[str, str, Made, str, str]]:
         yield line[:70], "it.toml", b"", line, words
     yield "1e400", "it.toml", speed("1e400"), SOLVE, "driver.speed_rad_s: found inf; input should"
     for count in (1001, 9000):
-        many = "".join(f"s{k} = {{ on = 'x' }}\n" for k in range(count)).encode()
+        text = ("[sliders]\n" + many("s# = { on = 'x' }\n", count)).encode()
         words = "sliders: found .* at most 1000 items"
-        yield f"{count} sliders", "it.toml", b"[sliders]\n" + many, SOLVE, words
-    star = "".join(f"[links.l{k}.points]\nA = [0.0, 0.0]\nB{k} = [0.1, 0.0]\n" for k in range(999))
+        yield f"{count} sliders", "it.toml", text, SOLVE, words
+    star = many("[links.l#.points]\nA = [0.0, 0.0]\nB# = [0.1, 0.0]\n", 999)
     head = "name = 'a'\nsource = 'b'\n[ground.points]\nA = [0.0, 0.0]\n"
     driver = "[driver]\nlink = 'l0'\nspeed_rad_s = 1.0\n"
     yield "links on a pin", "it.toml", f"{head}{driver}{star}".encode(), SOLVE, "mobility W = .*999"
@@ -271,3 +233,46 @@ def test_it_is_refused_at_once_with_one_message(name: str, apart: Isolated[Ended
     assert ended.files == ()
     assert ended.calls < MOST_CALLS
     assert ended.peak - ended.before < LESS
+
+
+PRESS = shipped("forces")["toggle-press"].read_text(encoding="utf-8")
+RUNS = (
+    "verify FILE --engine mujoco -o OUT",
+    "sweep FILE --engine mujoco -o OUT",
+    "tune FILE --engine mujoco --target 1e-4 --budget 1",
+)
+COMMANDS = (*RUNS, "solve FILE", "run FILE --engine mujoco", "export FILE", "view FILE -o OUT.png",
+            "cycle FILE -o OUT.csv", "flywheel FILE --delta 0.02 --write OUT.toml",
+            "advise FILE --dt 1e-3 --speed 6.0 --target 1e-4")  # fmt: skip
+BLOCK = 'block = "E"\n'
+FAULTS = {
+    (BLOCK, 'link = "lower"\npoint = "Z"\n'): "loads.work.point: lower has no point Z",
+    (BLOCK, 'link = "ground"\npoint = "D"\n'): "loads.work.link: found gro",
+    ("0.0469, 0.0499", "0.0499, 0.0469"): "found 0.0469 after 0.0499",
+    ("0.0469, 0.0499", "0.0469"): "found 4 places and 5 values",
+}
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("fault", FAULTS, ids=["no point", "the ground", "falling", "a row less"])
+def test_a_fault_of_a_load_is_one_message(fault: tuple[str, str], command: str) -> None:
+    assert fault[0] in PRESS
+    check_refused(PRESS.replace(*fault, 1), command, FAULTS[fault])
+
+
+@pytest.mark.parametrize("command", RUNS)
+def test_a_table_shorter_than_the_motion_is_refused_before_anything_runs(command: str) -> None:
+    over = r"loads.work: over the displacement [m] the table goes from -0.05 to 0.0499, and 0.04993"
+    short = PRESS.replace("0.0499, 0.055]", "0.0499]", 1).replace("1e5, 1e5]", "1e5]", 1)
+    check_refused(short, command, over)
+    timed = 'link = "crank"\nlaw = "table"\nover = "time"\ninterpolation = "linear"\n'
+    timed = f"[loads.pull]\n{timed}at_s = [0.0, 0.1]\ntorque_n_m = [1.0, 2.0]\n"
+    over = "loads.pull: over the time [s] the table goes from 0 to 0.1, and "
+    check_refused(PRESS[: PRESS.index("[loads.work]")] + timed, command, over)
+
+
+def check_refused(text: str, command: str, words: str) -> None:
+    ended = attempt(text.encode(), *command.split())
+    assert ended.faults == []
+    assert (ended.code, ended.output, ended.files) == (2, "", ())
+    assert words in " ".join(ended.errors.split())

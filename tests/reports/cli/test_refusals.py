@@ -15,10 +15,14 @@ from tests.analytic.dyads.test_redundant import parallelogram
 from tests.worlds.command_line import crank, refused
 from tests.worlds.loading import massless
 
-Mistakes = dict[str, str | Sequence[str]]
 HERE = Path(__file__)
 V, ONCE = "verify fourbar-lecture-1", "verify fourbar-lecture-1 --steps-per-turn 360 --turns 1"
-VERIFY: Mistakes = {
+PISTON, COUPLER = "slider-crank-by-piston", "fourbar-by-coupler"
+FAMILY = "solve fourbar-lecture-1 --family BC=0.25,0.3 -o f.xlsx"
+RECIPE = "recipe forces --engine mujoco"
+GRAPH = "graph fourbar-lecture-1 --of rocker"
+POLYGON = "polygon fourbar-lecture-1"
+MISTAKES: dict[str, str | Sequence[str]] = {
     "verify fourbar-lectur-1": ["'fourbar-lectur-1'", "fourbar-lecture-1"],
     f"{V} --engine mujco": ["'mujco'", "did you mean mujoco"],
     f"{V} --profile tund": ["'tund'", "did you mean tuned"],
@@ -35,11 +39,8 @@ VERIFY: Mistakes = {
     f"{V} --dt 1e-320": ["steps of fourbar-lecture-1", "at most 300000"],
     "verify --steps-per-turn 1e308": "at most 300000 are logged",
     f"{V} --turns 1e300": ["--turns 1e+300: 7.2e+302 steps", "fewer turns"],
-    f"{V} --turns 0.1": [
-        "--turns 0.1: 72 steps of fourbar-lecture-1",
-        "at least 80",
-        "take 0.111 turns or more",
-    ],
+    f"{V} --turns 0.1": ["--turns 0.1: 72 steps of fourbar-lecture-1", "at least 80",
+                         "take 0.111 turns or more"],
     f"{ONCE} --csv x --json ./x": ["--csv and --json: both name x", "a file of its own"],
     f"{ONCE} -o . --csv verify.json": "--csv and -o: both name verify.json",
     f"{ONCE} --dt 1e-3": ["--dt and --steps-per-turn", "one of them"],
@@ -64,15 +65,14 @@ VERIFY: Mistakes = {
     "verify fourbar-swing --duration -1": "--duration -1: give a number above 0",
     "verify fourbar-swing --dt 0": "--dt 0: give a number above 0",
     "verify --free slider-crank-self-locking": ["friction that grows", "take it out"],
-    "verify slider-crank-self-locking --forces": "mujoco is given no such friction (friction.pisto",
+    "verify slider-crank-self-locking --forces":
+        "mujoco is given no such friction (friction.piston)",
     "verify --mjcf x.xml --free": "--mjcf and --free",
     "sweep --free --turns 2 -o out": "--turns: what is let go has no turns",
     "sweep --free --steps-per-turn 90 -o out": "--steps-per-turn: what is let go has no turns",
     "sweep fourbar-lecture-1 --dt 1e-3 -o out": "--dt: it is of scenes that are let go",
     "sweep fourbar-swing -o out": "its driver is let go, and follows no law",
     "sweep --free --dt 1;2 -o out": "--dt '1;2': write numbers with commas",
-}
-SOLVE: Mistakes = {
     "solve scotch-yok": ["'scotch-yok'", "scotch-yoke"],
     "solve locks.toml --at-deg 180": ["180", "can stand at"],
     "solve tangent --at-deg 41": ["--at-deg 41", "swings from -40 to 40 deg"],
@@ -97,16 +97,12 @@ SOLVE: Mistakes = {
     "view fourbar-elastic-pulse -o a.gif": "elastic",
     "solve flat.toml --forces --at-deg 180": ["crank at 180 deg", "dead point"],
     "solve massless.toml --forces": ["no link or slider has a mass", "mass_kg"],
-    "solve pulsed.toml --forces --at-deg 90": [
-        "loads.pulse follows time",
-        "ask for a motion over time",
-    ],
+    "solve pulsed.toml --forces --at-deg 90": ["loads.pulse follows time",
+                                               "ask for a motion over time"],
     "solve shaper --figures figs": ["--figures", "give --forces"],
     "solve shaper --forces --figures figs --at-deg 90": ["--at-deg 90", "they are of a turn"],
     "solve shaper -o out.html --at-deg 90": ["-o out.html", "leave out --at-deg"],
     "solve shaper --forces --figures flat.toml": "--figures",
-}
-FREE: Mistakes = {
     "solve fourbar-swing --at-deg 90": "--at-deg: fourbar-swing is let go, and moves over time",
     "solve fourbar-swing --turns 2": "leave --turns out, and give --duration and --steps",
     "solve fourbar-swing --steps-per-turn 9": "--steps-per-turn: fourbar-swing is let go",
@@ -121,14 +117,10 @@ FREE: Mistakes = {
     "solve fourbar-swing --steps 1000000": "--steps 1000000: 1000001 samples; at most 1000000",
     "solve fourbar-swing --steps 9 -o OUT.html": "a page has its own samples; leave out --steps",
     "solve fourbar-swing -o OUT.json": "-o OUT.json",
-    "solve fourbar-lecture-1 --duration 2": [
-        "--duration 2: fourbar-lecture-1 is driven, and not let go",
-        'go (law = "free")',
-    ],
+    "solve fourbar-lecture-1 --duration 2":
+        ["--duration 2: fourbar-lecture-1 is driven, and not let go", 'go (law = "free")'],
     "solve fourbar-lecture-1 --steps 2": "--steps 2: fourbar-lecture-1 is driven",
     "view fourbar-swing --forces -o OUT.png": "it is drawn without its forces",
-}
-ELASTIC: Mistakes = {
     "solve fourbar-elastic --at-deg 90": "--at-deg: fourbar-elastic has elastic links (coupler)",
     "solve fourbar-elastic --along C:30": "--along: fourbar-elastic has elastic links",
     "solve fourbar-elastic --duration 2": "--duration 2: fourbar-elastic is driven",
@@ -137,9 +129,8 @@ ELASTIC: Mistakes = {
     "solve fourbar-elastic --elements 99": "--elements 99: at most 12",
     "solve fourbar-elastic --elements 2 --modes 3": "--elements with --modes",
     "solve fourbar-elastic --axial-modes 2": "--axial-modes 2: no elastic link of",
-    "solve fourbar-elastic --shape bent": [
-        "--shape 'bent': unknown; use quasi-static, straight or periodic"
-    ],
+    "solve fourbar-elastic --shape bent":
+        "--shape 'bent': unknown; use quasi-static, straight or periodic",
     "solve fourbar-elastic --steps-per-turn 9 -o OUT.html": "a page has its own samples",
     "solve fourbar-elastic --turns 0": "--turns 0: give a number above 0",
     "solve fourbar-elastic-pulse --turns 2": "--turns: fourbar-elastic-pulse is let go",
@@ -150,9 +141,6 @@ ELASTIC: Mistakes = {
     "solve fourbar-lecture-1 --linear": "--linear: fourbar-lecture-1 has no elastic links",
     "solve fourbar-swing --shape straight": "--shape: fourbar-swing has no elastic links",
     "solve law.toml --shape periodic": "does not come back after a period",
-}
-PISTON, COUPLER = "slider-crank-by-piston", "fourbar-by-coupler"
-DRIVERS: Mistakes = {
     f"solve {PISTON} --at-deg 30": "give its displacement by --at-m",
     "solve tangent --at-m 1": "give its angle by --at-deg",
     f"solve {PISTON} --at-m 0.3 --at-deg 1": "one place; give one",
@@ -165,9 +153,6 @@ DRIVERS: Mistakes = {
     f"flywheel {COUPLER} --delta 0.1": "takes a driver that is a link",
     f"solve {PISTON} --family crank=0.1,0.11 -o a.html": "--family takes",
     f"graph {PISTON} --of rod --over angle": "slider C, which has no angle; use --over time",
-}
-FAMILY = "solve fourbar-lecture-1 --family BC=0.25,0.3 -o f.xlsx"
-FAMILIES: Mistakes = {
     FAMILY.replace("lecture-1", "elastic"): "has elastic links",
     FAMILY.replace("lecture-1", "swing"): "is let go",
     f"{FAMILY} --at-deg 3": "--family with --at-deg",
@@ -182,8 +167,6 @@ FAMILIES: Mistakes = {
     f"{FAMILY} --family BC=0.25,0.01": "BC=0.01: this member cannot be",
     f"{FAMILY} -o f.csv": "found '.csv'; use .xlsx, .html, .svg, .pdf",
     "solve slotted-lever --family R=0.1,0.12": "-o FILE.xlsx, FILE.html, FILE.svg, FILE.pdf",
-}
-RUN: Mistakes = {
     "run fourbar": "scene 'fourbar': neither a shipped scene nor a file",
     "run shaper --engine mujocco": "did you mean mujoco?",
     "run shaper --profile tund": "profile 'tund': mujoco has none of that name",
@@ -199,9 +182,6 @@ RUN: Mistakes = {
     "run shaper --turns 1e9 --every 100": "steps of shaper; at most 30000000; take",
     "run shaper -o log.txt": "-o log.txt: found '.txt'; use .csv, .parquet, .xlsx",
     "run shaper -o nowhere/log.csv": "there is no folder nowhere; create it first",
-}
-RECIPE = "recipe forces --engine mujoco"
-RECIPES: Mistakes = {
     "recipe forces --engine mujoca": "mujoca",
     f"{RECIPE} --scene nowhere": "nowhere",
     f"{RECIPE} --scene tangent": "driver",
@@ -212,9 +192,6 @@ RECIPES: Mistakes = {
     f"{RECIPE} --steps-per-turn inf": "found inf",
     f"{RECIPE} -o forces.txt": "use .py",
     "recipe forces": "Missing option '--engine'",
-}
-GRAPH = "graph fourbar-lecture-1 --of rocker"
-GRAPHS: Mistakes = {
     f"{GRAPH} --divisions 3": "a period has 4 to 1440 parts",
     f"{GRAPH} --divisions {'9' * 5000}": "a period has 4 to 1440 parts",
     f"{GRAPH} --divisions 12,": "give whole numbers",
@@ -227,9 +204,6 @@ GRAPHS: Mistakes = {
     f"{GRAPH} -o graph.png": "use .svg, .pdf",
     f"{GRAPH} --paper B9": "no size; use A5",
     f"{GRAPH} --of crank --divisions 12,24 -o orders.svg": "no errors to draw",
-}
-POLYGON = "polygon fourbar-lecture-1"
-POLYGONS: Mistakes = {
     f"{POLYGON} --k 0": "--k 0: give a number from 0.001 to 1000",
     f"{POLYGON} --k nan": "--k nan: give a number",
     f"{POLYGON} --k 50": "larger paper, or a smaller --k",
@@ -252,8 +226,6 @@ POLYGONS: Mistakes = {
     f"{POLYGON} --log x.csv -o x.html": "a log is drawn at one instant",
     "polygon fourbar-elastic-pulse --at-s 1": "bends or stretches",
     "polygon fourbar-double-rocker --at-deg 180": "deg",
-}
-STRUCTURE: Mistakes = {
     "structure fourbar-lecture-1 --at-m 1": "which turns",
     "structure fourbar-lecture-1 --at-m 1 --at-deg 3": "give one",
     "structure fourbar-lecture-1 --at-deg nan": "--at-deg",
@@ -278,18 +250,10 @@ STRUCTURE: Mistakes = {
     "mobility four-bar --replace": "four-bar: no higher pair",
     "mobility sarrus --replace": "sarrus: a spatial scheme",
     "mobility gear-pair --replace -o x.svg": ".toml",
-}
-MISTAKES = {
-    **VERIFY, **SOLVE, **FREE, **ELASTIC, **DRIVERS, **FAMILIES, **RUN, **RECIPES, **GRAPHS,
-    **POLYGONS, **STRUCTURE,
 }  # fmt: skip
 PULSE = """
-[loads.pulse]
-link = "crank"
-law = "sine"
-over = "time"
-period_s = 0.1
-torque_n_m = 2.0
+[loads]
+pulse = { link = "crank", law = "sine", over = "time", period_s = 0.1, torque_n_m = 2.0 }
 """
 
 
