@@ -1,9 +1,11 @@
-"""No label on a line or on another label, on any sheet; and the check that says so."""
+"""The sheet of positions, measured; no label on a line or on another label, on any sheet; and the
+check that says so."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,14 +15,16 @@ from analytic.drawings.placed_mechanism import DriverState
 from analytic.kinematics import reach
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
+from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.sheets.canvas import Canvas, line, text
 from reports.sheets.centre_sheet import centres_of, draw_centres
+from reports.sheets.driver_range import assembled
 from reports.sheets.letters import Letter, write_letters
 from reports.sheets.paper import Box, Paper
 from reports.sheets.polygons.polygon_sheet import draw_sheet, laid_out
-from reports.sheets.position_sheet import draw_positions, positions
-from tests.reports.sheets.measured import overlaps
+from reports.sheets.position_sheet import PositionSheet, draw_positions, positions
+from tests.reports.sheets.measured import drawn_lines, overlaps
 from tests.worlds.tiers import slow
 
 A4, SMALLEST = Paper.of("A4"), Paper.of("180x120")
@@ -52,8 +56,8 @@ def test_the_check_tells_words_on_lines_on_words_and_off_the_sheet() -> None:
     text(axes, 31.0, 80.5, "second")
     text(axes, 178.0, 20.0, "beyond")
     text(axes, 100.0, 52.0, "clear")
-    told = overlaps(canvas.figure)
-    assert told == ["'first' over 'second'", "'crossed' on a line", "'beyond' off the sheet"]
+    told = ["'first' over 'second'", "'crossed' on a line", "'beyond' off the sheet"]
+    assert overlaps(canvas.figure) == told
 
 
 def test_a_letter_stands_beside_its_point_clear_of_the_lines_that_meet_there() -> None:
@@ -84,16 +88,11 @@ def test_a_letter_that_stands_far_off_has_a_line_that_leads_to_it() -> None:
     assert np.hypot(lead.get_xdata()[1] - 60.0, lead.get_ydata()[1] - 60.0) == pytest.approx(0.5)
 
 
-def test_labels_of_a_drawn_sheet_are_clear() -> None:
+def test_labels_of_a_drawn_sheet_are_clear_on_paper_that_is_high_enough() -> None:
     drawn = draw_polygons(load_scene("sixbar-watt"), DriverState(1.0, 1.0))
     assert overlaps(draw_centres(centres_of(drawn, "coupler", A4), "note").figure) == []
-
-
-def test_paper_too_low_for_the_bodies_of_a_sheet_is_refused_with_what_would_do() -> None:
-    drawn = draw_polygons(load_scene("sixbar-watt"), DriverState(1.0, 1.0))
-    with pytest.raises(
-        CrankcheckError, match=r"180x120: .* 6 bodies and of the curves; 180x131 would do"
-    ):
+    told = r"180x120: .* 6 bodies and of the curves; 180x131 would do"
+    with pytest.raises(CrankcheckError, match=told):
         centres_of(drawn, "coupler", SMALLEST)
     assert centres_of(drawn, "coupler", Paper.of("180x131")).scale > 0.0
 
@@ -131,3 +130,64 @@ def test_labels_of_polygons_are_clear(name: str) -> None:
     for theta in angles_of(scene, 6):
         canvas = draw_sheet(laid_out(draw_polygons(scene, DriverState(theta, 10.0)), A4), "note")
         assert (theta, overlaps(canvas.figure)) == (theta, [])
+
+
+def sheet_of(name: str, divisions: int = 8) -> PositionSheet:
+    return positions(load_scene(name), divisions, A4)
+
+
+def test_the_crank_circle_is_divided_equally_from_the_start() -> None:
+    sheet = sheet_of("fourbar-lecture-1")
+    pins = sheet.points["B"]
+    angles = np.unwrap(np.arctan2(pins[:, 1], pins[:, 0]))
+    assert np.diff(angles) == pytest.approx(np.pi / 4)
+    assert angles[0] == pytest.approx(sheet.scene.driver.law.at(np.zeros(1))[0][0])
+
+
+def test_a_driver_that_turns_or_swings_clockwise_is_numbered_in_its_sense() -> None:
+    def driven(name: str, divisions: int, *law: float) -> PositionSheet:
+        scene = load_scene(name)
+        turning = replace(scene.driver, law=ConstantSpeed(*law))
+        return positions(replace(scene, driver=turning), divisions, A4)
+
+    turns = driven("fourbar-lecture-1", 8, 0.3, -10.0)
+    assert np.diff(turns.angles) == pytest.approx(-np.pi / 4)
+    swings = driven("fourbar-double-rocker", 6, 1.0, -1.0)
+    assert np.all(np.diff(swings.angles) < 0.0)
+    assert swings.placement.driver.omega < 0.0
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_everything_stands_within_the_frame_at_a_round_scale(name: str) -> None:
+    sheet = sheet_of(name)
+    places = np.concatenate([sheet.at(way) for way in sheet.loci.values()])
+    low, high = sheet.box.corners
+    assert np.all(places >= low)
+    assert np.all(places <= high)
+    mantissa = sheet.scale / 10.0 ** np.floor(np.log10(sheet.scale) + 1e-9)
+    assert min(abs(mantissa - step) for step in (1.0, 2.0, 5.0)) < 1e-9
+
+
+def test_the_drawn_locus_is_the_point_s_way_to_a_tenth_of_a_millimetre() -> None:
+    sheet = sheet_of("slider-crank-offset")
+    drawn = drawn_lines(draw_positions(sheet, "").saved("svg", "positions"))
+    assert np.ptp(drawn["locus-C"][0][:, 0]) * sheet.scale == pytest.approx(
+        np.ptp(sheet.loci["C"][:, 0]), abs=1e-4
+    )
+
+
+def test_a_driver_that_swings_is_drawn_over_what_it_reaches() -> None:
+    sheet = sheet_of("fourbar-double-rocker", 6)
+    assert len(sheet.angles) == 6
+    assert np.ptp(sheet.angles) < np.pi
+
+
+def test_divisions_that_fall_together_are_refused_with_how_many_fit() -> None:
+    with pytest.raises(CrankcheckError, match=r"at most \d+ fit, or take larger paper"):
+        sheet_of("shaper", 300)
+
+
+def test_singular_angles_are_left_out_one_by_one() -> None:
+    degrees = np.array([0.0, 45.0, 90.0, 120.0])
+    possible = assembled(load_scene("tangent"), np.radians(degrees))
+    assert possible.tolist() == [True, True, False, True]
