@@ -1,16 +1,30 @@
-"""The hard cases: each has a truth that stands at all of its values, and says what is right."""
+"""The hard cases: each has a truth that stands at all of its values, and says what is right;
+drivers near a limit position, and elastic links."""
 
 from __future__ import annotations
 
+import math
 import re
+from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from analytic.kinematics import solve
+from analytic.kinematics import reach, solve
+from models.errors import ReachError
+from models.hard import slider_crank_by_piston, slotted_lever, triad_platform
+from models.laws import Oscillating
+from models.scene import Driver, Scene
+from reports.stability.case import Trial
 from reports.stability.catalogue import CATALOGUE, GROUPS
-from tests.worlds.tiers import few
+from reports.stability.catalogue.change_points import TRIAD_CRANK_M
+from reports.stability.error_series import nearest
+from reports.stability.grading import graded
+from reports.stability.matrix import Graded
+from tests.worlds.command_line import crank, crank_alone, flat, refused
+from tests.worlds.tiers import few, slow
 
 DRIVEN = [
     (name, value)
@@ -18,7 +32,11 @@ DRIVEN = [
     for value in case.values
     if case.judge == "follow"
 ]
+
+
 HARDEST = {(name, CATALOGUE[name].values[-1]) for name, _ in DRIVEN}
+
+
 MOST_SAMPLES = 20_000
 
 
@@ -54,3 +72,158 @@ def test_the_reference_survives_every_case(name_and_value: tuple[str, float]) ->
         assert np.max(bound.theta) < 1e-3
     for point in motion.points.values():
         assert np.isfinite(point.acceleration).all()
+
+
+def run_of(name: str, value: float, engine: str = "mujoco", profile: str = "tuned") -> Graded:
+    return graded(CATALOGUE[name], engine, profile, value, draw=False)[0]
+
+
+NEAR = ("triad-near-limit", "piston-near-limit", "coupler-near-limit")
+
+
+@pytest.mark.parametrize(
+    "name", few(NEAR, {"piston-near-limit"}, "ranges of a coupler and a triad take longer")
+)
+def test_the_driver_comes_as_near_to_the_end_of_its_range_as_the_case_says(name: str) -> None:
+    trial = CATALOGUE[name].trial(1.0)
+    driven = trial.scene.driver.law.at(trial.dt_s * np.arange(trial.steps + 1))[0].max()
+    limit = float(driven) + {"piston-near-limit": 1e-3}.get(name, math.radians(1.0))
+    assert min(abs(end - limit) for span in reach(trial.scene) for end in span) < 1e-9
+
+
+@pytest.mark.parametrize(
+    "name",
+    few([*NEAR, "triad-excess"], {"piston-near-limit"}, "the same law; a triad takes a second"),
+)
+def test_what_is_harder_is_nearer_to_a_singular_position(name: str) -> None:
+    case, sines = CATALOGUE[name], []
+    for value in case.values:
+        trial = case.trial(value)
+        motion = solve(trial.scene, np.linspace(0.0, trial.scene.driver.law.period_s, 7201))
+        sines.append(min(float(sine.min()) for sine in motion.conditioning.values()))
+        assert max(float(np.max(each.theta)) for each in motion.bound.links.values()) < 1e-11
+    # As the root of what is left, for a limit is a fold.
+    powers = np.diff(np.log(sines)) / np.diff(np.log(case.values))
+    assert powers[-1] == pytest.approx(0.5, abs=0.06)
+
+
+@slow("a second: the hardest value of triad-excess would not turn with a shorter limit either")
+def test_a_longer_crank_than_the_longest_that_turns_does_not_turn() -> None:
+    time_s = np.linspace(0.0, 0.7, 2000)
+    solve(triad_platform("turns", TRIAD_CRANK_M - 1e-6, source="x"), time_s, bound=False)
+    with pytest.raises(ReachError, match="limit position"):
+        solve(triad_platform("turns-not", TRIAD_CRANK_M + 1e-6, source="x"), time_s, bound=False)
+
+
+def test_a_triad_that_goes_over_to_another_assembly_is_named() -> None:
+    assert run_of("triad-near-limit", 0.01, profile="as-shipped").outcome == "branch-changed"
+
+
+def test_a_lost_run_of_a_driven_slider_is_told_in_metres_and_drawn() -> None:
+    case = CATALOGUE["piston-near-limit"]
+    assert case.facts().driver_unit == "m"
+    found, drawn = graded(case, "mujoco", "as-shipped", 1.0, draw=True)
+    assert found.outcome == "branch-changed"
+    assert 0.2 < found.at_driver_rad < 0.4
+    told = drawn.drawing["told"]
+    assert (told["joint"], told["unit"]) == ("slider C", "m")  # type: ignore[index]  # as embedded
+    place = np.asarray(told["at"])  # type: ignore[index]  # as above
+    assert (place > 0.2).all()
+    assert (place < 0.4).all()
+
+
+def in_a_moving_guide() -> Scene:
+    """A crank that is driven by a block in a lever, as by a cylinder."""
+    scene = slotted_lever("lever-by-block", 0.1, 0.2, source="x")
+    law = Oscillating(centre_rad=0.22, amplitude_rad=0.05, frequency_rad_s=10.0)
+    return replace(scene, driver=Driver("block B", law, base="lever", slider="B"))
+
+
+def along_a_slope() -> Scene:
+    """A slider-crank that is driven by its piston along a line that is neither x nor y."""
+    scene = slider_crank_by_piston("piston-on-slope", 0.1, 0.3, source="x", amplitude_m=0.09)
+    return replace(scene, sliders={"C": replace(scene.sliders["C"], direction_rad=0.3)})
+
+
+@pytest.mark.parametrize(
+    ("engine", "scene"), [("pymunk", in_a_moving_guide()), ("exudyn", along_a_slope())]
+)
+def test_an_engine_that_cannot_do_a_driver_is_a_row_with_its_reason(
+    engine: str, scene: Scene
+) -> None:
+    case = replace(CATALOGUE["piston-near-limit"], trial=lambda _: Trial(scene))
+    found, drawn = graded(case, engine, "tuned", 1.0, draw=True)
+    assert found.outcome == "unsupported"
+    assert "drive" in found.reason
+    assert drawn is None
+    assert graded(case, "mujoco", "tuned", 1.0, draw=False)[0].outcome == "ok"
+
+
+@pytest.mark.parametrize(
+    ("case", "value", "sine"),
+    [
+        ("lever-through-pivot", 360.0, pytest.approx(0.005, abs=0.005)),
+        ("swinging-lever", 1e-6, pytest.approx(0.005, abs=0.005)),
+        ("swinging-lever", 1.0, pytest.approx(1.0 / 3.0, abs=1e-4)),
+    ],
+    ids=["through its pivot", "to its pivot", "far from it"],
+)
+def test_how_near_a_lever_whose_block_comes_to_its_pivot_is_said_to_be(
+    case: str, value: float, sine: object
+) -> None:
+    trial = CATALOGUE[case].trial(value)
+    motion = solve(trial.scene, np.arange(1441) * trial.dt_s, bound=False)
+    assert nearest(trial.scene, motion) == sine
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["coarse-step", "--elastic"], "no elastic link in it; those are elastic-thick"),
+        (["--free", "--elastic"], "no case is of both"),
+    ],
+)
+def test_what_is_not_elastic_is_refused(words: list[str], says: str) -> None:
+    refused(crank("stability", *words), says)
+
+
+def test_every_elastic_case_gives_segments_and_few_samples() -> None:
+    for case in CATALOGUE.values():
+        for trial in map(case.trial, case.values if case.elastic else ()):
+            segments = len(trial.scene.links) + trial.segments - 1
+            assert len(trial.given.links) == segments, case.name
+            assert trial.steps / trial.every <= 4000, case.name
+
+
+def test_an_error_falls_with_the_step_squared() -> None:
+    coarse, fine = (run_of("elastic-step", steps, "pymunk").error for steps in (720.0, 1440.0))
+    assert coarse / fine == pytest.approx(4.0, rel=0.2)
+
+
+def test_a_stiffness_that_the_step_does_not_hold_says_which_would() -> None:
+    run = run_of("elastic-stiff", 100.0)
+    assert run.outcome == "diverged"
+    assert "steps a turn, or fewer segments" in run.reason
+    assert run_of("elastic-stiff", 9.0).outcome == "ok"
+
+
+def test_one_value_is_shown_from_the_command_line() -> None:
+    words = ["stability", "elastic-step", "--at", "360", "--profile", "tuned"]
+    done, held = (crank_alone(*words, "--engine", engine) for engine in ("pymunk", "mujoco"))
+    assert (done.exit_code, held.exit_code) == (1, 0), held.output
+    told = flat(done.output)
+    assert "a deflection, over the largest, is off by 0.029" in told
+    assert "error of the deflection, over the largest: 0.0" in told
+
+
+def test_what_fails_is_drawn_with_its_nodes() -> None:
+    _, drawn = graded(CATALOGUE["elastic-step"], "pymunk", "tuned", 360.0, draw=True)
+    assert {"coupler-1-2", "coupler-2-3", "coupler-3-4"} <= {*drawn.drawing["points"]}  # type: ignore[misc]
+
+
+def test_the_page_says_what_errors_are_of(tmp_path: Path) -> None:
+    words = ["stability", "elastic-step", "--engine", "mujoco", "--profile", "as-shipped"]
+    done = crank_alone(*words, "-o", tmp_path, "--jobs", 1)
+    assert "Numbers: the worst error of the deflection, over the largest;" in done.stdout
+    page = (tmp_path / "stability.html").read_text(encoding="utf-8")
+    assert "Worst error of the deflection, over the largest:" in page

@@ -1,10 +1,13 @@
-"""`crankcheck stability` from the command line: the matrix, its files, and every mistake."""
+"""`crankcheck stability` from the command line: the matrix, its files, and every mistake; a stored
+matrix is read back as it was, and a file that is not one refused with the cure."""
 
 from __future__ import annotations
 
 import json
+import math
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
@@ -13,52 +16,53 @@ from typer.testing import Result
 
 from models.errors import CrankcheckError
 from reports.stability.catalogue import CATALOGUE
-from reports.stability.matrix import read_matrix
+from reports.stability.critical import critical
+from reports.stability.grading import graded
+from reports.stability.matrix import FILE, Matrix, label, read_matrix, to_json
 from reports.workers.isolated import Lost
 from tests.worlds.command_line import crank, crank_alone, flat, refused
 from tests.worlds.in_process import Here, in_this_process
 from tests.worlds.tiers import slow
 
-LINE = ["stability", "grashof-excess", "--engine", "mujoco", "--profile", "tuned"]
+PYMUNK = ("stability", "wrong-branch", "--engine", "pymunk")
 
 
 @pytest.fixture(scope="module")
-def stored(tmp_path_factory: pytest.TempPathFactory) -> tuple[Result, Path]:
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("matrix")
+
+
+@pytest.fixture(scope="module")
+def stored(folder: Path) -> Result:
     """A case in two profiles, printed and stored."""
-    folder = tmp_path_factory.mktemp("matrix")
     args = ["stability", "grashof-excess", "wrong-branch", "--engine", "mujoco"]
-    return crank_alone(*args, "-o", folder, "--jobs", 1), folder
+    return crank_alone(*args, "-o", folder, "--jobs", 1)
 
 
-def test_the_matrix_is_printed_with_critical_values(stored: tuple[Result, Path]) -> None:
-    result, folder = stored
-    assert result.exit_code == 0, result.output
-    told = flat(result.stdout)
-    assert told.endswith(f"{folder}: stability.json, stability.csv, stability.html")
+def test_the_matrix_is_printed_with_critical_values(stored: Result) -> None:
+    assert stored.exit_code == 0, stored.output
+    told = flat(stored.stdout)
     assert "mujoco tuned" in told
     assert "holds down to" in told
     assert "crankcheck stability CASE --engine ENGINE --profile PROFILE --at VALUE" in told
     assert "mujoco 4" in told
-    assert max(map(len, result.stdout.splitlines())) <= 100
+    assert max(map(len, stored.stdout.splitlines())) <= 100
 
 
-def test_every_run_is_stored_with_the_command_that_repeats_it(stored: tuple[Result, Path]) -> None:
-    _, folder = stored
+def test_every_run_is_stored_with_the_command_that_repeats_it(stored: Result, folder: Path) -> None:
     rows = pd.read_csv(folder / "stability.csv")
-    matrix = read_matrix(folder)
-    assert len(rows) == len(matrix.runs) > 10
+    assert len(rows) == len(read_matrix(folder).runs) > 10
     lost = rows[(rows["case"] == "grashof-excess") & (rows["outcome"] != "ok")].iloc[-1]
-    words = lost["command"].split()
-    assert words[0] == "crankcheck"
-    alone = crank_alone(*words[1:])
+    program, *words = lost["command"].split()
+    assert program == "crankcheck"
+    alone = crank_alone(*words)
     assert alone.exit_code == 1
     assert lost["outcome"] in alone.stdout
     number = f"error of place, rad or over the longest link: {lost['error']:.3g}"
     assert number in flat(alone.stdout)
 
 
-def test_the_page_and_the_pictures_of_failures_are_written(stored: tuple[Result, Path]) -> None:
-    _, folder = stored
+def test_the_page_and_the_pictures_of_failures_are_written(stored: Result, folder: Path) -> None:
     matrix = read_matrix(folder)
     failed = {
         (run.profile, run.label)
@@ -71,17 +75,20 @@ def test_the_page_and_the_pictures_of_failures_are_written(stored: tuple[Result,
 
 
 def test_a_second_run_takes_the_place_of_the_first(tmp_path: Path) -> None:
-    args = ["stability", "wrong-branch", "--engine", "pymunk", "-o", str(tmp_path), "--jobs", "1"]
-    assert crank_alone(*args).exit_code == crank_alone(*args).exit_code == 0
+    for _ in range(2):
+        assert crank_alone(*PYMUNK, "-o", tmp_path, "--jobs", 1).exit_code == 0
     assert {run.engine for run in read_matrix(tmp_path).runs} == {"pymunk"}
 
 
-def test_a_few_cases_do_not_take_the_place_of_a_matrix_of_more(stored: tuple[Result, Path]) -> None:
-    _, folder = stored
+def test_a_few_cases_do_not_take_the_place_of_a_matrix_of_more(
+    stored: Result, folder: Path
+) -> None:
     before = (folder / "stability.json").read_bytes()
-    result = crank("stability", "wrong-branch", "--engine", "pymunk", "-o", folder)
-    refused(result, "holds a matrix with 1 case not run now")
+    refused(crank(*PYMUNK, "-o", folder), "holds a matrix with 1 case not run now")
     assert (folder / "stability.json").read_bytes() == before
+
+
+LINE = ["stability", "grashof-excess", "--engine", "mujoco", "--profile", "tuned"]
 
 
 def test_a_value_that_is_held_ends_with_0_and_one_that_is_not_with_1() -> None:
@@ -152,9 +159,8 @@ def test_a_run_over_its_limit_is_ended(profile: str, limit_s: float) -> None:
 
 
 def test_the_report_of_a_folder_of_hard_cases_is_their_page(
-    stored: tuple[Result, Path], tmp_path: Path
+    stored: Result, folder: Path, tmp_path: Path
 ) -> None:
-    _, folder = stored
     made = crank("report", folder, "-o", tmp_path / "page.html")
     assert made.exit_code == 0, made.output
     assert "runs of hard cases" in flat(made.stdout)
@@ -164,19 +170,90 @@ def test_the_report_of_a_folder_of_hard_cases_is_their_page(
 
 
 def test_the_report_of_a_sweep_has_the_hard_cases_beside_it_or_says_that_they_are_damaged(
-    stored: tuple[Result, Path], tmp_path: Path
+    stored: Result, folder: Path, tmp_path: Path
 ) -> None:
-    folder, page = tmp_path / "store", tmp_path / "page.html"
+    store, page = tmp_path / "store", tmp_path / "page.html"
     swept = crank_alone(
-        *("sweep", "fourbar-lecture-1", "-o", folder, "--engine", "pymunk"),
+        *("sweep", "fourbar-lecture-1", "-o", store, "--engine", "pymunk"),
         *("--profile", "tuned", "--steps-per-turn", "90,180", "--no-timing", "--jobs", 1),
     )
     assert swept.exit_code == 0, swept.output
-    shutil.copy(stored[1] / "stability.json", folder)
-    assert crank("report", folder, "-o", page).exit_code == 0
+    shutil.copy(folder / "stability.json", store)
+    assert crank("report", store, "-o", page).exit_code == 0
     assert "Nearly a parallelogram" in page.read_text(encoding="utf-8")
-    (folder / "stability.json").write_text("{", encoding="utf-8")
-    told = crank("report", folder, "-o", page)
+    (store / "stability.json").write_text("{", encoding="utf-8")
+    told = crank("report", store, "-o", page)
     assert told.exit_code == 0
     assert "stability.json: can not be read" in flat(told.stderr)
     assert "Nearly a parallelogram" not in page.read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def matrix() -> Matrix:
+    """A small real one, with runs that hold, and one with a picture."""
+    case = CATALOGUE["grashof-excess"]
+    found = [graded(case, "pymunk", "tuned", value, draw=True) for value in (1e-2, 1e-5)]
+    runs = tuple(run for run, _ in found)
+    pictures = tuple(picture for _, picture in found if picture is not None)
+    return Matrix({"crankcheck": "0"}, (case.facts(),), runs, (critical(case, runs),), pictures)
+
+
+def test_a_matrix_is_read_back_as_it_was(matrix: Matrix, tmp_path: Path) -> None:
+    (tmp_path / FILE).write_text(to_json(matrix), encoding="utf-8")
+    assert repr(read_matrix(tmp_path)) == repr(matrix)  # NaN is not equal to itself
+    assert [run.outcome for run in matrix.runs] == ["ok", "branch-changed"]
+    assert [picture.label for picture in matrix.pictures] == [label(1e-5)]
+
+
+def test_a_number_that_is_missing_is_still_missing(matrix: Matrix, tmp_path: Path) -> None:
+    run = replace(matrix.runs[0], error=math.nan, at_s=math.inf)
+    text = to_json(replace(matrix, runs=(run,)))
+    assert "NaN" not in text
+    assert "Infinity" not in text
+    (tmp_path / FILE).write_text(text, encoding="utf-8")
+    read = read_matrix(tmp_path).runs[0]
+    assert math.isnan(read.error)
+
+
+def edited(text: str, table: str, **changed: object) -> str:
+    """The text with some of the first row of a table changed."""
+    content = json.loads(text)
+    content[table][0] |= changed
+    return json.dumps(content)
+
+
+def other(text: str, **changed: object) -> str:
+    return json.dumps(json.loads(text) | changed)
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda text: "",
+        lambda text: text[: len(text) // 2],
+        lambda text: "[]",
+        lambda text: "[" * 100_000,
+        lambda text: other(text, format=99),
+        lambda text: json.dumps({"format": 1, "facts": {}}),
+        lambda text: text.replace('"outcome"', '"ending"'),
+        lambda text: text.replace('"branch-changed"', '"gone"'),
+        lambda text: edited(text, "runs", error="abc"),
+        lambda text: edited(text, "cases", values=None),
+        lambda text: edited(text, "cases", labels=["0.01"]),
+        lambda text: edited(text, "pictures", drawing=3),
+        lambda text: other(text, facts=[1]),
+        lambda text: other(text, runs=5),
+        lambda text: other(text, runs=["a"]),
+    ],
+)
+def test_a_damaged_matrix_is_refused_with_the_cure(
+    matrix: Matrix, tmp_path: Path, damage: Callable[[str], str]
+) -> None:
+    (tmp_path / FILE).write_text(damage(to_json(matrix)), encoding="utf-8")
+    with pytest.raises(CrankcheckError, match=r"crankcheck stability -o .* again"):
+        read_matrix(tmp_path)
+
+
+def test_a_folder_without_one_says_what_makes_it(tmp_path: Path) -> None:
+    with pytest.raises(CrankcheckError, match=r"no stability\.json .* makes one"):
+        read_matrix(tmp_path)

@@ -126,7 +126,7 @@ def trial() -> Trial:
 
 @pytest.fixture(scope="module")
 def good(trial: Trial) -> Run:
-    return done(trial, free_start(trial), drive="free")
+    return done(trial, free_start(trial))
 
 
 def worst(errors: ErrorSeries) -> float:
@@ -154,7 +154,7 @@ def test_energy_that_is_lost_is_an_error_of_its_size_and_named(trial: Trial, goo
 def test_a_phase_that_runs_away_is_an_error_as_long_as_it_is_followed(trial: Trial) -> None:
     """With a tenth less of gravity it is late, closed, and loses nothing."""
     light = replace(trial.scene, gravity_m_s2=(0.0, -0.9 * 9.81))
-    slow = done(trial, free_start(trial), scene=light, drive="free")
+    slow = done(trial, free_start(trial), scene=light)
     followed = free_error_series(trial, slow)
     assert worst(followed) > 1e-2
     assert outcome(followed, 1e-2).outcome == "degraded"
@@ -205,7 +205,7 @@ OVER, SHORT = (CATALOGUE[f"toggle-{name}"].trial(1e-2) for name in ("over", "sho
 def runs() -> dict[str, Run]:
     """A run that gets over, and one that falls back."""
     thrown = {"over": OVER, "short": SHORT}
-    return {name: done(one, thrown_start(one), drive="free") for name, one in thrown.items()}
+    return {name: done(one, thrown_start(one)) for name, one in thrown.items()}
 
 
 def test_a_throw_is_graded_by_what_its_energy_says(runs: dict[str, Run]) -> None:
