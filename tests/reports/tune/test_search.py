@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import itertools
-from dataclasses import replace
+import math
+from collections.abc import Collection
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import optuna
@@ -49,40 +50,24 @@ def done(budget: int = 14, seed: int = 0, attempt: Try = known) -> list[Attempt]
         return search(study, plan(budget, seed), attempt)
 
 
-def noted(calls: list[tuple[Settings, Attempt | None]]) -> Try:
-    """Notes what it is called with."""
+@dataclass
+class Called:
+    """What is `known`, and what was asked; Ctrl-C comes instead of the call after ``stop`` of them,
+    and the clock ends those in ``late``."""
 
-    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
-        calls.append((dict(settings), best))
-        return known(settings, best)
+    stop: float = math.inf
+    late: Collection[int] = ()
+    settings: list[Settings] = field(default_factory=list)
+    bests: list[Attempt | None] = field(default_factory=list)
 
-    return attempt
-
-
-def interrupted(after: int) -> Try:
-    """Settings that are tried well ``after`` times; the next time Ctrl-C comes."""
-    left = [None] * after
-
-    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
-        if not left:
+    def __call__(self, settings: Settings, best: Attempt | None) -> Attempt:
+        number = len(self.bests)
+        if number >= self.stop:
             raise Stopped(2)
-        left.pop()
-        return known(settings, best)
-
-    return attempt
-
-
-def clocked(*late: int) -> Try:
-    """The clock ends these of the attempts."""
-    number = itertools.count()
-
-    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
-        found = known(settings, best)
-        if next(number) in late:
-            return replace(found, steps_per_turn=None, reason="timeout", timed_out=True)
-        return found
-
-    return attempt
+        self.settings.append(dict(settings))
+        self.bests.append(best)
+        ended = {"steps_per_turn": None, "reason": "timeout", "timed_out": True}
+        return replace(known(settings, best), **ended if number in self.late else {})
 
 
 def costing(settings: Settings, cost_us: float) -> Attempt:
@@ -116,21 +101,19 @@ def test_the_search_beats_as_many_guesses_and_soon_leaves_what_is_cheap_and_miss
 
 
 def test_settings_that_were_tried_are_not_run_again() -> None:
-    calls: list[tuple[Settings, Attempt | None]] = []
-    space = replace(SPACE, knobs=SPACE.knobs[1:])
+    space, called = replace(SPACE, knobs=SPACE.knobs[1:]), Called()
     with study_in(None, {}) as study:
-        found = search(study, replace(plan(40), space=space), noted(calls))
+        found = search(study, replace(plan(40), space=space), called)
     assert len(found) == 40
-    assert len(calls) == len({str(settings) for settings, _ in calls}) <= 15
-    assert sum(a.runs for a in found) == 3 * len(calls)
+    assert len(called.settings) == len({str(each) for each in called.settings}) <= 15
+    assert sum(a.runs for a in found) == 3 * len(called.settings)
 
 
 def test_every_attempt_is_told_the_best_so_far() -> None:
-    calls: list[tuple[Settings, Attempt | None]] = []
-    done(attempt=noted(calls))
-    (_, first), *later = calls
+    done(attempt=(called := Called()))
+    first, *later = called.bests
     assert first is None
-    told = [best.cost_us for _, best in later]
+    told = [best.cost_us for best in later]
     assert told == sorted(told, reverse=True)
     assert told[-1] < told[0]
 
@@ -138,15 +121,14 @@ def test_every_attempt_is_told_the_best_so_far() -> None:
 @pytest.mark.parametrize("at", few((0, 7, 12), {12}, "the first trials have less to go on with"))
 def test_a_search_that_was_cut_short_goes_on_to_what_a_whole_one_finds(path: Path, at: int) -> None:
     with pytest.raises(Stopped), study_in(path, {}) as study:
-        search(study, plan(), interrupted(at))
-    calls: list[tuple[Settings, Attempt | None]] = []
+        search(study, plan(), Called(stop=at))
     with study_in(path, {}) as study:
         states = [trial.state for trial in study.trials]
         assert states == [TrialState.COMPLETE] * at + [TrialState.FAIL]
-        found = search(study, plan(), noted(calls))
+        found = search(study, plan(), called := Called())
     whole = done()
     assert found == whole
-    assert len(calls) == sum(a.runs > 0 for a in whole) - at
+    assert len(called.settings) == sum(a.runs > 0 for a in whole) - at
 
 
 def test_a_larger_budget_begins_with_the_trials_of_a_smaller_one(path: Path) -> None:
@@ -156,7 +138,7 @@ def test_a_larger_budget_begins_with_the_trials_of_a_smaller_one(path: Path) -> 
             assert len(found) == budget
     assert found == done(12)
     with study_in(path, {}) as study:
-        assert search(study, plan(4), interrupted(0)) == found
+        assert search(study, plan(4), Called(stop=0)) == found
 
 
 def test_a_study_is_one_that_optuna_reads_with_its_own_best(path: Path) -> None:
@@ -215,34 +197,27 @@ def test_what_the_clock_ended_is_not_kept_and_tried_again(
     path: Path, late: tuple[int, ...]
 ) -> None:
     with study_in(path, {}) as study:
-        once = search(study, plan(), clocked(*late))
+        once = search(study, plan(), Called(late=late))
         kept = attempts(study)
     assert len(once) == 14
     lost = [a for a in once if a.timed_out]
     assert len(lost) >= len(late)
     assert kept == {place: a for place, a in enumerate(once) if not a.timed_out}
-    calls: list[tuple[Settings, Attempt | None]] = []
     with study_in(path, {}) as study:
-        again = search(study, plan(), noted(calls))
+        again = search(study, plan(), called := Called())
         assert attempts(study) == dict(enumerate(again))
-        assert search(study, plan(), interrupted(0)) == again
-    assert [settings for settings, _ in calls] == [a.settings for a in lost if a.runs]
+        assert search(study, plan(), Called(stop=0)) == again
+    assert called.settings == [a.settings for a in lost if a.runs]
     assert not any(a.timed_out for a in again)
     assert [a.settings for a in again] == [a.settings for a in once]
 
 
 def test_settings_that_the_clock_ends_are_not_tried_twice_in_one_search() -> None:
-    ran: list[str] = []
-
-    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
-        ran.append(str(settings))
-        return replace(known(settings, best), steps_per_turn=None, timed_out=True)
-
-    space = replace(SPACE, knobs=SPACE.knobs[1:])
+    space, called = replace(SPACE, knobs=SPACE.knobs[1:]), Called(late=range(40))
     with study_in(None, {}) as study:
-        assert len(search(study, replace(plan(40), space=space), attempt)) == 40
+        assert len(search(study, replace(plan(40), space=space), called)) == 40
         assert attempts(study) == {}
-    assert len(ran) == len(set(ran)) <= 15
+    assert len(called.settings) == len({str(each) for each in called.settings}) <= 15
 
 
 def test_progress_is_told_after_each_trial() -> None:
