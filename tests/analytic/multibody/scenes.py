@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from analytic.kinematics import solve
+from analytic.multibody.multibody_motion import MultibodyMotion
+from analytic.multibody.release_multibody import release_multibody
 from models.files import parse_scene
 from models.scene import Scene
 
@@ -14,9 +19,14 @@ def scene(text: str, gravity: float = G) -> Scene:
     return parse_scene(head + text, "free.toml")
 
 
+def by_bodies(mechanism: Scene, until_s: float) -> MultibodyMotion:
+    """Its motion by the multibody form, from the assembly that the closed form has."""
+    near = solve(mechanism, np.zeros(1), bound=False).state()
+    return release_multibody(mechanism, until_s, near=near)
+
+
 ROTOR = """
-[ground]
-points = { A = [0.0, 0.0] }
+ground = { points = { A = [0.0, 0.0] } }
 [links.rod]
 bar = ["A", "B"]
 length_m = 0.5
@@ -27,12 +37,11 @@ inertia_kg_m2 = 0.03
 link = "rod"
 law = "free"
 """
-"""J = 0.03 + 1.2 (0.2^2 + 0.05^2) about A."""
 ROTOR_J = 0.03 + 1.2 * (0.2**2 + 0.05**2)
+"""About A."""
 
 DOUBLE_PENDULUM = """
-[ground]
-points = { A = [0.0, 0.0] }
+ground = { points = { A = [0.0, 0.0] } }
 [links]
 upper = { bar = ["A", "B"], length_m = 0.3 }
 lower = { bar = ["B", "C"], length_m = 0.2 }
@@ -47,22 +56,18 @@ rates_rad_s = { lower = 2.0 }
 """
 
 SLIDER_CRANK = """
-[ground]
-points = { A = [0.0, 0.0] }
+ground = { points = { A = [0.0, 0.0] } }
+sliders = { C = { on = "ground", mass_kg = 0.5 } }
 [links]
 crank = { bar = ["A", "B"], length_m = 0.1 }
 rod = { bar = ["B", "C"], length_m = 0.3 }
-[sliders.C]
-on = "ground"
-mass_kg = 0.5
 [driver]
 link = "crank"
 law = "free"
 """
 
 THESIS = """
-[ground]
-points = { A = [0.0, 0.0], D = [1.0, 0.0] }
+ground = { points = { A = [0.0, 0.0], D = [1.0, 0.0] } }
 [links]
 crank = { bar = ["A", "B"], length_m = 0.15 }
 coupler = { bar = ["B", "C"], length_m = 0.75 }
@@ -71,18 +76,14 @@ rocker = { bar = ["D", "C"], length_m = 0.75 }
 link = "crank"
 law = "free"
 start_deg = 90.0
-[loads.motor]
-link = "crank"
-law = "pulse"
-torque_n_m = 0.03
-period_s = 1.0
+[loads]
+motor = { link = "crank", law = "pulse", torque_n_m = 0.03, period_s = 1.0 }
 [start]
 angles_deg = { coupler = 39.0, rocker = 124.0 }
 """
 
 PARALLELOGRAM = """
-[ground]
-points = { A = [0.0, 0.0], E = [0.4, 0.0], D = [1.0, 0.0] }
+ground = { points = { A = [0.0, 0.0], E = [0.4, 0.0], D = [1.0, 0.0] } }
 [links]
 crank = { bar = ["A", "B"], length_m = 0.3, mass_kg = 0.5 }
 coupler = { bar = ["B", "C"], length_m = 1.0, points = { F = [0.4, 0.0] }, mass_kg = 2.0 }
@@ -99,8 +100,7 @@ angles_deg = { coupler = 0.0, rocker = 60.0 }
 """Three rods alike carry a coupler that only shifts; one of them is redundant."""
 
 FIVE_BAR = """
-[ground]
-points = { A = [0.0, 0.0], E = [0.3, 0.0] }
+ground = { points = { A = [0.0, 0.0], E = [0.3, 0.0] } }
 [links]
 left = { bar = ["A", "B"], length_m = 0.2 }
 first = { bar = ["B", "C"], length_m = 0.25 }

@@ -1,49 +1,220 @@
-"""Constraint equations and their derivatives, against differences."""
+"""Constraint equations and their derivatives, against differences; the start of a motion: what is
+named, what is found, and what is refused; and motions that are known by hand."""
 
 from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from analytic.kinematics import solve
 from analytic.multibody.assembly import Assembly
+from analytic.multibody.configuration import Configuration
+from analytic.multibody.release_multibody import release_multibody, start_state
+from models.array import Array
+from models.errors import CrankcheckError
 from models.files import load_scene, shipped
+from models.friction import ConstantFriction
+from models.released import let_go
 from tests.analytic.chain import coordinates
+from tests.analytic.multibody.scenes import (
+    DOUBLE_PENDULUM,
+    FIVE_BAR,
+    PARALLELOGRAM,
+    ROTOR,
+    ROTOR_J,
+    SLIDER_CRANK,
+    THESIS,
+    G,
+    by_bodies,
+    scene,
+)
+from tests.worlds.loading import loaded_mechanism, massless
 
 STEP = 1e-6
 
 
 @pytest.mark.parametrize("name", [*shipped(), *shipped("forces")])
 def test_derivatives_are_those_of_the_equations(name: str) -> None:
-    scene = load_scene(name)
-    assembly = Assembly(scene)
-    at = 0.3 * scene.driver.law.period_s
-    q = np.array(coordinates(scene, solve(scene, np.array([at]), bound=False), 0))
+    mechanism = load_scene(name)
+    assembly = Assembly(mechanism)
+    at = 0.3 * mechanism.driver.law.period_s
+    q = np.array(coordinates(mechanism, solve(mechanism, np.array([at]), bound=False), 0))
     rates = np.cos(np.arange(len(q)))  # no rates that joints allow: what they are open counts too
-    sides = [assembly.at_rates((q + e * rates)[None], rates[None]) for e in (-STEP, STEP)]
-    now = assembly.at_rates(q[None], rates[None])
-    assert np.abs(assembly.joints.gaps(now)).max() < 1e-13
-    slope = (assembly.joints.gaps(sides[1]) - assembly.joints.gaps(sides[0]))[0] / (2 * STEP)
-    rows = assembly.joints.jacobian(now)[0]
-    assert slope == pytest.approx(rows @ rates, abs=1e-8)
+    sides = [assembly.at_rates((q + e * rates)[None], rates[None]) for e in (STEP, -STEP)]
+    now, joints = assembly.at_rates(q[None], rates[None]), assembly.joints
+
+    def slope(of: Callable[[Configuration], Array]) -> Array:
+        return np.subtract(*map(of, sides)) / (2 * STEP)
+
+    assert np.abs(joints.gaps(now)).max() < 1e-13
+    assert slope(joints.gaps)[0] == pytest.approx(joints.jacobian(now)[0] @ rates, abs=1e-8)
     # d/dt (Phi_q q') = Phi_q q'' - gamma, and here q'' is 0.
-    flow = [(assembly.joints.jacobian(side)[0] @ rates) for side in sides]
-    assert (flow[1] - flow[0]) / (2 * STEP) == pytest.approx(
-        -assembly.joints.gamma(now)[0], abs=1e-7
-    )
-    places = (sides[1].place - sides[0].place) / (2 * STEP)
-    assert places == pytest.approx(now.velocity, abs=1e-8)
-    drift = (sides[1].velocity - sides[0].velocity) / (2 * STEP)
-    assert drift == pytest.approx(now.drift, abs=1e-8)
+    flow = slope(lambda side: joints.jacobian(side)[0] @ rates)
+    assert flow == pytest.approx(-joints.gamma(now)[0], abs=1e-7)
+    assert slope(lambda side: side.place) == pytest.approx(now.velocity, abs=1e-8)
+    assert slope(lambda side: side.velocity) == pytest.approx(now.drift, abs=1e-8)
 
 
 def test_samples_at_once_are_those_one_by_one() -> None:
-    scene = load_scene("shaper")
-    assembly = Assembly(scene)
-    motion = solve(scene, np.linspace(0.0, 0.5, 3), bound=False)
-    q = np.array([coordinates(scene, motion, i) for i in range(3)])
+    mechanism = load_scene("shaper")
+    assembly = Assembly(mechanism)
+    motion = solve(mechanism, np.linspace(0.0, 0.5, 3), bound=False)
+    q = np.array([coordinates(mechanism, motion, i) for i in range(3)])
     whole = assembly.at_rates(q, np.ones_like(q))
     for i in range(3):
         one = assembly.at_rates(q[i : i + 1], np.ones((1, assembly.size)))
-        assert np.array_equal(assembly.joints.jacobian(whole)[i], assembly.joints.jacobian(one)[0])
-        assert np.array_equal(assembly.joints.gamma(whole)[i], assembly.joints.gamma(one)[0])
+        for rows in (assembly.joints.jacobian, assembly.joints.gamma):
+            assert np.array_equal(rows(whole)[i], rows(one)[0])
+
+
+def test_angles_read_off_a_drawing_lead_to_the_assembly() -> None:
+    theta = start_state(scene(THESIS)).theta
+    told = [math.degrees(theta[name]) for name in ("coupler", "rocker", "crank")]
+    assert told[:2] == pytest.approx([39.083, 123.855], abs=1e-3)
+    assert told[2] == pytest.approx(90.0, abs=1e-12)
+
+
+def test_one_named_angle_is_enough_where_it_leads_to_the_others() -> None:
+    whole, named = (scene(THESIS.replace(cut, "")) for cut in ("", ", rocker = 124.0"))
+    assert start_state(named).theta == pytest.approx(start_state(whole).theta, abs=1e-12)
+    slid = SLIDER_CRANK + "start_deg = 30.0\n[start]\ndisplacements_m = { C = 0.383 }\n"
+    bare = scene(SLIDER_CRANK + "start_deg = 30.0\n")
+    near = solve(bare, np.zeros(1), bound=False).state()
+    assert start_state(scene(slid)).theta == pytest.approx(near.theta, abs=1e-12)
+    assert start_state(bare, near).displacement["C"] == pytest.approx(near.displacement["C"])
+
+
+def test_a_start_of_two_freedoms_has_both_speeds() -> None:
+    start = start_state(scene(FIVE_BAR))
+    assert (start.omega["left"], start.omega["right"]) == pytest.approx((0.5, -0.5), abs=1e-13)
+    assert start.position["C"][0] == pytest.approx(0.15, abs=1e-12)  # left and right are alike
+
+
+def test_beside_a_limit_a_slow_driver_moves_the_others_fast() -> None:
+    """What they are off by is rounding of their own rates, and not of the driver's."""
+    slow = let_go(loaded_mechanism(81)[0], 1.0)
+    law = replace(slow.driver.law, speed_rad_s=-0.056)  # type: ignore[call-arg]
+    slow = replace(slow, driver=replace(slow.driver, law=law))
+    start = start_state(slow, solve(slow, np.zeros(1), bound=False).state())
+    assert max(abs(omega) for omega in start.omega.values()) > 1.0
+    assert start.omega[slow.driver.link] == pytest.approx(-0.056, rel=1e-6)
+
+
+REFUSED = {
+    "far": (
+        THESIS.replace("39.0", "50.0"),
+        r"coupler is 50 deg.* open there by 10\.9 deg: with dr",
+    ),
+    "open": (THESIS.replace("[1.0, 0.0]", "[3.0, 0.0]"), r"cannot be assembled.* open by 1\.5\d m"),
+    "unnamed": (THESIS.split("[start]")[0], "where coupler, rocker start is not named"),
+    "speeds": (
+        THESIS + "rates_rad_s = { rocker = 1.0 }\n",
+        "contradict each other.* is 1, and 0.8",
+    ),
+    "pendulum": (DOUBLE_PENDULUM.split("rates")[0], "1 of its freedoms have no speed"),
+    "five-bar": (FIVE_BAR.split("rates")[0], "1 of its freedoms have no speed"),
+    "slid too far": (
+        SLIDER_CRANK + "start_deg = 30.0\n[start]\ndisplacements_m = { C = 0.5 }\n",
+        r"start\.displacements_m\.C is 0\.5 m, and the joints are open there by 0\.118 m",
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "said"), REFUSED.values(), ids=REFUSED)
+def test_a_start_that_is_none_is_refused(text: str, said: str) -> None:
+    with pytest.raises(CrankcheckError, match=said):
+        start_state(scene(text))
+
+
+def test_a_freedom_without_mass_and_friction_are_refused() -> None:
+    text = SLIDER_CRANK + "[start]\nangles_deg = { rod = 0.0 }\n"
+    with pytest.raises(CrankcheckError, match="1 of its 1 freedoms moves nothing that has a mass"):
+        start_state(massless(scene(text)))  # no file says so
+    rubbing = replace(load_scene("fourbar-swing"), friction={"B": ConstantFriction("B", 0.1)})
+    with pytest.raises(CrankcheckError, match="friction in B"):
+        by_bodies(rubbing, 1.0)
+
+
+TIMES = np.linspace(0.0, 1.0, 21)
+
+
+def test_a_pendulum_starts_by_its_moment_over_its_inertia() -> None:
+    start = start_state(scene(ROTOR + "start_deg = 20.0\nspeed_rad_s = 3.0\n"))
+    c, s = math.cos(math.radians(20.0)), math.sin(math.radians(20.0))
+    moment = -1.2 * G * (0.2 * c - 0.05 * s)
+    assert start.alpha["rod"] == pytest.approx(moment / ROTOR_J, rel=1e-13)
+    assert start.omega["rod"] == pytest.approx(3.0, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("load", "theta"),
+    [
+        ('law = "steps"\nat_s = [0.25, 0.6]\ntorque_n_m = [0.3, -0.1]',
+         lambda t: (0.3 * np.maximum(t - 0.25, 0) ** 2 - 0.4 * np.maximum(t - 0.6, 0) ** 2) / 2),
+        ('law = "pulse"\ntorque_n_m = 0.03\nperiod_s = 0.7',
+         lambda t: 0.03 * 0.7 / math.tau
+         * np.where(t < 0.7, t - 0.7 / math.tau * np.sin(math.tau * t / 0.7), 0.7)),
+        # 0.3 (1 - omega / 2): speed goes to 2 by exp(-t 0.15 / J)
+        ('law = "table"\nover = "omega"\ninterpolation = "linear"\n'
+         "at_rad_s = [-2.0, 2.0]\ntorque_n_m = [0.6, 0.0]",
+         lambda t: 2 * ROTOR_J * (t - ROTOR_J / 0.15 * -np.expm1(-t * 0.15 / ROTOR_J))),
+    ],
+    ids=["steps", "pulse", "motor"],
+)  # fmt: skip
+def test_a_rotor_turns_as_its_torque_is_integrated(
+    load: str, theta: Callable[[Array], Array]
+) -> None:
+    """Over time with jumps in it, and over its own speed; not heavy."""
+    free = release_multibody(scene(f'{ROTOR}[loads.m]\nlink = "rod"\n{load}\n', 0.0), 1.0)
+    wanted = theta(TIMES) / ROTOR_J
+    assert free.at(TIMES).links["rod"].theta == pytest.approx(wanted, abs=2e-11)
+    assert np.ptp(free.energy(TIMES).balance) < 1e-12
+
+
+def test_a_spring_in_a_pin_swings_with_its_damper() -> None:
+    """J theta'' + c theta' + k theta = 0, whole turns of the free angle left out."""
+    spring = '[springs.s]\npin = "A"\nrate_n_m_rad = 0.9\ndamping_n_m_s = 0.05\nfree_deg = 360.0\n'
+    free = release_multibody(scene(ROTOR + "start_deg = 30.0\n" + spring, 0.0), 1.0)
+    decay, stiff = 0.05 / (2 * ROTOR_J), 0.9 / ROTOR_J
+    fast = math.sqrt(stiff - decay**2)
+    swing = np.cos(fast * TIMES) + decay / fast * np.sin(fast * TIMES)
+    wanted = math.radians(30.0) * np.exp(-decay * TIMES) * swing
+    assert free.at(TIMES).links["rod"].theta == pytest.approx(wanted, abs=1e-11)
+
+
+def test_a_double_pendulum_starts_as_its_two_equations_say() -> None:
+    """Slender rods, angles from the horizontal: 2 x 2 equations of Lagrange."""
+    m1, l1, m2, l2 = 0.3, 0.3, 0.2, 0.2
+    a, b, u, v = math.radians(10.0), math.radians(-40.0), 1.0, 2.0
+    mix = 0.5 * m2 * l1 * l2
+    both = mix * math.cos(a - b)
+    matrix = [[(m1 / 3 + m2) * l1**2, both], [both, m2 * l2**2 / 3]]
+    right = [
+        -mix * math.sin(a - b) * v**2 - (m1 / 2 + m2) * G * l1 * math.cos(a),
+        mix * math.sin(a - b) * u**2 - 0.5 * m2 * G * l2 * math.cos(b),
+    ]
+    wanted = np.linalg.solve(matrix, right)
+    start = start_state(scene(DOUBLE_PENDULUM))
+    assert [start.alpha["upper"], start.alpha["lower"]] == pytest.approx(wanted, rel=1e-12)
+    assert (start.omega["upper"], start.omega["lower"]) == pytest.approx((u, v), rel=1e-13)
+
+
+def test_three_rods_that_carry_a_coupler_are_one_pendulum() -> None:
+    """One of them is redundant: the motion is determined, and what it needs, together."""
+    times = np.linspace(0.0, 0.3, 7)
+    free = release_multibody(scene(PARALLELOGRAM), 0.3)
+    assert free.dynamics.redundant
+    inertia, weight = 3 * 0.5 * 0.3**2 / 3 + 2.0 * 0.3**2, (3 * 0.5 / 2 + 2.0) * G * 0.3
+    motion, energy = free.at(times), free.energy(times)
+    wanted = -weight * np.cos(motion.links["crank"].theta) / inertia
+    for rod in ("crank", "rocker", "spare"):
+        assert motion.links[rod].alpha == pytest.approx(wanted, abs=1e-10)
+    assert np.ptp(energy.balance) < 1e-11 * energy.kinetic.max()
+    held = sum(motion.forces.pins[p]["ground"][:, 1] for p in "AED")
+    crank = motion.links["crank"]
+    rise = 0.3 * (crank.alpha * np.cos(crank.theta) - crank.omega**2 * np.sin(crank.theta))
+    assert -held == pytest.approx(3.5 * G + (2.0 + 0.75) * rise, abs=1e-9)
