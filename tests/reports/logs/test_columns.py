@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 from models.errors import CrankcheckError
 from reports.logs import extent
-from reports.logs.columns import columns_of, read_columns
+from reports.logs.columns import Columns, columns_of, read_columns
 from reports.logs.text import Layout
 
 ROWS = [(0.0, 1.5), (0.1, -2.25), (0.2, 3e-7)]
@@ -20,6 +21,12 @@ def written(tmp_path: Path, text: str | bytes, name: str = "log.csv") -> Path:
     path = tmp_path / name
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     return path
+
+
+def assert_rows(found: Columns, rows: object = ROWS, names: Sequence[str] = ("t", "a b")) -> None:
+    assert list(found.raw) == list(names)
+    if rows:
+        assert np.array_equal(np.column_stack([found.numbers(name) for name in names]), rows)
 
 
 @pytest.mark.parametrize(
@@ -38,49 +45,6 @@ def written(tmp_path: Path, text: str | bytes, name: str = "log.csv") -> Path:
         "'t','a b'\n0,1.5\n0.1,-2.25\n0.2,3e-7\n",
         't "a b"\n0 1.5\n0.1  -2.25\n0.2 3e-7\n',
         '"t"\t"a b"\n"0"\t"1.5"\n0.1\t-2.25\n0.2\t3e-7\n',
-    ],
-)
-def test_the_separator_is_found(tmp_path: Path, text: str) -> None:
-    found = read_columns(written(tmp_path, text))
-    assert list(found.raw) == ["t", "a b"]
-    assert np.array_equal(np.column_stack([found.numbers(n) for n in found.raw]), ROWS)
-
-
-def test_columns_that_spaces_line_up_are_read(tmp_path: Path) -> None:
-    found = read_columns(written(tmp_path, "  t     ab \n 0.0   1.5\n 0.1  -2.25\n", "log.txt"))
-    assert found.numbers("ab").tolist() == [1.5, -2.25]
-
-
-def test_a_header_among_remarks_may_have_spaces_between(tmp_path: Path) -> None:
-    found = read_columns(written(tmp_path, "# time_s ab\n0.0 1.5\n0.1 -2.25\n"))
-    assert found.numbers("ab").tolist() == [1.5, -2.25]
-    assert found.at("ab", 0).endswith("row 2, column 'ab'")
-
-
-def test_units_go_into_names_that_all_end_in_a_separator(tmp_path: Path) -> None:
-    found = read_columns(written(tmp_path, "t,rocker,\ns,deg,\n0,1,\n1,1,\n"))
-    assert list(found.raw) == ["t [s]", "rocker [deg]"]
-
-
-def test_quotes_in_a_name_are_read(tmp_path: Path) -> None:
-    found = read_columns(written(tmp_path, 't,"junk""x","in ""s"""\n0,1,2\n1,1,2\n'))
-    assert list(found.raw) == ["t", 'junk"x', 'in "s"']
-    assert found.numbers('in "s"').tolist() == [2, 2]
-
-
-def test_a_row_of_units_goes_into_the_names(tmp_path: Path) -> None:
-    found = read_columns(written(tmp_path, "t,rocker,x\n[ms],deg,-\n0,1,2\n1,1,2\n"))
-    assert list(found.raw) == ["t [ms]", "rocker [deg]", "x"]
-
-
-def test_decimal_commas_are_read_where_the_map_says_so(tmp_path: Path) -> None:
-    found = read_columns(written(tmp_path, "t;a\n0,5;1,25\n"), Layout(decimal=","))
-    assert found.numbers("a").tolist() == [1.25]
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
         "t,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n# done\n",
         "t,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n# done",
         "t,a b\n#\n0,1.5\n#\n0.1,-2.25\n0.2,3e-7\n#",
@@ -92,10 +56,41 @@ def test_decimal_commas_are_read_where_the_map_says_so(tmp_path: Path) -> None:
         "# t,a b\n#\n# made today\n0,1.5\n0.1,-2.25\n# on\n0.2,3e-7\n",
     ],
 )
-def test_remarks_are_passed_over_wherever_they_stand(tmp_path: Path, text: str) -> None:
-    found = read_columns(written(tmp_path, text))
-    assert list(found.raw) == ["t", "a b"]
-    assert np.array_equal(np.column_stack([found.numbers(n) for n in found.raw]), ROWS)
+def test_the_separator_is_found_and_remarks_are_passed_over(tmp_path: Path, text: str) -> None:
+    assert_rows(read_columns(written(tmp_path, text)))
+
+
+LINED = "  t     ab \n 0.0   1.5\n 0.1  -2.25\n"
+OTHERS: list[tuple[str, list[str], object]] = [
+    (LINED, ["t", "ab"], [(0.0, 1.5), (0.1, -2.25)]),
+    ("# time_s ab\n0.0 1.5\n0.1 -2.25\n", ["time_s", "ab"], [(0.0, 1.5), (0.1, -2.25)]),
+    ("# t ab\n 0.0  1.5\n # on\n 0.1  -2.25\n# done\n", ["t", "ab"], [(0.0, 1.5), (0.1, -2.25)]),
+    ("t,rocker,\ns,deg,\n0,1,\n1,1,\n", ["t [s]", "rocker [deg]"], [(0, 1), (1, 1)]),
+    ('t,"junk""x","in ""s"""\n0,1,2\n1,1,2\n', ["t", 'junk"x', 'in "s"'], [(0, 1, 2), (1, 1, 2)]),
+    ("t,rocker,x\n[ms],deg,-\n0,1,2\n", ["t [ms]", "rocker [deg]", "x"], [(0, 1, 2)]),
+    ("t,rocker,M\ns,deg,Nm\n0,1,2\n", ["t [s]", "rocker [deg]", "M [Nm]"], [(0, 1, 2)]),
+    ("t\tx\trocker\ns\t\tdeg\n0\t\t2\n", ["t [s]", "x", "rocker [deg]"], []),
+    ("t,rocker\n# s,deg\n0,1\n", ["t [s]", "rocker [deg]"], [(0, 1)]),
+    ("# t,rocker\n# s,deg\n0,1\n", ["t [s]", "rocker [deg]"], [(0, 1)]),
+    ("t [s] rocker [deg]\n0 1\n", ["t [s]", "rocker [deg]"], [(0, 1)]),
+    ("# t s\n0 1\n", ["t", "s"], [(0, 1)]),
+]
+
+
+@pytest.mark.parametrize(("text", "names", "rows"), OTHERS)
+def test_columns_that_spaces_line_up_quotes_and_rows_of_units_are_read(
+    tmp_path: Path, text: str, names: list[str], rows: object
+) -> None:
+    name = "log.txt" if text == LINED else "log.csv"
+    assert_rows(read_columns(written(tmp_path, text, name)), rows, names)
+
+
+def test_decimal_commas_are_read_and_points_refused_where_the_map_says_so(tmp_path: Path) -> None:
+    found = read_columns(written(tmp_path, "t;a\n0,5;1,25\n"), Layout(decimal=","))
+    assert_rows(found, [(0.5, 1.25)], ["t", "a"])
+    found = read_columns(written(tmp_path, "t;a\n0,5;1.25\n"), Layout(decimal=","))
+    with pytest.raises(CrankcheckError, match=r"row 2, column 'a': found '1\.25', .* comma"):
+        found.numbers("a")
 
 
 BETWEEN = ("", "  ", "#", "# a", "% b, c", "// d", " # e", '# "', "#1,2", "#1\t2", "\t# t")
@@ -118,14 +113,9 @@ def test_every_number_is_told_by_its_line_whatever_stands_between(
         lines.append(separator.join(map(str, row)) + last)
     lines += rng.choice(BETWEEN, rng.integers(0, 3)).tolist()
     found = read_columns(written(tmp_path, end.join(lines) + end * int(rng.integers(0, 2))))
-    assert np.array_equal(np.column_stack([found.numbers(n) for n in found.raw]), values)
+    assert_rows(found, values.tolist(), rows[0])
     for row, line in enumerate(at[1:]):
         assert found.at("n1", row).endswith(f"row {line}, column 'n1'")
-
-
-def test_remarks_among_columns_that_spaces_line_up_are_passed_over(tmp_path: Path) -> None:
-    text = "# t ab\n 0.0  1.5\n # half way\n 0.1  -2.25\n# done\n"
-    assert read_columns(written(tmp_path, text)).numbers("ab").tolist() == [1.5, -2.25]
 
 
 @pytest.mark.parametrize("first", ["#1", "a1"])
@@ -136,10 +126,14 @@ def test_a_row_whose_first_name_begins_as_a_remark_is_a_row(tmp_path: Path, firs
 
 
 def test_a_line_within_quotes_is_no_remark(tmp_path: Path) -> None:
-    text = 't,a,note\n0,1,"on\n# going"\n1,2,"off"\n'
-    found = read_columns(written(tmp_path, text))
+    found = read_columns(written(tmp_path, 't,a,note\n0,1,"on\n# going"\n1,2,"off"\n'))
     assert found.numbers("a").tolist() == [1, 2]
     assert found.raw["note"].tolist() == ["on\n# going", "off"]
+
+
+def test_a_cell_below_a_header_among_remarks_is_told_by_its_line(tmp_path: Path) -> None:
+    found = read_columns(written(tmp_path, "# time_s ab\n0.0 1.5\n0.1 -2.25\n"))
+    assert found.at("ab", 0).endswith("row 2, column 'ab'")
 
 
 @pytest.mark.parametrize("row", range(4))
@@ -152,26 +146,7 @@ def test_a_cell_is_told_by_its_line_whatever_stands_above(tmp_path: Path, row: i
         found.numbers("a")
 
 
-@pytest.mark.parametrize(
-    ("text", "names"),
-    [
-        ("t,rocker,M\ns,deg,Nm\n0,1,2\n", ["t [s]", "rocker [deg]", "M [Nm]"]),
-        ("t\tx\trocker\ns\t\tdeg\n0\t\t2\n", ["t [s]", "x", "rocker [deg]"]),
-        ("t,rocker\n# s,deg\n0,1\n", ["t [s]", "rocker [deg]"]),
-        ("# t,rocker\n# s,deg\n0,1\n", ["t [s]", "rocker [deg]"]),
-        ("t [s] rocker [deg]\n0 1\n", ["t [s]", "rocker [deg]"]),
-        ("# t s\n0 1\n", ["t", "s"]),
-    ],
-)
-def test_units_are_found_also_where_some_are_not_known(
-    tmp_path: Path, text: str, names: list[str]
-) -> None:
-    assert list(read_columns(written(tmp_path, text)).raw) == names
-
-
-def test_decimal_commas_in_text_cells_of_a_sheet_are_read_where_the_map_says_so(
-    tmp_path: Path,
-) -> None:
+def test_decimal_commas_in_text_cells_of_a_sheet_are_read_too(tmp_path: Path) -> None:
     path = tmp_path / "log.xlsx"
     rows = [["t", "a"], ["s", "deg"], ["0,5", "1,25"], [1.5, 2.5]]
     pd.DataFrame(rows).to_excel(path, index=False, header=False, startrow=2)
@@ -180,19 +155,12 @@ def test_decimal_commas_in_text_cells_of_a_sheet_are_read_where_the_map_says_so(
     assert found.at("a [deg]", 0).endswith("row 5, column 'a [deg]'")
 
 
-def test_a_decimal_point_is_refused_where_the_map_says_comma(tmp_path: Path) -> None:
-    found = read_columns(written(tmp_path, "t;a\n0,5;1.25\n"), Layout(decimal=","))
-    with pytest.raises(CrankcheckError, match=r"row 2, column 'a': found '1\.25', .* comma"):
-        found.numbers("a")
-
-
 @pytest.mark.parametrize("ending", ["parquet", "xlsx"])
 def test_other_kinds_of_files_hold_the_same(tmp_path: Path, ending: str) -> None:
     frame = pd.DataFrame(ROWS, columns=["t", "a b"])
     path = tmp_path / f"log.{ending}"
     frame.to_parquet(path) if ending == "parquet" else frame.to_excel(path, index=False)
-    found = read_columns(path)
-    assert np.array_equal(np.column_stack([found.numbers(n) for n in found.raw]), ROWS)
+    assert_rows(read_columns(path))
 
 
 def test_every_digit_is_kept(tmp_path: Path) -> None:
@@ -236,6 +204,7 @@ def test_what_is_no_log_is_told(tmp_path: Path, text: str | bytes, words: str) -
         ('"1,000"', "row 3, column 'a': found '1,000', no number; write decimal points, or say"),
         ("1'000.5", "row 3, column 'a': found .*no number; write numbers without marks"),
         ("00:01", "row 3, column 'a': found '00:01', no number; write seconds"),
+        ("1.5D-3", "row 3, column 'a': found '1.5D-3', .*write e for"),
     ],
 )
 def test_a_cell_that_is_no_number_is_told_by_row_and_column(
@@ -274,9 +243,3 @@ def test_a_frame_is_a_log_too() -> None:
 def test_what_only_looks_like_numbers_is_told(values: object, words: str) -> None:
     with pytest.raises(CrankcheckError, match=words):
         columns_of(pd.DataFrame({"t": values})).numbers("t")
-
-
-def test_an_exponent_that_is_no_number_here_is_told_by_row_and_column(tmp_path: Path) -> None:
-    found = read_columns(written(tmp_path, "t,a\n0,1.5D-3\n1,2D0\n"))
-    with pytest.raises(CrankcheckError, match=r"row 2, column 'a': found '1.5D-3', .*write e for"):
-        found.numbers("a")
