@@ -32,11 +32,7 @@ DRIVEN = [
     for value in case.values
     if case.judge == "follow"
 ]
-
-
 HARDEST = {(name, CATALOGUE[name].values[-1]) for name, _ in DRIVEN}
-
-
 MOST_SAMPLES = 20_000
 
 
