@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from pathlib import Path
 
@@ -9,48 +10,29 @@ import pytest
 
 from reports.page.comment import summary
 from reports.store.reader import Stored, read_store
+from tests.reports.output.test_output import NASTY
 from tests.reports.results.made import Row, cell, stored, untimed
 from tests.worlds.tiers import slowly
 
 LIMIT = 60_000
-NASTY = "a|b `c` <d> [e](f) @team *g* $h$ #1 \\ 中文"
-
-
-def judged(row: Row, **other: object) -> Row:
-    """A cell with the columns of a verdict."""
-    known: Row = {
-        "gated": False,
-        "verdict": "within",
-        "reason": "",
-        "failed_rules": "",
-        "crankcheck": "0.0.0",
-        "turns": 2.0,
-    }
-    return row | known | other
+JUDGED: Row = {"gated": False, "verdict": "within", "reason": "", "failed_rules": "",
+               "crankcheck": "0.0.0", "turns": 2.0}  # fmt: skip
 
 
 def made(number: int, variant: str = "v", **other: object) -> Stored:
     """A store of ``number`` lines with three steps each; other columns are those of the finest."""
     rows = []
-    for i in range(number):
-        for steps in (90, 180, 360):
-            more = other if steps == 360 else {}
-            error = 1e-3 * (90 / steps) ** 2
-            asked = {f"setting_{k}": i for k in range(12)}
-            one = cell(f"scene-{i % 40}", f"{variant}{i // 40}", steps, error, 1.0, asked=asked)
-            rows.append(judged(one, **more))
+    for i, steps in itertools.product(range(number), (90, 180, 360)):
+        more = JUDGED | (other if steps == 360 else {})
+        more["asked"] = {f"setting_{k}": i for k in range(12)}
+        error, name = 1e-3 * (90 / steps) ** 2, f"{variant}{i // 40}"
+        rows.append(cell(f"scene-{i % 40}", name, steps, error, 1.0, **more))
     return stored(rows)
 
 
 def tables(text: str) -> list[list[str]]:
     """The rows of each table."""
-    found: list[list[str]] = [[]]
-    for line in text.splitlines():
-        if line.startswith("|"):
-            found[-1].append(line)
-        elif found[-1]:
-            found.append([])
-    return [rows for rows in found if rows]
+    return [block.split("\n") for block in re.findall(r"(?:^\|.*\n)*^\|.*", text, re.MULTILINE)]
 
 
 def assert_whole(text: str) -> None:
@@ -84,9 +66,8 @@ def test_it_is_whole_and_says_what_a_reviewer_asks(store: Path) -> None:
 
 @pytest.mark.parametrize("number", [1, 40, slowly(80, reason="240 cells, of which more is cut")])
 def test_a_large_store_fits_into_a_comment(number: int) -> None:
-    text = summary(
-        made(number, gated=True, verdict="out", failed_rules="CC103 CC105", reason="r" * 3000)
-    )
+    failed = {"failed_rules": "CC103 CC105", "reason": "r" * 3000}
+    text = summary(made(number, gated=True, verdict="out", **failed))
     assert_whole(text)
     assert ("more" in text) == (number > 1)
 
@@ -111,8 +92,8 @@ def test_what_is_out_of_tolerance_is_named_with_its_rules() -> None:
 
 def test_the_time_to_reach_an_error_is_given_or_on_how_many_scenes_it_is_reached() -> None:
     def line(scene: str, variant: str, first: float) -> list[Row]:
-        steps = (90, 180, 360)
-        return [judged(cell(scene, variant, n, first * (90 / n) ** 2, 2.0)) for n in steps]
+        errors = {n: first * (90 / n) ** 2 for n in (90, 180, 360)}
+        return [cell(scene, variant, n, error, 2.0, **JUDGED) for n, error in errors.items()]
 
     rows = line("a", "name [of]", 1e-2) + line("b", "name [of]", 1e-2)
     rows += line("a", "late", 1e-2) + [untimed(row) for row in line("b", "late", 1e-1)]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Mapping
 from dataclasses import replace
 from io import StringIO
 from pathlib import Path
-from types import ModuleType
 
+import numpy as np
 import pandas as pd
 import pytest
 from rich.console import Console
@@ -16,7 +17,7 @@ from rich.console import Console
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.cli.commands.report import format_of, run_report
-from reports.page import build
+from reports.page import build, comment
 from reports.page.build import HERE, page
 from reports.page.sections import SECTIONS
 from reports.store.manifest import Manifest
@@ -30,13 +31,8 @@ STORED = [name for name in SECTIONS if name not in ("hard", "reading_forces", "f
 """The sections of a driven store without forces and without hard cases beside it."""
 
 
-@pytest.fixture(scope="module")
-def text(small_page: Path) -> str:
-    return small_page.read_text(encoding="utf-8")
-
-
-def test_every_section_is_there_in_its_order_and_nothing_is_loaded(text: str) -> None:
-    stands_alone(text, STORED)
+def test_every_section_is_there_in_its_order_and_nothing_is_loaded(small_page: Path) -> None:
+    stands_alone(small_page.read_text(encoding="utf-8"), STORED)
 
 
 def test_our_scripts_make_no_html_of_strings() -> None:
@@ -51,17 +47,15 @@ def test_hostile_text_is_shown_and_not_read(evil_page: Path) -> None:
     shown_and_not_read(evil_page.read_text(encoding="utf-8"), scripts=3)  # theme, Plotly, ours
 
 
-def test_a_store_of_one_scene_one_engine_and_no_times_has_a_page(tiny_page: Path) -> None:
+def test_a_store_of_one_scene_without_times_or_of_failures_alone_has_a_page(
+    small: Stored, tiny_page: Path
+) -> None:
     text = tiny_page.read_text(encoding="utf-8")
     assert Outline(text).sections() == STORED
     assert "Over all scenes" not in text
-
-
-def test_a_store_in_which_everything_failed_has_a_page(small: Stored) -> None:
     found = part_of(small, small.cells["status"] != "ok")
     assert not found.cells.empty
-    outline = Outline(page(found))
-    assert "stability" in outline.sections()
+    assert "stability" in Outline(page(found)).sections()
 
 
 def test_a_store_without_the_text_of_its_scenes_has_a_page_without_drawings(
@@ -84,22 +78,17 @@ def test_the_page_of_the_default_study_is_below_8_megabytes(small: Stored) -> No
     one = small.cells[(small.cells["scene"] == "shaper") & (small.cells["status"] == "ok")]
     lines = one[one["variant"] == "tuned"].iloc[[0, 1, 2, 0, 1, 2, 0]]
     rows = []
-    for scene in range(10):
-        for variant in range(8):
-            copied = lines.copy()
-            copied["key"] = [f"{key} {scene} {variant} {i}" for i, key in enumerate(copied["key"])]
-            copied["line"] = f"{scene} {variant}"
-            copied["scene"], copied["variant"] = f"shaper{scene}", f"variant {variant}"
-            copied["steps_per_turn"] = [90.0 * 2**i for i in range(7)]
-            copied["dt_s"] = [0.6283185307179586 / n for n in copied["steps_per_turn"]]
-            rows.append(copied)
+    for scene, variant in itertools.product(range(10), range(8)):
+        line, steps = f"{scene} {variant}", 90.0 * 2.0 ** np.arange(7)
+        names = {"line": line, "scene": f"shaper{scene}", "variant": f"variant {variant}"}
+        keys = [f"{key} {line} {i}" for i, key in enumerate(lines["key"])]
+        dt_s = 0.6283185307179586 / steps
+        rows.append(lines.assign(**names, key=keys, steps_per_turn=steps, dt_s=dt_s))
     scene = small.manifest.scenes["shaper"]
     texts = {f"shaper{n}": scene.replace('"shaper"', f'"shaper{n}"') for n in range(10)}
     cells = pd.concat(rows, ignore_index=True)
-    large = Large(
-        small.folder, replace(small.manifest, scenes=texts), cells, small.timings, small.examined
-    )
-    found = page(large)
+    manifest = replace(small.manifest, scenes=texts)
+    found = page(Large(small.folder, manifest, cells, small.timings, small.examined))
     assert len(cells) == 560
     assert len(re.findall('"base64"', found)) > 560
     assert len(found.encode()) < MEGABYTES_8
@@ -114,58 +103,51 @@ def test_drawings_give_way_where_the_page_gets_too_large(
     assert len(re.findall('"base64"', thinned)) < len(re.findall('"base64"', whole))
 
 
-def test_the_command_writes_the_page_and_says_so(small_folder: Path, tmp_path: Path) -> None:
+def report(*asked: object) -> str:
+    """What the command says."""
     said = StringIO()
+    assert run_report(*asked, Console(file=said, width=200)) == 0
+    return said.getvalue()
+
+
+def test_the_command_writes_the_page_and_says_so(small_folder: Path, tmp_path: Path) -> None:
     target = tmp_path / "report.html"
-    assert run_report(small_folder, target, "html", Console(file=said, width=200)) == 0
+    said = report(small_folder, target, "html")
     assert target.read_text(encoding="utf-8").startswith("<!doctype html>")
-    assert re.search(r"report\.html: 24 cells, \d\.\d MB", said.getvalue())
+    assert re.search(r"report\.html: 24 cells, \d\.\d MB", said)
 
 
-def test_the_command_without_a_file_names_one(
+def test_the_command_names_a_file_itself_and_gives_text_to_the_terminal_or_to_a_file(
     small_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(build, "page", lambda *_: "<!doctype html>")
-    run_report(small_folder, None, "html", Console(file=StringIO()))
+    report(small_folder, None, "html")
     assert (tmp_path / "report.html").read_text() == "<!doctype html>"
-
-
-def test_the_command_gives_text_to_the_terminal_or_to_a_file(
-    small_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    summary = ModuleType("reports.page.comment")
-    summary.summary = lambda stored: f"# {len(stored.cells)} cells [red]\n"  # type: ignore[attr-defined]
-    monkeypatch.setitem(__import__("sys").modules, "reports.page.comment", summary)
-    said = StringIO()
-    run_report(small_folder, None, "md", Console(file=said, width=200))
-    assert said.getvalue() == "# 24 cells [red]\n"
-    run_report(small_folder, tmp_path / "a.md", "md", Console(file=StringIO()))
+    monkeypatch.setattr(comment, "summary", lambda stored: f"# {len(stored.cells)} cells [red]\n")
+    assert report(small_folder, None, "md") == "# 24 cells [red]\n"
+    report(small_folder, tmp_path / "a.md", "md")
     assert (tmp_path / "a.md").read_text() == "# 24 cells [red]\n"
 
 
 @pytest.mark.parametrize(
-    ("name", "format", "message"),
+    ("folder", "name", "format", "message"),
     [
-        ("report.pdf", "html", "found '.pdf'; use .html"),
-        ("report.html", "md", "found '.html'; use .md"),
-        ("nowhere/report.html", "html", "create it first"),
+        ("no store", "report.pdf", "html", "found '.pdf'; use .html"),
+        ("no store", "report.html", "md", "found '.html'; use .md"),
+        ("no store", "nowhere/report.html", "html", "create it first"),
+        (".", "report.html", "html", "no store of a sweep there"),
     ],
 )
-def test_a_file_that_can_not_be_written_is_refused_before_the_work(
-    name: str, format: str, message: str, tmp_path: Path
+def test_a_file_that_can_not_be_written_or_no_store_is_refused_before_the_work(
+    folder: str, name: str, format: str, message: str, tmp_path: Path
 ) -> None:
     with pytest.raises(CrankcheckError, match=re.escape(message)):
-        run_report(tmp_path / "no store", tmp_path / name, format, Console(file=StringIO()))
+        report(tmp_path / folder, tmp_path / name, format)
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_format_is_known_by_its_name() -> None:
     assert [format_of("html"), format_of("MD")] == ["html", "md"]
     with pytest.raises(CrankcheckError, match="--format 'pdf': unknown; use html or md"):
         format_of("pdf")
-
-
-def test_a_folder_without_a_store_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(CrankcheckError, match="no store of a sweep there"):
-        run_report(tmp_path, tmp_path / "report.html", "html", Console(file=StringIO()))
-    assert not (tmp_path / "report.html").exists()
