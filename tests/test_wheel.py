@@ -25,7 +25,6 @@ COMMANDS = [
     "tests/test_readme.py",
     "tests/reports/cli/test_ending.py",
     "tests/reports/cli/test_interrupt.py",
-    "tests/reports/cli/test_start_up.py",
     "tests/reports/history/test_history.py",
     "tests/reports/sweep",
     "tests/reports/tune/test_tune.py",

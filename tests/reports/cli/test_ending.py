@@ -1,4 +1,5 @@
-"""How the command ends when it is not by a verdict: one line and a code that tells whose fault."""
+"""The command starts fast, and loads nothing that it does not need; where it does not end by a
+verdict, it ends with one line and a code that tells whose fault that is."""
 
 from __future__ import annotations
 
@@ -7,16 +8,17 @@ import os
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 from reports.cli.broken_package import broken_package
 from reports.output.console import forget_odd_sizes
-from tests.worlds.command import COMMAND
-from tests.worlds.command_line import crank, flat
+from tests.worlds.command import COMMAND, PYTHON
+from tests.worlds.command_line import crank, flat, told
 from tests.worlds.forks import End, ends
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import few, slow, slowly
 
 ROOT = Path(__file__).parents[3]
 SOLVE = "solve fourbar-lecture-1"
@@ -27,13 +29,9 @@ POSIX = pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell is nee
 
 def shell(command: str, **environment: str) -> tuple[int, str, str]:
     """Exit code, output and complaint of ``crankcheck`` in a shell line."""
+    line, env = command.replace("crankcheck", COMMAND), os.environ | environment
     done = subprocess.run(
-        command.replace("crankcheck", COMMAND),
-        shell=True,
-        executable="/bin/sh",
-        capture_output=True,
-        check=False,
-        env=os.environ | environment,
+        line, shell=True, executable="/bin/sh", capture_output=True, env=env, check=False
     )
     return done.returncode, done.stdout.decode("utf-8"), done.stderr.decode("utf-8")
 
@@ -67,35 +65,30 @@ def ended(tmp_path_factory: pytest.TempPathFactory) -> dict[str, End]:
     return ends({**full, "ascii": ASCII, "swallowed": SWALLOWED}, folder)
 
 
+def check_told(end: End, fault: str) -> None:
+    """One line tells of a fault that is not ours."""
+    code, _, complaint = end
+    assert complaint.count("\n") == 1
+    assert re.search(fault, complaint)
+    assert code == 2
+
+
 @POSIX
 @HAS_FULL
 @pytest.mark.parametrize("line", FILLED)
-def test_a_full_disk_behind_the_output_is_told_in_one_line(
-    line: str, ended: dict[str, End]
-) -> None:
-    code, _, complaint = ended[line]
-    assert complaint.count("\n") == 1
-    assert "standard output can not be written: No space left on device" in complaint
-    assert code == 2
+def test_a_full_disk_behind_the_output_is_told(line: str, ended: dict[str, End]) -> None:
+    check_told(ended[line], "standard output can not be written: No space left on device")
 
 
 @POSIX
-def test_a_closed_output_is_told_in_one_line() -> None:
-    code, _, complaint = shell(f"crankcheck {SOLVE} >&-")
-    assert complaint.count("\n") == 1
-    assert "standard output is closed" in complaint
-    assert code == 2
+def test_a_closed_output_is_told() -> None:
+    check_told(shell(f"crankcheck {SOLVE} >&-"), "standard output is closed")
 
 
 @POSIX
-def test_a_reader_that_leaves_is_no_verdict() -> None:
-    code, _, complaint = shell(f"(crankcheck {SOLVE} --turns 100; echo $? >&2) | head -n 1")
-    assert (code, complaint) == (0, "141\n")
-
-
-@POSIX
-def test_a_reader_of_the_help_that_leaves_is_no_verdict() -> None:
-    code, _, complaint = shell("(crankcheck --help; echo $? >&2) | true")
+@pytest.mark.parametrize("line", [f"{SOLVE} --turns 100; X | head -n 1", "--help; X | true"])
+def test_a_reader_that_leaves_is_no_verdict(line: str) -> None:
+    code, _, complaint = shell(f"(crankcheck {line.replace('X', 'echo $? >&2)')}")
     assert (code, complaint) == (0, "141\n")
 
 
@@ -142,12 +135,6 @@ def test_the_traceback_is_shown_where_it_is_asked_for(monkeypatch: pytest.Monkey
     assert "Traceback" in crank("scenes").stderr
 
 
-def test_the_help_says_what_every_exit_code_means() -> None:
-    text = flat(crank("--help").output)
-    for part in ("0 all within", "1 out of", "2 bad input", "70 a fault", "130 interrupted", "141"):
-        assert part in text
-
-
 @POSIX
 @pytest.mark.parametrize(
     ("args", "variable", "package"),
@@ -161,10 +148,7 @@ def test_a_variable_of_a_package_is_no_fault_of_crankcheck(
     args: str, variable: str, package: str, tmp_path: Path
 ) -> None:
     line = f"crankcheck {args.replace('OUT', str(tmp_path / 'out.png'))}"
-    code, _, complaint = shell(line, **{variable: "foo"})
-    assert code == 2
-    assert complaint.count("\n") == 1
-    assert re.search(f"{package} can not be imported here: .*foo", complaint)
+    check_told(shell(line, **{variable: "foo"}), f"{package} can not be imported here: .*foo")
 
 
 ODD_SIZES = ["9" * 5000, "\u00b2", "1000000000", "0", "-80", ""]
@@ -192,3 +176,65 @@ def test_a_fault_in_what_a_package_is_asked_for_is_one_of_ours() -> None:
     with pytest.raises(ValueError, match="Expecting value") as raised:
         json.loads("[")
     assert broken_package(raised.value) == ""
+
+
+HEAVY = ("mujoco", "pymunk", "pandas", "numpy", "matplotlib", "pyarrow", "openpyxl", "scipy")
+COUNTED = """
+import cProfile, json, sys
+counter = cProfile.Profile()
+if {counted}:
+    counter.enable()
+from crankcheck.__main__ import main
+sys.argv = ["crankcheck", *{args!r}]
+try:
+    main()
+except SystemExit as end:
+    code = end.code
+counter.disable()
+calls = sum(entry.callcount for entry in counter.getstats())
+print(json.dumps([code, calls, sorted(name for name in {heavy!r} if name in sys.modules)]))
+"""
+MOST_CALLS = 800_000
+"""Of functions, those of imports among them: a third of a second."""
+
+
+@cache
+def start(*args: str, counted: bool = True) -> tuple[int, int, list[str], str]:
+    """Exit code, calls of functions, heavy packages loaded, and the output."""
+    script = COUNTED.format(args=list(args), heavy=HEAVY, counted=counted)
+    done = subprocess.run([PYTHON, "-P", "-c", script], capture_output=True, text=True, check=True)
+    *output, last = done.stdout.splitlines()
+    code, calls, loaded = json.loads(last)
+    return code or 0, calls, loaded, "\n".join(output)
+
+
+HELPS = ["--help", "verify --help", "solve -h", "--version"]
+
+
+@pytest.mark.parametrize("line", few(HELPS, ["--help"], "the same imports as of the others"))
+def test_help_is_shown_after_few_calls_and_loads_no_engine(line: str) -> None:
+    code, calls, loaded, output = start(*line.split())
+    assert code == 0
+    assert loaded == []
+    assert "crankcheck" in output
+    assert calls < MOST_CALLS
+
+
+def test_the_help_names_every_command_and_says_what_every_exit_code_means() -> None:
+    commands = ("verify", "solve", "export", "scenes", "engines", "view", "--version")
+    codes = ("0 all within", "1 out of", "2 bad input", "70 a fault", "130 interrupted", "141")
+    said = flat(told("--help"))
+    assert [part for part in (*commands, *codes) if part not in said] == []
+
+
+def test_the_reference_is_solved_without_an_engine() -> None:
+    code, _, loaded, output = start("solve", "fourbar-lecture-1", "--at-deg", "90", counted=False)
+    assert code == 0
+    assert "4.6761490" in output
+    assert not {"mujoco", "pymunk", "matplotlib", "scipy"} & set(loaded)
+
+
+@slow("a start, for what test_refusals.py has in the process of the tests")
+def test_a_users_mistake_ends_with_2_and_no_traceback_in_a_real_process() -> None:
+    code, _, complaint = shell(f"{PYTHON} -P -m $NAME verify fourbar-lectur-1", NAME="crankcheck")
+    assert (code, complaint.count("\n"), "Traceback" in complaint) == (2, 1, False)

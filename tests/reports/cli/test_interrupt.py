@@ -67,29 +67,29 @@ def ended(
     return running.returncode, output, complaint
 
 
+ENDED = {"interrupted": (GROUP, 4, 130), "terminated": (ALONE, 2, 143)}
+"""How it is told to end, how many times, and the exit code."""
+MOMENTS = [
+    *(("interrupted", each) for each in (IMPORTS, FIRST_STARTS, SECOND_STARTS, FIRST_ANSWER)),
+    *(("terminated", each) for each in (FIRST_STARTS, FIRST_ANSWER)),
+]
+
+
 @pytest.mark.parametrize(
-    "moment",
+    "case",
     few(
-        [IMPORTS, FIRST_STARTS, SECOND_STARTS, FIRST_ANSWER],
-        [SECOND_STARTS],
-        "at one moment of three that workers have; at an import Ctrl-C comes below",
+        MOMENTS,
+        [("interrupted", SECOND_STARTS)],
+        "at one moment of three that workers have; an import and SIGTERM itself are below",
     ),
 )
-def test_ctrl_c_ends_the_workers_with_one_line_and_nothing_written(
-    programs: Start, tmp_path: Path, moment: Moment
+def test_a_signal_ends_the_workers_with_one_line_and_nothing_written(
+    programs: Start, tmp_path: Path, case: tuple[str, Moment]
 ) -> None:
-    code, output, complaint = ended(programs, tmp_path, GROUP, moment, times=4)
-    assert complaint.splitlines() == ["crankcheck: interrupted"]
-    assert (code, output) == (130, "")
-    assert not (tmp_path / "out").exists()
-
-
-@slow("a second each, and the workers end as at Ctrl-C; SIGTERM itself is below")
-@pytest.mark.parametrize("moment", [FIRST_STARTS, FIRST_ANSWER])
-def test_sigterm_ends_in_the_same_way(programs: Start, tmp_path: Path, moment: Moment) -> None:
-    code, output, complaint = ended(programs, tmp_path, ALONE, moment, times=2)
-    assert complaint.splitlines() == ["crankcheck: terminated"]
-    assert (code, output) == (143, "")
+    kill, times, exit_code = ENDED[case[0]]
+    code, output, complaint = ended(programs, tmp_path, kill, case[1], times)
+    assert complaint.splitlines() == [f"crankcheck: {case[0]}"]
+    assert (code, output) == (exit_code, "")
     assert not (tmp_path / "out").exists()
 
 
@@ -143,14 +143,11 @@ def started(module: str, number: int, program: str, start: Start) -> tuple[int, 
 IMPORTED = [*((module, COMMAND) for module in (*EARLY, *LATE)), (EARLY[0], "-m"), (LATE[-1], "-m")]
 
 
-@pytest.mark.parametrize(
-    "imported",
-    few(
-        IMPORTED,
-        [(EARLY[0], COMMAND), (EARLY[3], COMMAND), (LATE[0], COMMAND), (EARLY[0], "-m")],
-        "four in place of all: before, in and after the command line, and as `python -m`",
-    ),
-)
+FOUR = [(EARLY[0], COMMAND), (EARLY[3], COMMAND), (LATE[0], COMMAND), (EARLY[0], "-m")]
+BEFORE = "four in place of all: before, in and after the command line, and as `python -m`"
+
+
+@pytest.mark.parametrize("imported", few(IMPORTED, FOUR, BEFORE))
 def test_ctrl_c_during_an_import_ends_in_one_line(
     imported: tuple[str, str], programs: Start
 ) -> None:

@@ -17,10 +17,7 @@ LEAST = {
     "history mujoco 1 2": ("run_history", changes.HistoryRequest("mujoco", ["1", "2"])),
     "selftest": ("selftest", checking.SelftestRequest()),
     "sweep -o out": ("sweep", measuring.SweepRequest(Path("out"))),
-    "tune a b --engine mujoco --target 1": (
-        "run_tune",
-        measuring.TuneRequest(["a", "b"], "mujoco", 1.0),
-    ),
+    "tune a --engine b --target 1": ("run_tune", measuring.TuneRequest(["a"], "b", 1.0)),
     "advise --dt 1 --speed 2 --target 3": ("run_advise", measuring.AdviseRequest(1.0, 2.0, 3.0)),
     "stability": ("stability", measuring.StabilityRequest()),
     "solve a": ("run_solve", showing.SolveRequest("a")),
@@ -54,24 +51,21 @@ def test_what_is_not_given_keeps_the_default_of_the_request(
     assert asked(monkeypatch, line, function) == request
 
 
-@pytest.mark.parametrize(
-    ("line", "function"),
-    [
-        ("verify --dt {}", "verify"),
-        ("run a --dt {}", "run_run"),
-        ("judge a b --step {}", "run_judge"),
-        ("advise --dt {} --speed 1 --target 1", "run_advise"),
-    ],
-)
-def test_seconds_may_be_a_fraction(
-    line: str, function: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+SECONDS = {
+    "verify --dt {}": ("verify", "dt_s"),
+    "run a --dt {}": ("run_run", "dt_s"),
+    "judge a b --step {}": ("run_judge", "step_s"),
+    "advise --dt {} --speed 1 --target 1": ("run_advise", "dt_s"),
+}
+
+
+@pytest.mark.parametrize("line", SECONDS)
+def test_seconds_may_be_a_fraction(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    function, field = SECONDS[line]
     for text, number in {"1/60": 1 / 60, "1e-3/4": 2.5e-4, "0.02": 0.02}.items():
-        request = asked(monkeypatch, line.format(text), function)
-        (found,) = (getattr(request, name) for name in ("dt_s", "step_s") if hasattr(request, name))
-        assert found == number
+        assert getattr(asked(monkeypatch, line.format(text), function), field) == number
     for wrong in ("1/0", "1/", "/60", "1/60/2", "a", "60 Hz"):
-        command = [wrong if word == "{}" else word for word in line.split()]
+        command = [word.format(wrong) for word in line.split()]
         refused(crank(*command), "no number of seconds")
 
 
