@@ -171,10 +171,7 @@ def coordinates(scene: Scene, motion: Motion, index: int) -> list[float]:
 def _point(frame: tuple[Place, Jet, Place], local: Point) -> Place:
     origin, _, along = frame
     x, y = mpf(local[0]), mpf(local[1])
-    return Place(
-        origin.x + along.x * x - along.y * y,
-        origin.y + along.y * x + along.x * y,
-    )
+    return Place(origin.x + along.x * x - along.y * y, origin.y + along.y * x + along.x * y)
 
 
 def _level(jet: Jet, level: int) -> Number:

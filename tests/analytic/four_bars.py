@@ -8,18 +8,12 @@ from models.scene import Scene
 TEXT = """
 name = "four-bar"
 source = "test"
-[ground]
-points = {{ A = [0.0, 0.0], D = [{ground!r}, 0.0] }}
-[links]
-crank = {{ bar = ["A", "B"], length_m = {crank!r} }}
-coupler = {{ bar = ["B", "C"], length_m = {coupler!r} }}
-rocker = {{ bar = ["D", "C"], length_m = {rocker!r} }}
-[driver]
-{driver}
-speed_rad_s = {speed!r}
-start_deg = {start_deg!r}
-[branch]
-C = {branch}
+ground.points = {{ A = [0.0, 0.0], D = [{ground!r}, 0.0] }}
+links.crank = {{ bar = ["A", "B"], length_m = {crank!r} }}
+links.coupler = {{ bar = ["B", "C"], length_m = {coupler!r} }}
+links.rocker = {{ bar = ["D", "C"], length_m = {rocker!r} }}
+driver = {{ {driver}, speed_rad_s = {speed!r}, start_deg = {start_deg!r} }}
+branch.C = {branch}
 """
 
 

@@ -117,17 +117,13 @@ def test_rates_in_toggle_are_uncertain_and_silent() -> None:
 HANGING = """
 name = "hanging"
 source = "test"
-[ground]
-points = { A = [0.0, 0.0], D = [0.3, 0.0], G = [0.6, 0.1] }
-[links]
-crank = { bar = ["A", "B"], length_m = 0.1 }
-coupler = { bar = ["B", "C"], length_m = 0.3 }
-rocker = { bar = ["D", "C"], length_m = 0.08, points = { E = [0.05, 0.05] } }
-rod = { bar = ["E", "F"], length_m = 0.3 }
-lever = { bar = ["G", "F"], length_m = 0.2 }
-[driver]
-link = "crank"
-speed_rad_s = 1.0
+ground.points = { A = [0.0, 0.0], D = [0.3, 0.0], G = [0.6, 0.1] }
+links.crank = { bar = ["A", "B"], length_m = 0.1 }
+links.coupler = { bar = ["B", "C"], length_m = 0.3 }
+links.rocker = { bar = ["D", "C"], length_m = 0.08, points = { E = [0.05, 0.05] } }
+links.rod = { bar = ["E", "F"], length_m = 0.3 }
+links.lever = { bar = ["G", "F"], length_m = 0.2 }
+driver = { link = "crank", speed_rad_s = 1.0 }
 """
 
 

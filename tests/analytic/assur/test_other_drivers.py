@@ -27,34 +27,28 @@ LENGTHS |= {"change point": (0.2, 0.35, 0.25, 0.3), "kite": (0.2, 0.2, 0.3, 0.3)
 
 
 def by_pin(lengths: tuple[float, float, float, float], start: float, branch: int = 1) -> Scene:
-    driver, degrees = 'pin = "B"\nlinks = ["crank", "coupler"]', math.degrees(start)
+    driver, degrees = 'pin = "B", links = ["crank", "coupler"]', math.degrees(start)
     return fourbar(*lengths, branch, driver=driver, start_deg=degrees)
 
 
 CYLINDER = """
 name = "cylinder"
 source = "test"
-[ground]
-points = { A = [0.0, 0.0], D = [0.5, -0.1] }
-[links.barrel]
-points = { A = [0.0, 0.02], F = [0.2, 0.0] }
-[links.rod]
-points = { E = [0.0, 0.0], C = [0.35, 0.01] }
-[links.lever]
-points = { D = [0.0, 0.0], C = [0.3, 0.0] }
-[sliders.S]
-on = "barrel"
-link = "rod"
-point = "E"
-through_m = [0.05, 0.01]
-direction_deg = 3.0
-angle_deg = 4.0
-[driver]
-slider = "S"
-law = "oscillating"
-centre_m = 0.12
-amplitude_m = 0.04
-frequency_rad_s = 5.0
+ground.points = { A = [0.0, 0.0], D = [0.5, -0.1] }
+links.barrel.points = { A = [0.0, 0.02], F = [0.2, 0.0] }
+links.rod.points = { E = [0.0, 0.0], C = [0.35, 0.01] }
+links.lever.points = { D = [0.0, 0.0], C = [0.3, 0.0] }
+sliders.S.on = "barrel"
+sliders.S.link = "rod"
+sliders.S.point = "E"
+sliders.S.through_m = [0.05, 0.01]
+sliders.S.direction_deg = 3.0
+sliders.S.angle_deg = 4.0
+driver.slider = "S"
+driver.law = "oscillating"
+driver.centre_m = 0.12
+driver.amplitude_m = 0.04
+driver.frequency_rad_s = 5.0
 """
 PISTON = load_scene("slider-crank-by-piston")
 LEANING = replace(PISTON.sliders["C"], direction_rad=math.radians(10.0), through_m=(0.0, 0.02))

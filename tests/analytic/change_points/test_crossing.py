@@ -37,54 +37,35 @@ fourbar = partial(four_bars.fourbar, start_deg=60.0, speed=1.5)
 SLIDER_CRANK = """
 name = "isosceles"
 source = "test"
-[ground]
-points = {{ A = [0.0, 0.0] }}
-[links]
-crank = {{ bar = ["A", "B"], length_m = 0.1 }}
-rod = {{ bar = ["B", "C"], length_m = {rod!r} }}
-[sliders.C]
-on = "ground"
-[driver]
-link = "crank"
-speed_rad_s = 1.5
+ground.points = {{ A = [0.0, 0.0] }}
+links.crank = {{ bar = ["A", "B"], length_m = 0.1 }}
+links.rod = {{ bar = ["B", "C"], length_m = {rod!r} }}
+sliders.C.on = "ground"
+driver = {{ link = "crank", speed_rad_s = 1.5 }}
 """
 LEVER = """
 name = "lever"
 source = "test"
-[ground]
-points = {{ A = [0.0, {pivot!r}], C = [0.0, 0.0] }}
-[links]
-crank = {{ bar = ["A", "B"], length_m = 0.1 }}
-lever = {{ bar = ["C", "E"], length_m = 0.35 }}
-rod = {{ bar = ["E", "F"], length_m = 0.6 }}
-[sliders.B]
-on = "lever"
-[sliders.F]
-on = "ground"
-through_m = [0.0, 0.15]
-[driver]
-link = "crank"
-speed_rad_s = 1.5
+ground.points = {{ A = [0.0, {pivot!r}], C = [0.0, 0.0] }}
+links.crank = {{ bar = ["A", "B"], length_m = 0.1 }}
+links.lever = {{ bar = ["C", "E"], length_m = 0.35 }}
+links.rod = {{ bar = ["E", "F"], length_m = 0.6 }}
+sliders.B.on = "lever"
+sliders.F = {{ on = "ground", through_m = [0.0, 0.15] }}
+driver = {{ link = "crank", speed_rad_s = 1.5 }}
 """
 LOCOMOTIVE = """
 name = "locomotive"
 source = "test"
-[ground]
-points = { A = [0.0, 0.0], D = [0.3, 0.0], G = [0.7, 0.0], H = [0.0, 0.05] }
-[links]
-crank = { bar = ["A", "B"], length_m = 0.1 }
-coupler = { bar = ["B", "C"], length_m = 0.3 }
-rocker = { bar = ["D", "C"], length_m = 0.1 }
-second = { bar = ["C", "F"], length_m = 0.4 }
-third = { bar = ["G", "F"], length_m = 0.1 }
-rod = { bar = ["F", "P"], length_m = 0.5 }
-[sliders.P]
-on = "ground"
-through_m = [0.0, 0.02]
-[driver]
-link = "crank"
-speed_rad_s = 1.5
-start_deg = 60.0
+ground.points = { A = [0.0, 0.0], D = [0.3, 0.0], G = [0.7, 0.0], H = [0.0, 0.05] }
+links.crank = { bar = ["A", "B"], length_m = 0.1 }
+links.coupler = { bar = ["B", "C"], length_m = 0.3 }
+links.rocker = { bar = ["D", "C"], length_m = 0.1 }
+links.second = { bar = ["C", "F"], length_m = 0.4 }
+links.third = { bar = ["G", "F"], length_m = 0.1 }
+links.rod = { bar = ["F", "P"], length_m = 0.5 }
+sliders.P = { on = "ground", through_m = [0.0, 0.02] }
+driver = { link = "crank", speed_rad_s = 1.5, start_deg = 60.0 }
 """
 
 

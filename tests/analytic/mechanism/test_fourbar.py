@@ -26,15 +26,11 @@ CHANGE = "change point"
 STILL = """
 name = "still"
 source = "a test"
-[ground]
-points = {{ A = [0.0, 0.0], D = [0.3, 0.0], E = [0.1, 0.0] }}
-[links]
-crank = {{ bar = ["A", "B"], length_m = 0.1 }}
-rod = {{ bar = ["{rod}", "C"], length_m = 0.25 }}
-rocker = {{ bar = ["{rocker}", "C"], length_m = 0.2 }}
-[driver]
-link = "crank"
-speed_rad_s = 10.0
+ground.points = {{ A = [0.0, 0.0], D = [0.3, 0.0], E = [0.1, 0.0] }}
+links.crank = {{ bar = ["A", "B"], length_m = 0.1 }}
+links.rod = {{ bar = ["{rod}", "C"], length_m = 0.25 }}
+links.rocker = {{ bar = ["{rocker}", "C"], length_m = 0.2 }}
+driver = {{ link = "crank", speed_rad_s = 10.0 }}
 """
 CRANK_ROCKERS = [(0.1, 0.25, 0.2, 0.3), (1.0, 2.5, 2.0, 3.0), (0.2, 0.9, 0.7, 0.6)]
 CRANK_ROCKERS += [(0.05, 0.3, 0.1, 0.28)]
