@@ -48,14 +48,13 @@ def change(old: float, new: float) -> FollowedChange:
     return FollowedChange("pin gap", old, new, 1e-11, named("fourbar", "tuned"), "1", "2")
 
 
-def texts(before: VersionResult, after: VersionResult) -> list[str]:
-    (step,) = steps([before, after])
+def told(before: list[StoredCell], after: list[StoredCell]) -> list[str]:
+    """The headlines of version 2 against version 1."""
+    (step,) = steps([result("1", *before), result("2", *after)])
     return [line.text for line in headlines(step)]
 
 
-def test_a_smaller_error_is_better_by_its_ratio_and_one_that_is_no_number_infinitely_worse() -> (
-    None
-):
+def test_a_smaller_error_is_better_by_its_ratio_and_no_number_infinitely_worse() -> None:
     for old, new, word, factor, times_better in (
         *((2e-2, 1e-3, "better", 20.0, 20.0), (math.inf, 1e-3, "better", math.inf, math.inf)),
         *((1e-3, 2e-2, "worse", 20.0, 0.05), (1e-3, math.inf, "worse", math.inf, 0.0)),
@@ -84,78 +83,66 @@ def test_history_and_diff_agree_on_what_changed(growth: float) -> None:
 
 
 def test_the_largest_change_of_a_quantity_is_told_with_its_scene_and_its_numbers() -> None:
-    before = result("3.6.0", cell(pin_gap=2e-2), cell("shaper", pin_gap=2.3e-2))
-    after = result("3.7.0", cell(pin_gap=1e-3), cell("shaper", pin_gap=1.3e-2))
-    assert texts(before, after) == [
-        "3.7.0 is better than 3.6.0 by 20 times on the pin gap of fourbar as shipped "
-        "(2.0e-02 to 1.0e-03 of L; by 2 or more in 1 of 2 scenes)"
-    ]
-    (worse,) = texts(result("3.7.0", cell(pin_gap=1e-3)), result("4.0.0", cell(pin_gap=2e-2)))
-    assert "4.0.0 is worse than 3.7.0 by 20 times on the pin gap of fourbar as shipped" in worse
-    # Pins that can not come apart are not counted.
-    before = result("3.6.0", cell(pin_gap=2e-2), *[cell(n, pin_gap=0.0) for n in "abc"])
-    after = result("3.7.0", cell(pin_gap=1e-3), *[cell(n, pin_gap=0.0) for n in "abc"])
-    assert "scenes" not in texts(before, after)[0]
+    soft = [cell(pin_gap=2e-2), cell("shaper", pin_gap=2.3e-2)]
+    (better,) = told(soft, [cell(pin_gap=1e-3), cell("shaper", pin_gap=1.3e-2)])
+    where, of = "by 20 times on the pin gap of fourbar as shipped", "by 2 or more in 1 of 2 scenes"
+    assert better == f"2 is better than 1 {where} (2.0e-02 to 1.0e-03 of L; {of})"
+    (worse,) = told([cell(pin_gap=1e-3)], [cell(pin_gap=2e-2)])
+    assert f"2 is worse than 1 {where}" in worse
+    rigid = [cell(name, pin_gap=0.0) for name in "abc"]  # not counted
+    assert "scenes" not in told([cell(pin_gap=2e-2), *rigid], [cell(pin_gap=1e-3), *rigid])[0]
 
 
 def test_what_became_worse_is_told_before_what_became_better_and_as_shipped_before_tuned() -> None:
-    before = result("1", cell(angle=1.0, pin_gap=1e-3), cell("shaper", pin_gap=1e-3))
-    after = result("2", cell(angle=1e-6, pin_gap=3e-3), cell("shaper", pin_gap=1e-8))
-    words = [text.split()[2] for text in texts(before, after)]
-    assert words == ["worse", "better", "better"]
-    before = result("1", cell(profile="tuned", angle=1.0), cell(angle=1.0))
-    after = result("2", cell(profile="tuned", angle=1e-9), cell(angle=1e-2))
-    first, second = texts(before, after)
+    before = [cell(angle=1.0, pin_gap=1e-3), cell("shaper", pin_gap=1e-3)]
+    lines = told(before, [cell(angle=1e-6, pin_gap=3e-3), cell("shaper", pin_gap=1e-8)])
+    assert [line.split()[2] for line in lines] == ["worse", "better", "better"]
+    before = [cell(profile="tuned", angle=1.0), cell(angle=1.0)]
+    first, second = told(before, [cell(profile="tuned", angle=1e-9), cell(angle=1e-2)])
     assert "as shipped" in first
     assert "with profile tuned" in second
 
 
 def test_rates_are_told_only_where_no_place_tells_it() -> None:
-    before = result("1", cell(angle=1e-2, velocity=1.0))
-    (both,) = texts(before, result("2", cell(angle=1e-3, velocity=1e-3)))
+    before = [cell(angle=1e-2, velocity=1.0)]
+    (both,) = told(before, [cell(angle=1e-3, velocity=1e-3)])
     assert "on the angle of" in both
-    rate, *_ = texts(before, result("2", cell(angle=1e-2, velocity=1e-3)))
-    assert "on the velocity of" in rate
+    assert "on the velocity of" in told(before, [cell(angle=1e-2, velocity=1e-3)])[0]
 
 
 def test_versions_that_agree_are_said_to() -> None:
-    before, after = result("3.7.0", cell(pin_gap=1e-3)), result("4.0.0", cell(pin_gap=1e-3))
-    equal = "4.0.0 differs from 3.7.0 in no error by more than a tenth"
-    assert texts(before, after) == [equal]
-    assert texts(before, result("4.0.0", cell(pin_gap=1.08e-3))) == [equal]
-    near = result("4.0.0", cell(pin_gap=1.5e-3))
-    assert texts(before, near) == ["4.0.0 differs from 3.7.0 by 1.5 times at most in any error"]
-    none = result("4.0.0", cell(status="unsupported"))
-    assert "have no error in common" in texts(result("3", cell(status="unsupported")), none)[0]
+    for gap, words in (
+        (1e-3, "2 differs from 1 in no error by more than a tenth"),
+        (1.08e-3, "2 differs from 1 in no error by more than a tenth"),
+        (1.5e-3, "2 differs from 1 by 1.5 times at most in any error"),
+    ):
+        assert told([cell(pin_gap=1e-3)], [cell(pin_gap=gap)]) == [words]
 
 
-def test_a_run_that_ends_otherwise_stands_out() -> None:
-    before = result("1", cell(angle=1e-3), cell("shaper", angle=1e-3))
-    after = result("2", cell(status="diverged", angle=1e-3), cell("shaper", angle=1e-3))
-    (text,) = texts(before, after)
-    assert text == "2 ends as diverged, 1 as ok, in fourbar as shipped: why"
-    there, back = (steps(each)[0] for each in ([before, after], [after, before]))
-    assert [line.good for line in headlines(there)] == [False]
-    assert [line.good for line in headlines(back)] == [True]
-    ended = [result(n, cell(status="diverged", angle=x)) for n, x in (("1", 1.0), ("2", 9))]
-    assert texts(*ended) == ["2 and 1 have no error in common to compare"]
+def test_a_run_that_ends_otherwise_stands_out_and_its_errors_are_not_compared() -> None:
+    cells = [[cell(status=s, angle=1e-3), cell("shaper", angle=1e-3)] for s in ("ok", "diverged")]
+    assert told(*cells) == ["2 ends as diverged, 1 as ok, in fourbar as shipped: why"]
+    for ends, good in ((cells, False), (cells[::-1], True)):
+        (step,) = steps([result("1", *ends[0]), result("2", *ends[1])])
+        assert [line.good for line in headlines(step)] == [good]
+    for status in ("diverged", "unsupported"):
+        lost = told([cell(status=status, angle=1.0)], [cell(status=status, angle=9.0)])
+        assert lost == ["2 and 1 have no error in common to compare"]
 
 
 def test_cells_that_come_within_tolerance_are_counted() -> None:
-    before = result("1", cell(angle=1.0), cell("shaper", angle=1.0))
-    after = result("2", *[cell(n, verdict="within", angle=0.9) for n in ("fourbar", "shaper")])
-    (better,) = texts(before, after)
-    assert better == "2 is within tolerance where 1 was out of it: 2 scenes as shipped"
-    (worse,) = texts(after, before)
-    assert worse == "1 is out of tolerance where 2 was within it: 2 scenes as shipped"
+    out = [cell(angle=1.0), cell("shaper", angle=1.0)]
+    within = [cell(name, verdict="within", angle=0.9) for name in ("fourbar", "shaper")]
+    better, worse = told(out, within), told(within, out)
+    assert better == ["2 is within tolerance where 1 was out of it: 2 scenes as shipped"]
+    assert worse == ["2 is out of tolerance where 1 was within it: 2 scenes as shipped"]
 
 
 def test_settings_that_an_engine_holds_otherwise_are_named() -> None:
-    before = result("1", cell(angle=1.0, settings={"iterations": 100, "close": "C"}))
-    after = result("2", cell(angle=1.0, settings={"iterations": 50, "close": "C"}))
-    assert "2 holds other settings than 1: iterations" in texts(before, after)
-    never = [result(n, cell(status="unsupported", settings={"a": n})) for n in "12"]
-    assert not [text for text in texts(*never) if "settings" in text], "it holds what it was given"
+    cells = [[cell(angle=1.0, settings={"iterations": n, "close": "C"})] for n in (100, 50)]
+    assert "2 holds other settings than 1: iterations" in told(*cells)
+    never = [[cell(status="unsupported", settings={"a": n})] for n in "12"]
+    assert not [text for text in told(*never) if "settings" in text], "it holds what it was given"
 
 
 def test_a_version_without_a_result_is_passed_over() -> None:
