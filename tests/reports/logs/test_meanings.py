@@ -34,22 +34,23 @@ def worst(log: OwnLog) -> float:
     return max(float(np.max(np.abs(each.error(TRUTH)))) for each in log.readings)
 
 
-def test_degrees_millimetres_and_milliseconds_are_read() -> None:
+def test_degrees_millimetres_milliseconds_and_angles_between_links_are_read() -> None:
     log = log_of({
         "t [ms]": 1e3 * TIME_S,
         "rocker_deg": np.degrees(ROCKER.theta),
         "C.x_mm": 1e3 * MOTION.points["C"].position[:, 0],
         "crank [rpm]": CRANK.omega * 60 / (2 * np.pi),
+        "rocker_rel_coupler_rad": ROCKER.theta - COUPLER.theta,
     })  # fmt: skip
-    assert [each.channel.column for each in log.readings] == ["rocker_deg", "C.x_mm", "crank [rpm]"]
+    columns = ["rocker_deg", "C.x_mm", "crank [rpm]", "rocker_rel_coupler_rad"]
+    assert [each.channel.column for each in log.readings] == columns
     assert worst(log) < 1e-12
 
 
 @pytest.mark.parametrize("lowest", [-180.0, 0.0])
 def test_a_wrapped_angle_is_seen_to_be_one(lowest: float) -> None:
-    log = log_of({
-        "t": TIME_S, "crank_deg": (np.degrees(CRANK.theta) - lowest) % 360 + lowest
-    })  # fmt: skip
+    wrapped = (np.degrees(CRANK.theta) - lowest) % 360 + lowest
+    log = log_of({"t": TIME_S, "crank_deg": wrapped})
     assert log.readings[0].channel.wrapped
     assert worst(log) < 1e-12
 
@@ -69,11 +70,6 @@ def test_a_turn_lost_early_is_no_wrapping_though_the_rest_is_within_one_turn() -
     assert not log.readings[0].channel.wrapped
 
 
-def test_an_angle_relative_to_another_link_is_compared_as_such() -> None:
-    log = log_of({"t": TIME_S, "rocker_rel_coupler_rad": ROCKER.theta - COUPLER.theta})
-    assert worst(log) < 1e-12
-
-
 def test_a_map_says_what_names_do_not() -> None:
     log = log_of(
         {"t": TIME_S, "s3": -np.degrees(ROCKER.theta - COUPLER.theta) - 5.0, "junk": ["x"] * 400},
@@ -87,17 +83,11 @@ def test_a_map_says_what_names_do_not() -> None:
     assert log.unused == (("junk", "the map leaves it out"),)
 
 
-def test_a_delay_moves_the_instants() -> None:
-    late = solve(SCENE, TIME_S + 0.002).links["rocker"].omega
+def test_a_delay_moves_the_instants_and_velocities_may_have_times_of_their_own() -> None:
+    late = {"time_s": TIME_S, "rocker_rad_s": solve(SCENE, TIME_S + 0.002).links["rocker"].omega}
     told = [{"column": "rocker_rad_s", "delay_s": 0.002}]
-    log = log_of({"t": TIME_S, "rocker_rad_s": late}, channel=told)
-    assert worst(log) < 1e-9
-
-
-def test_velocities_with_times_of_their_own_belong_there() -> None:
-    late = solve(SCENE, TIME_S + 0.002).links["rocker"].omega
-    log = log_of({"time_s": TIME_S, "velocity_time_s": TIME_S + 0.002, "rocker_rad_s": late})
-    assert worst(log) < 1e-9
+    assert worst(log_of(late, channel=told)) < 1e-9
+    assert worst(log_of({**late, "velocity_time_s": TIME_S + 0.002})) < 1e-9
 
 
 def test_two_copies_of_a_pin_are_kept_for_their_gap() -> None:
@@ -115,23 +105,28 @@ def test_the_map_that_is_written_is_the_log_that_was_read(tmp_path: Path) -> Non
         "rocker_rel_coupler_deg": np.degrees(ROCKER.theta - COUPLER.theta),
         "temperature": TIME_S,
     }
-    told = [{"column": 'odd "name" \\ of crank', "of": "crank", "kind": "angle", "unit": "rad",
-             "delay_s": 1e-4}]  # fmt: skip
-    log = log_of(columns, channel=told)
+    told = {"of": "crank", "kind": "angle", "unit": "rad", "delay_s": 1e-4}
+    log = log_of(columns, channel=[{"column": 'odd "name" \\ of crank', **told}])
     (tmp_path / "map.toml").write_text(map_text(log, FileTable()), encoding="utf-8")
     again = understood(columns_of(pd.DataFrame(columns)), SCENE, read_map(tmp_path / "map.toml"))
     assert [each.channel for each in again.readings] == [each.channel for each in log.readings]
     assert np.array_equal(again.time_s, log.time_s)
 
 
+ANGLE = {"of": "rocker", "kind": "angle"}
+
+
 @pytest.mark.parametrize(
     ("told", "words"),
     [
         ({"column": "a"}, "add of, kind and unit"),
-        ({"column": "a", "of": "C", "kind": "angle"},
-         "'angle' is no kind of reading of point C; use x, y"),
+        (
+            {"column": "a", "of": "C", "kind": "angle"},
+            "'angle' is no kind of reading of point C; use x, y",
+        ),
+        ({"column": "t", **ANGLE}, r"'t': it is the column of times; say .* \[time\]"),
     ],
-)  # fmt: skip
+)
 def test_what_can_not_be_understood_is_told(told: dict[str, str], words: str) -> None:
     with pytest.raises(CrankcheckError, match=words):
         log_of({"t": TIME_S, "a": TIME_S}, channel=[told])
@@ -181,9 +176,7 @@ def test_a_reading_beyond_all_sense_is_refused(columns: dict[str, object], words
         (TIME_S[:, None].repeat(2, 1).ravel()[:400], "time stands still"),
     ],
 )
-def test_times_of_rates_are_checked_as_those_of_rows(
-    column: str, time_s: Array, words: str
-) -> None:
+def test_times_of_rates_are_checked_too(column: str, time_s: Array, words: str) -> None:
     with pytest.raises(CrankcheckError, match=words.format(column)):
         log_of({"t": TIME_S, column: time_s, "rocker": ROCKER.theta})
 
@@ -195,13 +188,7 @@ def test_the_unit_of_times_is_what_the_map_says() -> None:
     assert worst(log_of(columns, time={"unit": "s"})) < 1e-12
 
 
-def test_a_channel_of_the_column_of_times_is_refused() -> None:
-    told = [{"column": "t", "of": "rocker", "kind": "angle"}]
-    with pytest.raises(CrankcheckError, match=r"'t': it is the column of times; say .* \[time\]"):
-        log_of({"t": TIME_S, "rocker": ROCKER.theta}, channel=told)
-
-
 def test_a_column_called_as_times_are_is_what_the_map_says_beside_one_that_it_names() -> None:
-    told = [{"column": "t", "of": "rocker", "kind": "angle", "unit": "rad"}]
+    told = [{"column": "t", **ANGLE, "unit": "rad"}]
     log = log_of({"clock": TIME_S, "t": ROCKER.theta}, time={"column": "clock"}, channel=told)
     assert worst(log) < 1e-12
