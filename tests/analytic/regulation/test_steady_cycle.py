@@ -1,9 +1,11 @@
-"""The cycle that a machine repeats: by hand, beside an integration, and where there is none."""
+"""The cycle that a machine repeats: by hand, beside an integration, and where there is none; and
+the flywheel for a coefficient of fluctuation, exact beside approximate."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -12,7 +14,9 @@ from scipy.integrate import solve_ivp
 from analytic.check.moved_scene import mirrored
 from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
+from analytic.regulation.cycle_scene import cycle_scene, with_flywheel
 from analytic.regulation.cycle_search import cycle_of, steady_cycle
+from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
 from analytic.regulation.periodic_solution import StallError
 from analytic.regulation.steady_cycle import SteadyCycle
 from analytic.regulation.turning_machine import TurningMachine
@@ -28,7 +32,11 @@ from models.staircase import Staircase
 from models.tabulated import Tabulated
 from models.waves import Pulse
 from tests.analytic.regulation.worked import shaft, yoke
-from tests.worlds.tiers import few
+from tests.worlds.tiers import few, slowly
+
+PULL = {"pull": (Sine(20.0, math.tau), "angle")}
+"""40 J of surplus."""
+MOTOR = Polynomial((30.0, -1.0)), "omega"
 
 
 def cycle(scene: Scene, flywheel: float = 0.0) -> SteadyCycle:
@@ -39,7 +47,7 @@ def test_a_shaft_under_a_sine_by_hand() -> None:
     """J 2 kg m^2, M = 20 sin u N m beside a drive that has nothing to close: W = 20 (1 - cos u),
     largest at 180 deg, smallest at 0: 40 J of surplus. J w dw: J mean (w_max - w_min) = 40, so
     delta = 40 / (2 10^2) = 0.2, w from 9 to 11 rad/s."""
-    found = cycle(shaft({"pull": (Sine(20.0, math.tau), "angle")}))
+    found = cycle(shaft(PULL))
     assert found.drive_n_m == pytest.approx(0.0, abs=1e-14)
     assert found.delta == pytest.approx(0.2, rel=1e-14)
     assert found.extreme_speeds_rad_s == pytest.approx((11.0, 9.0), rel=1e-14)
@@ -54,11 +62,8 @@ def test_a_press_by_hand() -> None:
     20 2/3 2 pi = 83.776 J is gained beside the work, and lost in it. It is slowest where the work
     ends, at 240 deg, and fastest where it begins, at 120 deg. delta = 83.776 / (2 100)."""
     third = math.tau / 3.0
-    edge = 1e-7
-    work = Tabulated(
-        (0.0, third, third + edge, 2.0 * third, 2.0 * third + edge), (0.0, 0.0, -60.0, -60.0, 0.0),
-        period=math.tau,
-    )  # fmt: skip
+    places = (0.0, third, third + 1e-7, 2.0 * third, 2.0 * third + 1e-7)
+    work = Tabulated(places, (0.0, 0.0, -60.0, -60.0, 0.0), period=math.tau)
     found = cycle(shaft({"work": (work, "angle")}))
     assert found.drive_n_m == pytest.approx(20.0, rel=1e-6)
     assert found.surplus_j == pytest.approx(20.0 * 2.0 * third, rel=1e-6)
@@ -73,11 +78,8 @@ def test_a_motor_and_a_fan_by_hand() -> None:
     """Motor 30 - w, fan -0.1 w^2: 0.1 w^2 + w - 30 = 0, w = 5 (sqrt(13) - 1), without any
     fluctuation; a change of the speed dies as exp(-(1 + 0.2 w) 2 pi / (J w)), one of the energy
     as well."""
-    loads = {
-        "motor": (Polynomial((30.0, -1.0)), "omega"),
-        "fan": (Polynomial((0.0, 0.0, -0.1)), "omega"),
-    }
-    found = cycle(shaft(loads, free=True, speed=1.0))  # type: ignore[arg-type]  # literals
+    fan = Polynomial((0.0, 0.0, -0.1))
+    found = cycle(shaft({"motor": MOTOR, "fan": (fan, "omega")}, free=True, speed=1.0))
     speed = 5.0 * (math.sqrt(13.0) - 1.0)
     assert found.mean_rad_s == pytest.approx(speed, rel=1e-13)
     assert found.delta == pytest.approx(0.0, abs=1e-12)
@@ -133,18 +135,15 @@ def driven_by_a_motor() -> Scene:
     """The compressor behind a motor, with a damper on its piston and a valve that hangs on a
     spring."""
     scene = load_scene("compressor")
-    motor = shaft(
-        {"motor": (Tabulated((0.0, 140.0, 160.0, 300.0), (60.0, 40.0, 0.0, -90.0)), "omega")}
-    )
-    released = shaft({}, free=True, speed=150.0).driver
+    table = Tabulated((0.0, 140.0, 160.0, 300.0), (60.0, 40.0, 0.0, -90.0))
+    motor = shaft({"motor": (table, "omega")}, free=True, speed=150.0)
     springs = {
         "damper": SlideSpring("damper", 0.0, 5.0, 0.0, "C"),
         "spring": LineSpring("spring", 900.0, 2.0, 0.05, ("A", "C")),
     }
-    return replace(
-        scene, loads={**scene.loads, **motor.loads}, springs=springs, driver=released,
-        friction={"C": ConstantFriction("C", 12.0), "B": ConstantFriction("B", 0.1)},
-    )  # fmt: skip
+    friction = {"C": ConstantFriction("C", 12.0), "B": ConstantFriction("B", 0.1)}
+    loads = {**scene.loads, **motor.loads}
+    return replace(scene, loads=loads, springs=springs, friction=friction, driver=motor.driver)
 
 
 def test_the_cycle_is_what_an_integration_repeats() -> None:
@@ -162,21 +161,15 @@ def test_the_cycle_is_what_an_integration_repeats() -> None:
 
 def test_a_steep_motor_is_followed_after_each_kink() -> None:
     """The speed comes back to that of the motor within 3 deg: J w dw/du = -20 (w - 10) + ..."""
-    loads = Tabulated((0.0, 1.0, 1.5, 4.0), (-8.0, 20.0, -30.0, 4.0), "linear", math.tau)
-    motor = Polynomial((200.0, -20.0))
-    scene = shaft({"motor": (motor, "omega"), "ang": (loads, "angle")}, free=True, inertia=0.05)
+    pull = Tabulated((0.0, 1.0, 1.5, 4.0), (-8.0, 20.0, -30.0, 4.0), "linear", math.tau)
+    loads = {"motor": (Polynomial((200.0, -20.0)), "omega"), "pull": (pull, "angle")}
+    scene = shaft(loads, free=True, inertia=0.05)
     found = cycle(scene)
-    solution = found.solution
-    begin = float(solution.speed_at(np.zeros(1))[0])
-    free = release(shaft_from(scene, begin), found.period_s)
+    begin = float(found.solution.speed_at(np.zeros(1))[0])
+    let_go = replace(scene, driver=Driver("crank", Released(0.0, begin, 1.0)))
+    free = release(let_go, found.period_s)
     theta, omega, _ = free.law.at(np.linspace(0.0, found.period_s, 2000))
-    off = np.abs(solution.speed_at(theta) - omega)
-    assert off.max() < 1e-8
-
-
-def shaft_from(scene: Scene, speed_rad_s: float) -> Scene:
-    """The scene let go with a speed."""
-    return replace(scene, driver=Driver("crank", Released(0.0, speed_rad_s, 1.0)))
+    assert np.abs(found.solution.speed_at(theta) - omega).max() < 1e-8
 
 
 def test_a_load_of_short_waves_by_hand() -> None:
@@ -189,8 +182,7 @@ def test_a_load_of_short_waves_by_hand() -> None:
 def test_torques_are_those_that_kinetostatics_has_at_constant_speed(backward: bool) -> None:
     """torque of the drive = J' w^2 / 2 - M, friction and dampers among what acts."""
     speed = -140.0 if backward else 140.0
-    scene = driven_by_a_motor()
-    scene = mirrored(scene) if backward else scene
+    scene = mirrored(driven_by_a_motor()) if backward else driven_by_a_motor()
     scene = replace(scene, driver=Driver("crank", ConstantSpeed(0.4, speed)))
     machine = TurningMachine.of(scene)
     u = np.linspace(0.05, 6.2, 40)
@@ -204,10 +196,9 @@ def test_torques_are_those_that_kinetostatics_has_at_constant_speed(backward: bo
 )
 def test_rows_of_tables_are_borders_of_cells(name: str) -> None:
     """So that the quadrature is right: against many trapezoids, whose kinks err by 1e-10."""
-    found = cycle(load_scene(name), 1e4)
-    machine, count = found.machine, 200_000
-    u = (np.arange(count) + 0.5) * (machine.cycle_rad / count)
-    mean = float(np.mean(machine.steady_torque(u)))
+    found, count = cycle(load_scene(name), 1e4), 200_000
+    u = (np.arange(count) + 0.5) * (found.machine.cycle_rad / count)
+    mean = float(np.mean(found.machine.steady_torque(u)))
     assert found.drive_n_m == pytest.approx(-mean, rel=2e-9)
 
 
@@ -215,8 +206,8 @@ def test_rows_of_tables_are_borders_of_cells(name: str) -> None:
 def test_shipped_machines_close_their_balance(name: str) -> None:
     scene = replace(load_scene(name), friction={})
     found = cycle(scene, 1e4)
-    sum_ = sum(found.works_j.values())
-    assert sum_ == pytest.approx(0.0, abs=1e-9 * max(found.work_j, 1.0))
+    left = sum(found.works_j.values())
+    assert left == pytest.approx(0.0, abs=1e-9 * max(found.work_j, 1.0))
     speed = abs(float(scene.driver.law.at(np.zeros(1))[1][0]))
     assert found.mean_rad_s == pytest.approx(speed, rel=1e-13)
 
@@ -231,7 +222,7 @@ def test_a_mirrored_machine_has_the_mirrored_cycle() -> None:
 
 def test_from_rest_a_machine_turns_to_the_side_that_its_motor_drives_it_to() -> None:
     loads = {"motor": (Polynomial((-30.0, -1.0)), "omega")}
-    found = cycle_of(TurningMachine.of(shaft(loads, free=True, speed=0.0)))  # type: ignore[arg-type]  # literals
+    found = cycle_of(TurningMachine.of(shaft(loads, free=True, speed=0.0)))
     assert found.machine.way == -1.0
     assert found.mean_rad_s == pytest.approx(30.0)
 
@@ -252,14 +243,11 @@ REFUSED = {
     "faster and faster": (shaft({"motor": (Polynomial((3.0, 1.0)), "omega")}, free=True),
                           "goes faster and faster"),
     "to rest": (shaft({"brake": (Polynomial((-3.0, -1.0)), "omega")}, free=True), "comes to rest"),
-    "a short table": (
-        shaft({"motor": (Tabulated((0.0, 20.0), (9.0, 4.0)), "omega")}, free=True),
-        "from 10 to 20 rad/s of crank, 40.84 to 25.13 J",
-    ),
+    "a short table": (shaft({"motor": (Tabulated((0.0, 20.0), (9.0, 4.0)), "omega")}, free=True),
+                      "from 10 to 20 rad/s of crank, 40.84 to 25.13 J"),
     "a start beyond a table": (
         shaft({"motor": (Tabulated((20.0, 30.0), (9.0, -4.0)), "omega")}, free=True, speed=5.0),
-        "the table goes from 20 to 30",
-    ),
+        "the table goes from 20 to 30"),
     "time": (shaft({"pull": (Sine(3.0, 1.0), "time")}), "loads.pull follows time"),
     "steps": (shaft({"pull": (Staircase((1.0,), (3.0,)), "time")}), "loads.pull follows time"),
     "no period": (shaft({"pull": (Polynomial((1.0, 1.0)), "angle")}), "never repeats"),
@@ -290,23 +278,121 @@ def test_without_a_steady_cycle_it_says_why(name: str) -> None:
 
 def test_a_driver_that_does_not_turn_round_has_no_cycle() -> None:
     scene = load_scene("fourbar-double-rocker")
-    scene = replace(scene, driver=shaft({}, free=True).driver)
-    scene = replace(scene, driver=replace(scene.driver, link=next(iter(scene.links))))
+    driver = replace(shaft({}, free=True).driver, link=next(iter(scene.links)))
     with pytest.raises(CrankcheckError, match="does not turn round"):
-        TurningMachine.of(scene)
+        TurningMachine.of(replace(scene, driver=driver))
 
 
 def test_a_machine_stops_from_the_coefficient_on_that_is_2() -> None:
     """On a shaft delta = surplus / (J mean^2): at 2 the smallest speed is 0."""
-    for share, stops in ((0.99, False), (1.01, True)):
-        scene = shaft({"pull": (Sine(share * 200.0, math.tau), "angle")})
-        if stops:
-            with pytest.raises(StallError):
-                cycle(scene)
-        else:
-            assert cycle(scene).delta == pytest.approx(2.0 * share, rel=1e-9)
+    nearly, stops = (
+        shaft({"pull": (Sine(share * 200.0, math.tau), "angle")}) for share in (0.99, 1.01)
+    )
+    assert cycle(nearly).delta == pytest.approx(2.0 * 0.99, rel=1e-9)
+    with pytest.raises(StallError):
+        cycle(stops)
 
 
 def test_elastic_links_are_not_taken_for_rigid_ones() -> None:
     with pytest.raises(CrankcheckError, match="coupler is elastic"):
         TurningMachine.of(load_scene("fourbar-elastic"))
+
+
+def wanted(scene: Scene, delta: float) -> WantedFlywheel:
+    return wanted_flywheel(TurningMachine.of(scene), delta)
+
+
+@cache
+def evened(name: str) -> WantedFlywheel:
+    """That of a shipped scene for a coefficient of 0.02."""
+    return wanted(load_scene(name), 0.02)
+
+
+def test_the_flywheel_of_a_shaft_by_hand() -> None:
+    """40 J at 10 rad/s for 0.02: J = 40 / (0.02 100) = 20 kg m^2, of which the shaft has 2. All
+    ways agree: its own moment of inertia is constant."""
+    found = wanted(shaft(PULL), 0.02)
+    near = found.approximations
+    assert found.inertia_kg_m2 == pytest.approx(18.0, rel=1e-11)
+    for other in (near.by_surplus, near.by_own_energy, near.by_tangents):
+        assert other == pytest.approx(18.0, rel=1e-7)
+    assert found.bare.delta == pytest.approx(0.2)
+    assert found.slopes == pytest.approx((0.5 * 10.1**2, 0.5 * 9.9**2))
+
+
+def test_the_flywheel_of_a_yoke_without_loads_by_hand() -> None:
+    """Energy stays: w_max / w_min = sqrt((J + 0.62) / (J + 0.5)) = (1 + delta/2) / (1 - delta/2) =
+    q, so J = (0.62 - 0.5 q^2) / (q^2 - 1). There is no surplus of work, so that this approximation
+    puts no flywheel on; own energy: 0.12 / (2 delta) less 0.5; tangents: both touch the line W = 0,
+    at its ends, and meet in J = (0.62 k_max' - 0.5 ...) as below."""
+    delta = 0.05
+    found = wanted(yoke(), delta)
+    q = ((1.0 + 0.5 * delta) / (1.0 - 0.5 * delta)) ** 2
+    assert found.inertia_kg_m2 == pytest.approx((0.62 - 0.5 * q) / (q - 1.0), rel=1e-10)
+    near = found.approximations
+    assert near.by_surplus < 0.0
+    assert near.by_own_energy == pytest.approx(0.06 / delta - 0.5, rel=1e-6)
+    # max(-k_max J) = -0.5 k_max, min(-k_min J) = -0.62 k_min, with k = w^2 (1 +- delta) / 2.
+    tangents = (0.62 * (1.0 - delta) - 0.5 * (1.0 + delta)) / (2.0 * delta)
+    assert near.by_tangents == pytest.approx(tangents, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "compressor",
+        slowly("engine-four-stroke", reason="two turns: half a second"),
+        slowly("toggle-press", reason="a press: half a second"),
+    ],
+)
+def test_the_scene_with_the_flywheel_has_the_coefficient(name: str) -> None:
+    """As a scene of its own, and tangents of the exact slopes say the same: no torque follows the
+    speed."""
+    scene, found = load_scene(name), evened(name)
+    again = cycle(with_flywheel(scene, found.inertia_kg_m2))
+    assert again.delta == pytest.approx(0.02, rel=1e-11)
+    assert found.diagram.flywheel(*found.slopes) == pytest.approx(found.inertia_kg_m2, rel=1e-9)
+    near = found.approximations
+    for other in (near.by_surplus, near.by_own_energy):
+        assert other == pytest.approx(found.inertia_kg_m2, rel=0.2)
+    # What the drawn tangents leave out is delta^2 / 4 of the slopes.
+    assert near.by_tangents == pytest.approx(found.inertia_kg_m2, rel=1e-4)
+    assert (found.bare is None) == (name == "toggle-press")
+
+
+def test_with_a_motor_the_flywheel_is_that_of_its_own_cycle() -> None:
+    scene = shaft({**PULL, "motor": MOTOR}, free=True)
+    found = wanted(scene, 0.01)
+    assert found.cycle.delta == pytest.approx(0.01, rel=1e-11)
+    # The motor itself works against the fluctuation: it takes less than without it.
+    bound = 40.0 / (0.01 * found.cycle.mean_rad_s**2) - 2.0
+    assert 0.5 * bound < found.inertia_kg_m2 < bound
+    again = cycle(with_flywheel(scene, found.inertia_kg_m2))
+    assert again.delta == pytest.approx(0.01, rel=1e-10)
+
+
+def test_a_machine_is_let_go_in_its_cycle() -> None:
+    found = evened("compressor")
+    scene = cycle_scene(found.cycle, cycles=3.0)
+    law, mean = scene.driver.law, found.cycle.mean_rad_s
+    assert isinstance(law, Released)
+    assert law.duration_s == pytest.approx(3.0 * found.cycle.period_s)
+    assert law.speed_rad_s == pytest.approx(mean, rel=0.01 * 1.001)
+    assert set(scene.loads) == {"compression", "expansion", "drive"}
+    # Its loads balance, and its start is the mean speed that is asked of it.
+    again = cycle(replace(scene, driver=Driver("crank", replace(law, speed_rad_s=mean))))
+    assert again.delta == pytest.approx(0.02, rel=1e-9)
+    assert again.drive_n_m == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("delta", [0.0, -0.1, 1e-300, 9e-7, 2.0, 7.0, math.nan, math.inf])
+def test_a_coefficient_that_is_none_is_refused(delta: float) -> None:
+    with pytest.raises(CrankcheckError, match=rf"^delta {delta:g}: .*(0\.02|0\.2|1e-06 or more)"):
+        wanted(shaft(PULL), delta)
+
+
+def test_a_flywheel_alone_may_be_all_that_moves() -> None:
+    """Without masses there is no cycle; 40 J at 10 rad/s for 0.1 take 4 kg m^2."""
+    found = wanted(shaft(PULL, inertia=0.0), 0.1)
+    assert found.bare is None
+    assert found.inertia_kg_m2 == pytest.approx(4.0, rel=1e-11)

@@ -16,6 +16,8 @@ SHAFT = """
 name = "shaft"
 source = "a test: a shaft with a crank of no mass behind it"
 ground = { points = { A = [0.0, 0.0] } }
+sliders = { C = { on = "ground", mass_kg = 0.0 } }
+driver = { link = "crank", speed_rad_s = 10.0 }
 [links]
 rod = { bar = ["B", "C"], length_m = 0.3, mass_kg = 0.0 }
 [links.crank]
@@ -23,12 +25,6 @@ points = { A = [0.0, 0.0], B = [0.1, 0.0] }
 mass_kg = 1.0
 centre_m = [0.0, 0.0]
 inertia_kg_m2 = 2.0
-[sliders.C]
-on = "ground"
-mass_kg = 0.0
-[driver]
-link = "crank"
-speed_rad_s = 10.0
 """
 
 
@@ -41,12 +37,10 @@ def shaft(
 ) -> Scene:
     """A shaft of a constant moment of inertia under torques on it."""
     scene = parse_scene(SHAFT, "shaft")
-    crank = replace(scene.links["crank"], inertia_kg_m2=inertia)
-    law = Released(0.0, speed, 1.0) if free else ConstantSpeed(0.0, speed)
+    links = {**scene.links, "crank": replace(scene.links["crank"], inertia_kg_m2=inertia)}
+    driver = Driver("crank", Released(0.0, speed, 1.0) if free else ConstantSpeed(0.0, speed))
     torques = {n: Load(n, "crank", None, own, over) for n, (own, over) in loads.items()}
-    return replace(
-        scene, links={**scene.links, "crank": crank}, driver=Driver("crank", law), loads=torques
-    )
+    return replace(scene, links=links, driver=driver, loads=torques)
 
 
 def yoke(force_n: float = 0.0, *, mass_kg: float = 3.0, radius_m: float = 0.2) -> Scene:
