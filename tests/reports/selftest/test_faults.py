@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from itertools import product
 
 import pytest
 
 from models.files import load_scene
+from models.hard import fourbar
 from reports.judge.rules import RULES
 from reports.selftest import trial
 from reports.selftest.all_faults import FAULTS
 from reports.selftest.elastic_runs import LOOSE
 from reports.selftest.fault import FOURBAR, INSIDE, SHAPER, SLIDER
 from reports.selftest.trial import FaultTrial, healthy, passed_by, passes, sites, tried
-from tests.worlds.tiers import few, slow
+from tests.worlds.tiers import few, slow, slowly
 
 ENGINES = ("mujoco", "pymunk")
 NO_FAULT_OF_A_RUN = {"CC112", "CC119", "CC126", "CC130", "CC133", "CC134"}
@@ -26,36 +28,15 @@ sooner, and what is said of the truth of elastic links is no fault."""
 WITHIN_THE_LIMIT_AT_360 = {"pin-moved": "CC103", "slow-drift": "CC103"}
 """What is planted below the limit of 360 steps a turn is above that of 720."""
 ASKED_FOR = {
-    "link-too-long": 1e-3,
-    "pin-moved": 1e-4,
-    "wrong-branch": None,
-    "speed-off": 1e-5,
-    "clock-late": 1.0,
-    "velocity-late": 0.5,
-    "acceleration-late": 0.5,
-    "sign-flipped": None,
-    "degrees": None,
-    "float32-log": 2.0**-24,
-    "float32-arithmetic": 2.0**-24,
-    "joint-dropped": 0.1,
-    "joint-softens": 0.98,
-    "gravity-left-on": 9.81,
-    "body-collides": 0.03,
-    "solver-stops-early": 1.0,
-    "drift": 1e-3,
-    "spike": 1e-5,
-    "other-scale": 1e-3,
-    "nan-at-end": None,
-    "too-good": None,
-    "inertia-at-pin": 1.0,
-    "gravity-scaled": 1e-3,
-    "torque-late": 1.0,
-    "damping-left-on": 0.1,
-    "explicit-euler": 1.0,
-}
+    "link-too-long": 1e-3, "pin-moved": 1e-4, "wrong-branch": None, "speed-off": 1e-5,
+    "clock-late": 1.0, "velocity-late": 0.5, "acceleration-late": 0.5, "sign-flipped": None,
+    "degrees": None, "float32-log": 2.0**-24, "float32-arithmetic": 2.0**-24,
+    "joint-dropped": 0.1, "joint-softens": 0.98, "gravity-left-on": 9.81, "body-collides": 0.03,
+    "solver-stops-early": 1.0, "drift": 1e-3, "spike": 1e-5, "other-scale": 1e-3,
+    "nan-at-end": None, "too-good": None, "inertia-at-pin": 1.0, "gravity-scaled": 1e-3,
+    "torque-late": 1.0, "damping-left-on": 0.1, "explicit-euler": 1.0,
+}  # fmt: skip
 """What the selftest promises to catch, and at which size."""
-
-
 COARSE = 90
 """Steps of a turn, or for as many as `FREE_RUNS` says, that show most faults of what is let go or
 bends."""
@@ -98,9 +79,8 @@ def in_turn() -> Iterator[tuple[str, str, str, int]]:
                 turn += 1
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(("engine", "steps"), [*product(ENGINES, [360, 720]), ("exudyn", 360)])
 @pytest.mark.parametrize("scene", [FOURBAR, SLIDER, SHAPER])
-@pytest.mark.parametrize("steps", [360, 720])
 def test_without_a_fault_every_rule_passes(scene: str, engine: str, steps: int) -> None:
     found = healthy(scene, engine, steps)
     assert found.verdict == "within"
@@ -175,9 +155,9 @@ def test_every_rule_has_a_fault_that_it_must_catch() -> None:
     assert set(RULES) - {fault.rule for fault in FAULTS.values()} == NO_FAULT_OF_A_RUN
 
 
-def test_what_need_not_be_seen_is_not_seen() -> None:
-    for one in passed_by(ENGINES):
-        assert one.failed
+@pytest.mark.parametrize("kind", ["motion", "free"])
+def test_what_need_not_be_seen_is_not_seen(kind: str) -> None:
+    for one in passed_by(ENGINES, kind):
         assert set(one.failed.values()) == {()}, one
         assert one.nothing == ()
 
@@ -188,11 +168,6 @@ def test_what_is_run_and_what_is_handed_back_is_seen_in_three_scenes(group: str)
         if fault.group == group and fault.name != "too-good-slider":  # a four-bar has none
             engines = [name for name in fault.engines if name in ENGINES]
             assert set(places_of(fault.name)) == set(product((FOURBAR, SLIDER, SHAPER), engines))
-
-
-@pytest.mark.parametrize("scene", [FOURBAR, SLIDER, SHAPER])
-def test_without_a_fault_every_rule_passes_where_joints_are_solved_for(scene: str) -> None:
-    assert passes(healthy(scene, "exudyn", 360))
 
 
 def test_exact_places_are_no_fault_of_an_engine_that_solves_its_joints() -> None:
@@ -207,12 +182,6 @@ def test_faults_of_dynamics_are_seen_in_every_engine_that_can_have_them() -> Non
     assert len(names) >= 12
     everywhere = {n for n in names if set(ENGINES) <= {engine for _, engine in places_of(n)}}
     assert set(names) - everywhere == {"semi-implicit", "bias-left-on"}
-
-
-def test_what_need_not_be_seen_of_free_motion_is_not_seen() -> None:
-    for one in passed_by(ENGINES, "free"):
-        assert set(one.failed.values()) == {()}, one
-        assert one.nothing == ()
 
 
 GRAVITY = places_of("gravity-left-on")
@@ -238,3 +207,47 @@ def test_the_model_check_refuses_gravity_by_name(place: tuple[str, str]) -> None
 )
 def test_float32_arithmetic_is_seen_in_the_drive_alone(place: tuple[str, str]) -> None:
     assert planted("float32-arithmetic", *place).failed == ("CC102",)
+
+
+PARALLELOGRAM = replace(
+    fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source="Grashof's rule, equality"),
+    branch={"C": 1},
+)
+NO_FAULT_THERE = {
+    "halved-again", "too-good-degrees", "too-good-next", "too-good-link", "too-good-point",
+    "too-good-velocity", "too-good-speeds", "too-good-gaps", "too-good-crank", "too-good-finer",
+    "too-good-slider", "line-turned", "origin-off", "body-collides", "acceleration-late",
+    "first-order",
+}  # fmt: skip
+"""Through change points: what turns as its crank does comes out right to rounding in an engine too;
+there is no slider; the post stands beside another rocker, which turns steadily, with no
+acceleration that could be late; and parallel links have no error of angle, of first order or other:
+CC113 sees it. Forces near change points are shown, and not judged."""
+
+
+def through_change_points() -> Iterator[object]:
+    """Each third fault in an engine, which are taken in turn; one inside an engine in each that can
+    have it. The others are slow."""
+    motions = [name for name, fault in FAULTS.items() if fault.kind == "motion"]
+    for number, name in enumerate(name for name in motions if name not in NO_FAULT_THERE):
+        fault = FAULTS[name]
+        for at, engine in enumerate(fault.engines):
+            turn, left_over = divmod(number, 3)
+            first = fault.group in INSIDE or (turn % len(fault.engines), 0) == (at, left_over)
+            reason = "the same rule in another engine, or of a fault like others"
+            yield (name, engine) if first else slowly(name, engine, reason=reason)
+
+
+@pytest.mark.parametrize(("name", "engine"), list(through_change_points()))
+def test_a_fault_in_a_run_through_change_points_fails_the_rule_that_it_names(
+    name: str, engine: str
+) -> None:
+    place = trial._place(FAULTS[name], PARALLELOGRAM, engine, trial.STEPS, search=False)
+    assert place.finding is not None, place.failed
+    assert not place.false
+
+
+def test_points_show_the_first_order_that_parallel_links_do_not() -> None:
+    assert set(FAULTS) >= NO_FAULT_THERE
+    place = trial._place(FAULTS["first-order"], PARALLELOGRAM, "pymunk", trial.STEPS, search=False)
+    assert {"CC105", "CC113"} <= set(place.failed)

@@ -20,7 +20,7 @@ from models.poses import mass_of
 from models.spring_ends import line_ends
 from models.springs import PinSpring
 from reports.compare.free.free_truth import free_truth
-from reports.judge.cell import check, examined
+from reports.judge.cell import CellRunner, check, examined
 from reports.selftest.all_faults import FAULTS, chosen_faults
 from reports.selftest.elastic_runs import (
     BEAM_RUNS,
@@ -79,8 +79,8 @@ def ran(name: str, engine_name: str, size: float) -> Run:
     return planted(FAULTS[name].plant, engine_name, size)
 
 
-def sound(engine_name: str, scene_name: str = FOURBAR) -> Run:
-    return planted(lambda _: run, engine_name, 0.0, scene_name)
+def nothing(_: float) -> CellRunner:
+    return run
 
 
 def angles(done: Run) -> Array:
@@ -96,7 +96,7 @@ def rocker(done: Run) -> Array:
 def test_a_session_cut_into_stretches_gives_the_same_bits(
     scene_name: str, engine_name: str
 ) -> None:
-    whole = sound(engine_name, scene_name)
+    whole = planted(nothing, engine_name, scene_name=scene_name)
     idle = in_engine(lambda steps: range(0, steps, 50), lambda *_: None)
     cut = planted(idle, engine_name, 0.0, scene_name)
     assert np.array_equal(moved(cut).time_s, moved(whole).time_s)
@@ -149,7 +149,8 @@ def test_a_post_aside_touches_nothing(engine_name: str) -> None:
         lambda _: (0,),
         lambda tools, session, opening, *_: tools.block(session, opening, "rocker", aside),
     )
-    assert np.array_equal(angles(planted(plant, engine_name)), angles(sound(engine_name)))
+    blocked, free = (angles(planted(each, engine_name)) for each in (plant, nothing))
+    assert np.array_equal(blocked, free)
 
 
 def test_one_iteration_is_what_the_engine_holds() -> None:
@@ -216,10 +217,6 @@ def let_go(plant: Plant, engine_name: str, size: float = 1.0) -> Run:
     begun = free_truth(scene, 3 * THIRD, dt_s).start
     options = {"dt_s": dt_s, "steps": 3 * THIRD, "every": 1, "drive": "free"}
     return plant(size)(scene, begun, engine_name, "tuned", **options)
-
-
-def nothing(_: float) -> Any:
-    return run
 
 
 def joules(done: Run) -> Array:
