@@ -106,24 +106,6 @@ def test_a_search_in_two_halves_finds_what_a_whole_one_does(
 
 
 @pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"target": 1e-4}, "holds a search with target 1e-05; asked was target 0.0001"),
-        ({"seed": 9}, "holds a search with seed 3; asked was seed 9"),
-        ({"engine": "pymunk"}, "with engine mujoco; asked was engine pymunk"),
-        ({"scenes": ("whitworth",)}, r'with scene \["fourbar-lecture-1"\]; asked was'),
-        ({"turns": 3.0}, "with turns 2.0; asked was turns 3.0"),
-        ({"limit_s": 5.0}, "with limit_s 20.0; asked was limit_s 5.0"),
-    ],
-)
-def test_a_file_of_another_search_is_refused(
-    kept: Path, change: dict[str, object], words: str
-) -> None:
-    with pytest.raises(CrankcheckError, match=words):
-        told(replace(SMALL, output=kept, **change))  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize(
     ("name", "now", "words"),
     [
         ("crankcheck_version", lambda: "0.0", "crankcheck version 0.0"),
@@ -196,13 +178,19 @@ def test_measured_cost_is_told_beside_that_of_the_profile() -> None:
         ({"scenes": ("fourbar-lecture-11",)}, "neither a shipped scene nor a file"),
         ({"engine": "mujocko"}, "engine 'mujocko': unknown; did you mean mujoco"),
         ({"output": Path("nowhere/kept.db")}, "there is no folder"),
+        ({"target": 1e-4}, "holds a search with target 1e-05; asked was target 0.0001"),
+        ({"seed": 9}, "holds a search with seed 3; asked was seed 9"),
+        ({"engine": "pymunk"}, "with engine mujoco; asked was engine pymunk"),
+        ({"scenes": ("whitworth",)}, r'with scene \["fourbar-lecture-1"\]; asked was'),
+        ({"turns": 3.0}, "with turns 2.0; asked was turns 3.0"),
+        ({"limit_s": 5.0}, "with limit_s 20.0; asked was limit_s 5.0"),
     ],
 )
-def test_bad_requests_are_refused_before_anything_runs(
-    change: dict[str, object], words: str
+def test_bad_requests_and_the_file_of_another_search_are_refused_before_anything_runs(
+    kept: Path, change: dict[str, object], words: str
 ) -> None:
     with pytest.raises(CrankcheckError, match=words):
-        told(replace(SMALL, **change))  # type: ignore[arg-type]
+        told(replace(SMALL, **{"output": kept, **change}))  # type: ignore[arg-type]
 
 
 def test_a_run_through_a_singular_position_is_refused(tmp_path: Path) -> None:
@@ -272,14 +260,11 @@ def test_ctrl_c_keeps_the_trials_and_leaves_no_process(programs: Start, path: Pa
     running = programs(PYTHON, program, path)
     # The pipes end when the last process that holds them does.
     output, complaint = running.communicate(timeout=300)
-    assert running.returncode == 130
-    assert output == ""
+    assert (running.returncode, output) == (130, "")
     study = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
     kept = len(study.get_trials(states=(TrialState.COMPLETE,)))
     assert kept > 0
-    assert complaint.splitlines() == [  # Optuna says nothing
-        f"{kept} of 1000 trials are kept in {path}; the same command goes on from there",
-        "crankcheck: interrupted",
-    ]
+    here = f"{kept} of 1000 trials are kept in {path}; the same command goes on from there"
+    assert complaint.splitlines() == [here, "crankcheck: interrupted"]  # Optuna says nothing
     names = sorted(each.name for each in path.parent.iterdir())
     assert names == [".kept.db.lock", "kept.db", "run.py"]
