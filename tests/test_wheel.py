@@ -67,43 +67,30 @@ def mine(tmp_path: Path) -> Path:
 
 
 def ran(*command: object, cwd: Path, **variables: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [str(part) for part in command],
-        cwd=cwd,
-        capture_output=True,
-        text=True,
-        check=False,
-        env={name: text for name, text in os.environ.items() if name != "PYTHONPATH"} | variables,
-    )
+    env = {name: text for name, text in os.environ.items() if name != "PYTHONPATH"} | variables
+    words = [str(part) for part in command]
+    return subprocess.run(words, cwd=cwd, env=env, capture_output=True, text=True, check=False)
 
 
-def test_it_installs_one_name(wheel: Path) -> None:
+def test_it_installs_one_name_and_but_for_our_names_the_code_of_the_checkout(wheel: Path) -> None:
     with ZipFile(wheel) as archive:
-        names = archive.namelist()
-    other, ours = sorted({name.partition("/")[0] for name in names}, reverse=True)
+        code = {name: archive.read(name) for name in archive.namelist()}
+    other, ours = sorted({name.partition("/")[0] for name in code}, reverse=True)
     assert ours == "crankcheck"
     assert re.fullmatch(r"crankcheck-[\d.]+\.dist-info", other)
     files = {
-        f"{'' if package == ours else 'crankcheck/'}{path.relative_to(ROOT).as_posix()}"
+        f"{'' if package == ours else 'crankcheck/'}{path.relative_to(ROOT).as_posix()}": path
         for package in (ours, *PACKAGES)
         for path in (ROOT / package).rglob("*")
         if path.is_file() and path.suffix != ".pyc"
     }
-    assert {name for name in names if not name.startswith(other)} == files
-    assert {"crankcheck/py.typed", "crankcheck/models/scenes/kinematics/shaper.toml"} <= files
-
-
-def test_but_for_our_names_the_code_is_letter_for_letter_that_of_the_checkout(wheel: Path) -> None:
-    changed = 0
-    with ZipFile(wheel) as archive:
-        for name in archive.namelist():
-            home, _, place = name.partition("/")
-            if home == "crankcheck":
-                source = ROOT / (place if place.startswith(PACKAGES) else name)
-                code, before = archive.read(name), source.read_bytes()
-                changed += code != before
-                assert re.sub(rb"\bfrom crankcheck\.(?!__)", b"from ", code) == before, name
-    assert changed > 100
+    assert {name for name in code if not name.startswith(other)} == set(files)
+    assert {"crankcheck/py.typed", "crankcheck/models/scenes/kinematics/shaper.toml"} <= set(files)
+    changed = [name for name, path in files.items() if code[name] != path.read_bytes()]
+    assert len(changed) > 100
+    for name in changed:
+        before = files[name].read_bytes()
+        assert re.sub(rb"\bfrom crankcheck\.(?!__)", b"from ", code[name]) == before, name
 
 
 @slow("two more builds, of which a release needs the first")
@@ -111,8 +98,7 @@ def test_the_archive_of_the_sources_builds_the_same_wheel(wheel: Path, tmp_path:
     with tarfile.open(built(ROOT, tmp_path / "sdist", "sdist")) as archive:
         archive.extractall(tmp_path, filter="data")
     (source,) = tmp_path.glob("crankcheck-*")
-    again = built(source, tmp_path / "wheel", "wheel")
-    assert again.read_bytes() == wheel.read_bytes()
+    assert built(source, tmp_path / "wheel", "wheel").read_bytes() == wheel.read_bytes()
 
 
 def test_an_editable_install_is_the_checkout(
@@ -137,23 +123,11 @@ def test_packages_of_our_names_in_the_users_folder_hide_nothing(
     assert "WITHIN TOLERANCE" in done.stdout
 
 
-def test_import_crankcheck_is_the_wheel_in_the_users_folder(installed: Path, mine: Path) -> None:
-    code = (
-        "import crankcheck, numpy as np\n"
-        "motion = crankcheck.solve(crankcheck.load_scene('shaper'), np.zeros(1))\n"
-        "print(type(motion).__module__, crankcheck.__file__)"
-    )
-    done = ran(installed / "python", "-c", code, cwd=mine)
-    module, path = done.stdout.split()
-    assert module == "crankcheck.reports.face.solution"
-    assert Path(path).is_relative_to(installed.parent)
-
-
 TYPED = {
     "solve('shaper', np.zeros(1))": "crankcheck.reports.face.solution.Solution",
     "solve('shaper', [0.0]).frame()": "pandas.core.frame.DataFrame",
     "run(Path('a.toml'), 'mujoco', dt_s=1e-3)": "crankcheck.reports.face.simulation.Simulation",
-    "check('shaper').findings[0].level": ("Literal['pass'] | Literal['advice'] | Literal['fail']"),
+    "check('shaper').findings[0].level": "Literal['pass'] | Literal['advice'] | Literal['fail']",
     "judge('shaper', 'log.csv', target=1e-3)": "crankcheck.reports.face.log_verdict.LogVerdict",
     "judge('shaper', cc.run('shaper'))": "crankcheck.reports.face.cell_verdict.CellVerdict",
     "compare('shaper', {'t': [0.0]}).errors": "crankcheck.reports.compare.errors.Errors",
@@ -192,6 +166,10 @@ verdict = crankcheck.check("fourbar-lecture-1", "mujoco")
 print(verdict.verdict)
 print(verdict)
 """
+SOLVES = """
+motion = crankcheck.solve(crankcheck.load_scene("shaper"), [0.0])
+print(type(motion).__module__, crankcheck.__file__)
+"""
 PROJECT = """\
 import models.linkage, reports.table
 from crankcheck import solve
@@ -218,10 +196,15 @@ def rocker_rad():
 """
 
 
-def test_five_lines_print_the_verdict_of_the_lectures_four_bar(installed: Path, mine: Path) -> None:
-    (mine / "five.py").write_text(FIVE_LINES)
+def test_import_is_the_wheel_and_five_lines_print_the_verdict_of_the_lectures_four_bar(
+    installed: Path, mine: Path
+) -> None:
+    (mine / "five.py").write_text(FIVE_LINES + SOLVES)
     done = ran(installed / "python", "five.py", cwd=mine)
     assert (done.returncode, done.stderr) == (0, "")
+    module, path = done.stdout.splitlines()[-1].split()
+    assert module == "crankcheck.reports.face.solution"
+    assert Path(path).is_relative_to(installed.parent)
     assert done.stdout.startswith("within\nprofile tuned (gated)\n")
     assert "\nok fourbar-lecture-1      mujoco 1.2e-07 " in done.stdout
     assert "\nWITHIN TOLERANCE: 1 cell (1 scene x 1 engine)\n" in done.stdout
@@ -232,9 +215,7 @@ def test_a_project_with_packages_of_our_names_asserts_with_the_wheel(
     installed: Path, mine: Path
 ) -> None:
     (mine / "models" / "linkage.py").write_text(LINKAGE)
-    (mine / "reports" / "table.py").write_text(
-        "def off(log):\n    return log['rocker_rad'] + 0.01\n"
-    )
+    (mine / "reports" / "table.py").write_text("def off(log): return log['rocker_rad'] + 0.01\n")
     (mine / "crankcheck").rmdir()
     (mine / "test_linkage.py").write_text(PROJECT)
     command = [installed / "python", "-m", "pytest", "-q", "-p", "no:cacheprovider"]
@@ -266,10 +247,9 @@ def test_an_engine_that_pip_installs_beside_the_wheel_holds_the_contract(
     path = {"PYTHONPATH": str(site)}
     done = ran(installed / "crankcheck", "engines", "check", "penalty", cwd=mine, **path)
     assert (done.returncode, "HOLDS THE CONTRACT" in done.stdout) == (0, True), done.stdout
-    sweep = (
-        "sweep fourbar-lecture-1 --engine penalty --profile tuned --steps-per-turn 90,180 -o out"
-    )
-    done = ran(installed / "crankcheck", *sweep.split(), "--no-timing", cwd=mine, **path)
+    sweep = "sweep fourbar-lecture-1 --engine penalty --profile tuned --no-timing -o out"
+    steps = ("--steps-per-turn", "90,180")
+    done = ran(installed / "crankcheck", *sweep.split(), *steps, cwd=mine, **path)
     assert (done.returncode, "2 cells: 2 run now" in done.stdout) == (0, True), done.stderr
     done = ran(installed / "crankcheck", "report", "out", "-o", "page.html", cwd=mine)
     assert done.returncode == 0, done.stderr
@@ -311,7 +291,5 @@ TEXT = "a floating base, see analytic.reach"
     moved = code.replace("True: from sim", "True: from crankcheck.sim")
     moved = moved.replace("from analytic.dyads.rrr", "from crankcheck.analytic.dyads.rrr")
     assert relocated(code.encode(), MOVED, "place.py").decode() == moved
-    assert (
-        "é'; from crankcheck.sim import run"
-        in relocated("x = 'é'; from sim import run".encode(), MOVED, "place.py").decode()
-    )
+    moved = relocated("x = 'é'; from sim import run".encode(), MOVED, "place.py").decode()
+    assert "é'; from crankcheck.sim import run" in moved
