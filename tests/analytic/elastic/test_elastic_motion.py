@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analytic.check.moved_scene import scaled
 from analytic.elastic.discretisation import (
     REFERENCE,
     Discretisation,
@@ -27,7 +28,7 @@ from benchmarks.elastic_theories import row
 from models.array import Array
 from models.elastic import Shape
 from models.errors import CrankcheckError
-from models.files import load_scene, parse_scene
+from models.files import load_scene
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
 from models.scene import Scene
@@ -162,25 +163,11 @@ def test_chains_come_to_the_beam_with_order_2(counts: list[int]) -> None:
     assert errors[-1] == pytest.approx(0.8 / counts[-1] ** 2, rel=0.05)
 
 
-SIMILAR = """
-name = "similar"
-source = "ours"
-ground = {{ points = {{ A = [0.0, 0.0], D = [{0}, 0.0] }} }}
-elastic = {{ coupler = {{ flexural_n_m2 = {4} }} }}
-driver = {{ link = "crank", speed_rad_s = 5.0, start_deg = 200.0 }}
-start = {{ shape = "periodic" }}
-branch = {{ C = 1 }}
-[links]
-crank = {{ bar = ["A", "B"], length_m = {1}, mass_kg = 0.4 }}
-coupler = {{ bar = ["B", "C"], length_m = {2}, mass_kg = 2.4 }}
-rocker = {{ bar = ["D", "C"], length_m = {3}, mass_kg = 0.5 }}
-"""
-
-
 def deflection(size: float, by: Discretisation) -> float:
-    """The largest over that size, of a four-bar of 0.84 of it whose frequency is the same."""
-    lengths = (0.84 * size, 0.28 * size, 0.56 * size, 0.62 * size)
-    scene = parse_scene(SIMILAR.format(*lengths, 8.0 * size**3), "similar")
+    """The largest over that size, of a four-bar of so many times the lengths and masses per length
+    as they are, whose frequency is the same."""
+    flexural = size**4 * fourbar().elastic["coupler"].flexural_n_m2
+    scene = with_elastic(scaled(fourbar(), size), flexural_n_m2=flexural)
     time_s = np.linspace(0.0, scene.driver.law.period_s, 20)
     return largest(middle(driven(scene, by, until_s=1.0).at(time_s))) / size
 

@@ -20,68 +20,50 @@ from models.motion import Motion
 from models.scene import Scene
 from models.segmented import SegmentedScene
 from models.springs import PinSpring
-from tests.analytic.elastic.driven import fourbar, with_elastic
+from tests.analytic.elastic.driven import fourbar, largest, with_elastic
 from tests.worlds.tiers import slowly
 
-HEAD = """
-name = "rich"
-source = "synthetic"
-gravity_m_s2 = [0.5, -9.81]
-[ground]
-points = { A = [0.0, 0.0], D = [1.0, 0.0], S = [0.3, 1.4] }
-[links]
-crank = { bar = ["A", "B"], length_m = 0.15, mass_kg = 0.03645 }
-rocker = { bar = ["D", "C"], length_m = 0.75, mass_kg = 0.18225 }
-[elastic.coupler]
-modulus_pa = 70e9
-width_m = 0.03
-height_m = 0.003
-density_kg_m3 = 2700.0
-[driver]
-link = "crank"
-speed_rad_s = 7.3686
-start_deg = 90.0
-[branch]
-C = 1
-[links.coupler]
-"""
-LOADED = """
-[loads.push]
-link = "coupler"
-point = "N"
-direction_deg = 30.0
-frame = "body"
-force_n = 0.4
-[loads.turn]
-link = "rocker"
-torque_n_m = 0.3
-[springs.line]
-points = ["S", "M"]
-rate_n_m = 3.0
-free_m = 0.5
-damping_n_s_m = 0.2
-[springs.pin]
-pin = "C"
-rate_n_m_rad = 0.4
-damping_n_m_s = 0.01
-free_deg = 30.0
-"""
 BEAM = Polynomials(4, 2)
 POINTS = {"B": (0.0, 0.0), "C": (0.75, 0.0), "M": (0.375, 0.0), "N": (0.26, 0.1)}
 
 
 def rich(turned_rad: float = 0.0, moved: tuple[float, float] = (0.0, 0.0)) -> Scene:
-    """The coupler in a frame that is turned and moved against its line."""
-    c, s = math.cos(turned_rad), math.sin(turned_rad)
+    """The coupler in a frame that is turned and moved against its line; the pin's spring turns that
+    frame against the rocker's."""
+    c, s, less = math.cos(turned_rad), math.sin(turned_rad), math.degrees(turned_rad)
     points = ", ".join(
         f"{name} = [{c * x - s * y + moved[0]!r}, {s * x + c * y + moved[1]!r}]"
         for name, (x, y) in POINTS.items()
     )
-    less = math.degrees(turned_rad)
-    loaded = LOADED.replace("30.0\nframe", f"{30.0 + less!r}\nframe")
-    # The pin's spring turns the coupler's frame against the rocker's.
-    loaded = loaded.replace("free_deg = 30.0", f"free_deg = {30.0 - less!r}")
-    return parse_scene(f"{HEAD}points = {{ {points} }}\n{loaded}", "rich")
+    text = f"""
+name = "rich"
+source = "synthetic"
+gravity_m_s2 = [0.5, -9.81]
+ground = {{ points = {{ A = [0.0, 0.0], D = [1.0, 0.0], S = [0.3, 1.4] }} }}
+driver = {{ link = "crank", speed_rad_s = 7.3686, start_deg = 90.0 }}
+branch = {{ C = 1 }}
+[links]
+crank = {{ bar = ["A", "B"], length_m = 0.15, mass_kg = 0.03645 }}
+rocker = {{ bar = ["D", "C"], length_m = 0.75, mass_kg = 0.18225 }}
+coupler = {{ points = {{ {points} }} }}
+[elastic]
+coupler = {{ modulus_pa = 70e9, width_m = 0.03, height_m = 0.003, density_kg_m3 = 2700.0 }}
+[loads]
+turn = {{ link = "rocker", torque_n_m = 0.3 }}
+[loads.push]
+link = "coupler"
+point = "N"
+direction_deg = {30.0 + less!r}
+frame = "body"
+force_n = 0.4
+[springs]
+line = {{ points = ["S", "M"], rate_n_m = 3.0, free_m = 0.5, damping_n_s_m = 0.2 }}
+pin = {{ pin = "C", rate_n_m_rad = 0.4, damping_n_m_s = 0.01, free_deg = {30.0 - less!r} }}
+"""
+    return parse_scene(text, "rich")
+
+
+ASKEW = rich(0.9, (0.4, -0.3))
 
 
 def driven(
@@ -93,7 +75,7 @@ def driven(
 
 
 def test_where_the_frame_of_an_elastic_link_lies_changes_nothing() -> None:
-    plain, other = driven(rich()), driven(rich(0.9, (0.4, -0.3)))
+    plain, other = driven(rich()), driven(ASKEW)
     for point, own in plain.points.items():
         assert other.points[point].position == pytest.approx(own.position, abs=1e-12)
         assert other.points[point].acceleration == pytest.approx(own.acceleration, abs=1e-8)
@@ -108,7 +90,7 @@ def test_a_named_point_in_the_middle_is_where_the_deflection_has_it() -> None:
     way = c - b
     across = np.stack([-way[:, 1], way[:, 0]], axis=1) / np.linalg.norm(way, axis=1)[:, None]
     away = ((m - b) * across).sum(axis=1)
-    assert np.abs(away).max() > 1e-3
+    assert largest(away) > 1e-3
     assert motion.elastic["coupler"].middle == pytest.approx(away, abs=1e-12)
 
 
@@ -120,21 +102,16 @@ def test_loads_and_springs_act_on_a_chain_as_they_do_on_the_beam(
     counts: tuple[int, int], most: float
 ) -> None:
     """With moments on it a chain comes to the beam with order 1."""
-    scene = rich(0.9, (0.4, -0.3))
-    true = driven(scene, REFERENCE)
-    largest = np.abs(true.elastic["coupler"].middle).max()
-    errors = []
-    for count in counts:
-        chain = driven(scene, Segments(count))
-        errors.append(
-            np.abs(chain.elastic["coupler"].middle - true.elastic["coupler"].middle).max() / largest
-        )
-    assert errors[0] < most
-    assert errors[1] < errors[0] * counts[0] / counts[1]
+    true, *chains = (
+        driven(ASKEW, by).elastic["coupler"].middle for by in (REFERENCE, *map(Segments, counts))
+    )
+    first, second = (largest(chain - true) / largest(true) for chain in chains)
+    assert first < most
+    assert second < first * counts[0] / counts[1]
 
 
 def test_a_force_in_the_frame_of_a_bent_link_turns_with_it_where_it_acts() -> None:
-    scene = replace(rich(0.9, (0.4, -0.3)), springs={})
+    scene = replace(ASKEW, springs={})
     motion = DrivenElasticMotion(scene, 1.0, Polynomials(4), "straight", stiffened=True)
     form, at = motion.form, np.zeros(1)
     z = 1e-2 * np.ones((1, form.size))
@@ -149,10 +126,9 @@ def test_a_force_in_the_frame_of_a_bent_link_turns_with_it_where_it_acts() -> No
 
 
 def test_a_stiff_link_has_the_reactions_of_the_rigid_one() -> None:
-    scene = rich(0.9, (0.4, -0.3))
-    own = scene.elastic["coupler"]
-    stiff = driven(with_elastic(scene, flexural_n_m2=1e5 * own.flexural_n_m2))
-    rigid = forces(scene, stiff.time_s)
+    flexural = 1e5 * ASKEW.elastic["coupler"].flexural_n_m2
+    stiff = driven(with_elastic(ASKEW, flexural_n_m2=flexural))
+    rigid = forces(ASKEW, stiff.time_s)
     assert stiff.forces.torque == pytest.approx(rigid.torque, abs=1e-6)
     for pin, each in stiff.forces.pins.items():
         for body, force in each.items():
@@ -160,8 +136,7 @@ def test_a_stiff_link_has_the_reactions_of_the_rigid_one() -> None:
 
 
 def test_an_engine_is_given_loads_and_springs_on_segments() -> None:
-    own = SegmentedScene(rich(0.9, (0.4, -0.3)), 5)
-    scene = own.rigid
+    scene = SegmentedScene(ASKEW, 5).rigid
     assert scene.loads["push"].body == "coupler-2"
     assert scene.loads["push"].direction_rad == pytest.approx(math.radians(30.0))
     assert scene.loads["turn"].body == "rocker"
@@ -179,17 +154,14 @@ def test_a_chain_starts_with_the_rates_of_the_quasi_static_motion(count: int) ->
     state = segment_start(own, "quasi-static")
     rates = {state.omega[name] for name in own.segments("coupler")}
     assert len(rates) == 6
-    starts: tuple[Shape, ...] = ("quasi-static", "periodic")
     calm, periodic = (
         driven(fourbar(), Polynomials(count), start, 181).elastic["coupler"].middle
-        for start in starts
+        for start in ("quasi-static", "periodic")
     )
-    assert np.abs(calm - periodic).max() < 0.05 * np.abs(periodic).max()
+    assert largest(calm - periodic) < 0.05 * largest(periodic)
 
 
 def test_a_name_that_segments_need_is_refused() -> None:
-    scene = fourbar()
-    links = dict(scene.links)
-    links["coupler-2"] = replace(links.pop("rocker"), name="coupler-2")
+    taken = {"coupler-2": replace(fourbar().links["rocker"], name="coupler-2")}
     with pytest.raises(CrankcheckError, match="the name coupler-2, which the scene has"):
-        SegmentedScene(replace(scene, links=links), 4)
+        SegmentedScene(replace(fourbar(), links={**fourbar().links, **taken}), 4)
