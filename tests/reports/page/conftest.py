@@ -46,15 +46,8 @@ profile = "tuned"
 """
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 INSTALL = "apt-get install chromium"
-FLAGS = (
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-)
+OFF = ("gpu", "quic", "background-networking", "component-update", "sync")
+FLAGS = ("--no-sandbox", "--no-first-run", *(f"--disable-{each}" for each in OFF))
 
 
 @pytest.fixture(scope="session")

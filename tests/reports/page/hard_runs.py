@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Mapping
 
 import numpy as np
 
@@ -32,19 +32,12 @@ SCENES = {
 def case_of(name: str) -> CaseFacts:
     group, title = SCENES[name]
     return CaseFacts(
-        name=f"{name}-steps",
-        group=group,
-        title=title,
-        source=load_scene(name).source,
+        name=f"{name}-steps", group=group, title=title, source=load_scene(name).source,
         truth="The closed form at every instant.",
         expected="follows, with an error that falls with the square of the step",
-        parameter="steps in a turn",
-        unit="",
-        values=STEPS,
-        labels=tuple(f"{value:g}" for value in STEPS),
-        good=("ok",),
-        within=WITHIN,
-    )
+        parameter="steps in a turn", unit="", values=STEPS,
+        labels=tuple(f"{value:g}" for value in STEPS), good=("ok",), within=WITHIN,
+    )  # fmt: skip
 
 
 def graded(name: str, engine: str, profile: str, steps: float) -> tuple[Graded, Picture | None]:
@@ -57,25 +50,15 @@ def graded(name: str, engine: str, profile: str, steps: float) -> tuple[Graded, 
     outcome: Outcome = "ok" if error <= WITHIN else "degraded"
     if done.status == "diverged" or not error < 1.0:
         outcome = "diverged"
+    gap = max(float(np.max(np.abs(gap))) for gap in done.gaps.values()) / scene.longest_m
+    at_s, at_rad = (math.nan, math.nan) if outcome == "ok" else (0.4, 4.0)
     found = Graded(
-        case=case.name,
-        engine=engine,
-        profile=profile,
-        value=steps,
-        label=f"{steps:g}",
+        case=case.name, engine=engine, profile=profile, value=steps, label=f"{steps:g}",
         outcome=outcome,
         reason=done.reason or ("" if outcome == "ok" else f"place is off by {error:.2g}"),
-        error=error,
-        gap=max(float(np.max(np.abs(gap))) for gap in done.gaps.values()) / scene.longest_m,
-        drive=0.0,
-        sine=0.7,
-        at_s=math.nan if outcome == "ok" else 0.4,
-        at_driver_rad=math.nan if outcome == "ok" else 4.0,
-        steps=round(2 * steps),
-        dt_s=dt_s,
-        wall_s=0.01,
-        grid=steps != BETWEEN,
-    )
+        error=error, gap=gap, drive=0.0, sine=0.7, at_s=at_s, at_driver_rad=at_rad,
+        steps=round(2 * steps), dt_s=dt_s, wall_s=0.01, grid=steps != BETWEEN,
+    )  # fmt: skip
     return found, None if outcome == "ok" else _picture(scene, found, done)
 
 
@@ -93,16 +76,10 @@ def _picture(scene: Scene, found: Graded, done: Run) -> Picture:
         trace[f"x.{name}"], trace[f"y.{name}"] = point.position[kept].T
     for name, link in done.motion.links.items():
         trace[f"theta.{name}"] = link.theta[kept]
-    return Picture(
-        case=found.case,
-        engine=found.engine,
-        profile=found.profile,
-        value=found.value,
-        label=found.label,
-        title=f"{scene.name} in {found.label} steps a turn",
-        drawing=drawing(scene, time_s[kept]),
-        rows=displacements(scene, trace, time_s[kept]),
-    )
+    title = f"{scene.name} in {found.label} steps a turn"
+    drawn, rows = drawing(scene, time_s[kept]), displacements(scene, trace, time_s[kept])
+    named = {k: getattr(found, k) for k in ("case", "engine", "profile", "value", "label")}
+    return Picture(**named, title=title, drawing=drawn, rows=rows)
 
 
 def critical(case: CaseFacts, runs: list[Graded]) -> Critical:
@@ -112,26 +89,19 @@ def critical(case: CaseFacts, runs: list[Graded]) -> Critical:
     ends = next((run.outcome for run in runs if run.value == bad), "ok")
     words = "nowhere" if math.isnan(good) else f"holds down to {good:g}"
     words += "" if math.isnan(bad) else f"; then {ends}"
-    shown = runs[0]
-    command = f"crankcheck stability {case.name} --engine {shown.engine}"
-    return Critical(case.name, shown.engine, shown.profile, good, bad, ends, words, command)
+    engine, profile = runs[0].engine, runs[0].profile
+    command = f"crankcheck stability {case.name} --engine {engine}"
+    return Critical(case.name, engine, profile, good, bad, ends, words, command)
 
 
-def matrix(scenes: Mapping[str, object] = SCENES) -> Matrix:
-    """The matrix of some scenes in both engines with both profiles."""
-    runs: list[Graded] = []
-    pictures: list[Picture] = []
-    critical_values = []
-    for name in scenes:
-        for engine, profile in LINES:
-            found = [graded(name, engine, profile, steps) for steps in (*STEPS, BETWEEN)]
-            runs += [one for one, _ in found]
-            pictures += [picture for _, picture in found if picture is not None]
-            critical_values.append(critical(case_of(name), [one for one, _ in found]))
-    return Matrix(
-        facts=provenance({"mujoco": "4.0.0", "pymunk": "7.3.1"}),
-        cases=tuple(case_of(name) for name in scenes),
-        runs=tuple(runs),
-        critical=tuple(critical_values),
-        pictures=tuple(pictures),
-    )
+def matrix() -> Matrix:
+    """The matrix of the scenes in both engines with both profiles."""
+    runs, pictures, ends = [], [], []
+    cases = {name: case_of(name) for name in SCENES}
+    for name, (engine, profile) in itertools.product(SCENES, LINES):
+        found = [graded(name, engine, profile, steps) for steps in (*STEPS, BETWEEN)]
+        runs += [one for one, _ in found]
+        pictures += [picture for _, picture in found if picture is not None]
+        ends.append(critical(cases[name], [one for one, _ in found]))
+    facts = provenance({"mujoco": "4.0.0", "pymunk": "7.3.1"})
+    return Matrix(facts, tuple(cases.values()), tuple(runs), tuple(ends), tuple(pictures))

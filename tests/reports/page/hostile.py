@@ -15,12 +15,13 @@ EVIL = '</script><img src=x onerror="window.hacked=1"><b>\'&amp;{{ 7 * 7 }}'
 
 
 class Outline(HTMLParser):
-    """The elements of a page with their attributes; every element is closed by its own end."""
+    """The elements of a page with their attributes, each closed by its own end, and the text."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
         self.elements: list[tuple[str, dict[str, str | None]]] = []
         self.open: list[str] = []
+        self.text = ""
         self.feed(text)
         self.close()
 
@@ -34,6 +35,9 @@ class Outline(HTMLParser):
 
     def handle_endtag(self, tag: str) -> None:
         assert self.open.pop() == tag, f"</{tag}> closes another element"
+
+    def handle_data(self, data: str) -> None:
+        self.text += data if self.open[-1:] != ["script"] else ""
 
     def named(self, tag: str) -> list[dict[str, str | None]]:
         return [attributes for name, attributes in self.elements if name == tag]

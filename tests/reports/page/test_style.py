@@ -25,6 +25,9 @@ PROTANOPIA = np.array(
 )
 """Machado, Oliveira and Fernandes, IEEE Transactions on Visualization 15 (2009), severity 1."""
 TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+SEEN = pytest.mark.parametrize(
+    "seen", [NORMAL, DEUTERANOPIA, PROTANOPIA], ids=["all", "deutan", "protan"]
+)
 WHITE = np.array([0.95047, 1.0, 1.08883])
 
 
@@ -35,6 +38,7 @@ def themes() -> list[dict[str, str]]:
 
 
 LIGHT, SYSTEM_DARK, DARK = themes()
+THEMES = pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
 
 
 def linear(colour: str) -> Array:
@@ -61,27 +65,20 @@ def test_both_ways_to_the_dark_theme_are_one() -> None:
     assert set(LIGHT) == set(DARK)
 
 
-@pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
+@THEMES
 def test_text_can_be_read_and_lines_be_seen(theme: dict[str, str]) -> None:
-    for text, ground in (
-        *itertools.product(("ink", "soft", "link"), ("paper", "panel")),
-        ("good", "good-back"),
-        ("bad", "bad-back"),
-        ("half", "half-back"),
-        ("soft", "half-back"),
-        ("soft", "bad-back"),
-        ("half", "paper"),
-    ):
+    states = [(each, f"{each}-back") for each in ("good", "bad", "half")]
+    soft = [("soft", "half-back"), ("soft", "bad-back"), ("half", "paper")]
+    plain = itertools.product(("ink", "soft", "link"), ("paper", "panel"))
+    for text, ground in (*plain, *states, *soft):
         assert contrast(theme[text], theme[ground]) >= 4.5, f"{text} on {ground}"
     for name, colour in theme.items():
         if re.fullmatch(r"[cp]\d+", name):
             assert contrast(colour, theme["paper"]) >= 3.0, name
 
 
-@pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
-@pytest.mark.parametrize(
-    "seen", [NORMAL, DEUTERANOPIA, PROTANOPIA], ids=["all", "deutan", "protan"]
-)
+@THEMES
+@SEEN
 def test_colours_of_one_family_are_told_apart(theme: dict[str, str], seen: Array) -> None:
     families = [[f"c{FAMILY * k + i}" for i in range(FAMILY)] for k in range(FAMILIES)]
     families.append([f"p{i}" for i in range(5)])
@@ -97,43 +94,35 @@ def mixed(hue: str, part: float, paper: str) -> str:
     return "#" + "".join(f"{round(part * a + (1.0 - part) * b):02x}" for a, b in pairs)
 
 
-def shades() -> dict[str, float]:
-    """How much of its hue a cell of the map has, by the shade of its error."""
-    return {name: int(part) / 100 for name, part in re.findall(r"\.(\w+) \{ --s: (\d+)%; \}", MAP)}
-
-
-def hues() -> dict[str, str]:
-    """The hue of each outcome in the map where it is a failure, and that of what holds."""
-    rules = re.findall(r"^([.][^{}]+) \{ --o: (#\w{6}); \}", MAP, re.MULTILINE)
-    return {name.strip(): hue for names, hue in rules for name in names.split(",")}
+PARTS = {name: int(part) / 100 for name, part in re.findall(r"\.(\w+) \{ --s: (\d+)%; \}", MAP)}
+"""How much of its hue a cell of the map has, by the shade of its error."""
+RULES = re.findall(r"^([.][^{}]+) \{ --o: (#\w{6}); \}", MAP, re.MULTILINE)
+HUES = {name.strip(): hue for names, hue in RULES for name in names.split(",")}
+"""The hue of each outcome in the map where it is a failure, and that of what holds."""
 
 
 def test_every_outcome_has_a_hue_and_every_shade_is_stronger_than_the_one_before() -> None:
-    assert {f".o-{name}" for name in (*OUTCOMES, "strange")} | {".cell.held"} == set(hues())
-    found = shades()
-    assert set(found) == {*(f"s{i}" for i in range(len(SHADES) + 1)), "blank"}
-    parts = [found[f"s{i}"] for i in range(len(SHADES) + 1)]
+    assert {f".o-{name}" for name in (*OUTCOMES, "strange")} | {".cell.held"} == set(HUES)
+    names = [f"s{i}" for i in range(len(SHADES) + 1)]
+    assert set(PARTS) == {*names, "blank"}
+    parts = [PARTS[name] for name in names]
     assert all(b - a >= 0.08 for a, b in itertools.pairwise(parts))
 
 
-@pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
+@THEMES
 def test_the_signs_of_the_map_can_be_read_on_every_hue_and_shade(theme: dict[str, str]) -> None:
-    for (name, hue), part in itertools.product(hues().items(), shades().values()):
+    for (name, hue), part in itertools.product(HUES.items(), PARTS.values()):
         ground = mixed(hue, part, theme["paper"])
         assert contrast(theme["ink"], ground) >= 4.5, f"{name} at {part}"
 
 
-@pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
-@pytest.mark.parametrize(
-    "seen", [NORMAL, DEUTERANOPIA, PROTANOPIA], ids=["all", "deutan", "protan"]
-)
+@THEMES
+@SEEN
 def test_what_holds_is_told_from_what_fails_by_colour(theme: dict[str, str], seen: Array) -> None:
-    held = hues()[".cell.held"]
-    for name, hue in hues().items():
-        if name == ".cell.held":
-            continue
+    held = HUES[".cell.held"]
+    for name, hue in (each for each in HUES.items() if each[0] != ".cell.held"):
         bar = lab(mixed(hue, 0.7, theme["ink"]), seen)
-        ground = lab(mixed(hue, max(shades().values()), theme["paper"]), seen)
+        ground = lab(mixed(hue, max(PARTS.values()), theme["paper"]), seen)
         assert np.linalg.norm(bar - ground) > 18.0, f"the bar under {name}"
         strong = [lab(mixed(each, 0.43, theme["paper"]), seen) for each in (held, hue)]
         assert np.linalg.norm(strong[0] - strong[1]) > 13.0, name
