@@ -10,28 +10,27 @@ import numpy as np
 import pytest
 
 from analytic.free.window_chain import ChainMotion
-from analytic.kinematics import solve
 from models.errors import EngineError
-from models.files import load_scene
 from models.laws import ConstantSpeed, Oscillating
 from models.mjcf_options import has_control
 from models.motion import State
-from models.scene import Driver, Scene
+from models.scene import Driver
 from models.window_chain import Chain
+from reports.contract.subject import numbers
 from sim.check import refuse_other_model
 from sim.drive import pace, period
-from sim.engine import Engine, Poses, Run, Session
+from sim.engine import Engine, Poses, Run
 from sim.mujoco import settings as mujoco_settings
 from sim.registry import ENGINES, engine
 from sim.run import run
 from sim.settings import resolved
-from sim.timing import time_run
+from tests.worlds import runs
 
 DT_S = 1e-3
 
 
 def start_of(chain: Chain) -> State:
-    return ChainMotion(chain).motion(np.array([0.0])).state(0)
+    return ChainMotion(chain).motion(np.zeros(1)).state()
 
 
 def ran(chain: Chain, engine: Any, profile: str = "tuned", **given: Any) -> Run:
@@ -60,24 +59,9 @@ def adapter(request: pytest.FixtureRequest, fake_engine: ModuleType) -> Engine:
     return made
 
 
-def opened(adapter: Engine, chain: Chain, profile: str = "tuned") -> Session:
-    settings = resolved(adapter.profiles[profile], None)
-    return adapter.open(chain.scene(), start_of(chain), settings, DT_S, "free")
-
-
-def numbers(poses: Poses) -> np.ndarray:
-    rows = [
-        (b.origin, b.velocity, b.theta[:, None], b.omega[:, None]) for b in poses.bodies.values()
-    ]
-    return np.concatenate([part for row in rows for part in row], axis=1)
-
-
-def test_a_free_session_starts_as_the_state_with_the_mass_of_every_link(adapter: Engine) -> None:
-    chain = Chain(2)
-    facts = opened(adapter, chain).facts()
-    refuse_other_model(chain.scene(), start_of(chain), facts, DT_S, "free")
-    assert facts.mass_kg == dict.fromkeys(chain.scene().links, 1.0)
-    assert facts.inertia_kg_m2 == pytest.approx(dict.fromkeys(chain.scene().links, 1.0 / 12.0))
+def opened(adapter: Engine | str, chain: Chain, profile: str = "tuned") -> Any:
+    given = {"profile": profile, "dt_s": DT_S, "drive": "free", "start": start_of(chain)}
+    return runs.opened(chain.scene(), adapter, **given)
 
 
 @pytest.mark.parametrize("profile", ["tuned", "as-shipped"])
@@ -112,37 +96,13 @@ def test_free_windows_converge_to_the_reduced_equation(
 
 
 @pytest.mark.parametrize("name", ENGINES)
-def test_the_mass_of_the_crank_counts(name: str) -> None:
-    """Ten times the mass of rocker0 alone: another motion than that of the chain."""
-    chain = Chain(1)
-    scene = chain.scene()
-    crank = scene.links["rocker0"]
-    heavy = replace(crank, mass_kg=10.0, inertia_kg_m2=10.0 / 12.0)
-    laden = replace(scene, links={**scene.links, "rocker0": heavy})
-    result = run(laden, start_of(chain), name, dt_s=DT_S, steps=400, drive="free")
-    weight, inertia = 10.0 / 2 + 1.0 / 2 + 1.0, 10.0 / 3 + 1.0 / 3 + 1.0
-    kappa = 9.81 * weight / inertia
-    found, lighter = result.motion.links["rocker1"].theta[-1], ChainMotion(chain).stiffness
-    assert abs(found - pendulum(kappa, 0.4)) < 1e-4
-    assert abs(pendulum(kappa, 0.4) - pendulum(lighter, 0.4)) > 0.02
-
-
-def pendulum(kappa: float, time_s: float) -> float:
-    """The angle of the rods after a fall under kappa: that of a chain under another gravity."""
-    turning = ChainMotion(Chain(1))
-    like = ChainMotion(Chain(1, gravity_m_s2=9.81 * kappa / turning.stiffness))
-    return float(like.at(np.array([time_s]))[0][0])
-
-
-@pytest.mark.parametrize("name", ENGINES)
 def test_the_law_of_the_driver_plays_no_part(name: str) -> None:
     """Neither in the motion, nor in what step is too long or what speed is too high."""
     chain = Chain(1)
-    given = {"dt_s": DT_S, "steps": 300, "drive": "free"}
     motions = []
     for law in (ConstantSpeed(0.0, 1e-9), Oscillating(3.0, 0.1, 1e6)):
         scene = replace(chain.scene(), driver=Driver("rocker0", law))
-        result = run(scene, start_of(chain), name, **given)  # type: ignore[arg-type]
+        result = run(scene, start_of(chain), name, dt_s=DT_S, steps=300, drive="free")
         assert result.status == "ok"
         motions.append(result.motion.links["rocker1"].theta)
     np.testing.assert_array_equal(*motions)
@@ -157,7 +117,7 @@ def test_what_hangs_on_the_crank_of_a_free_model_is_refused(fake_engine: ModuleT
     refuse_other_model(*told, replace(facts, mass_kg=without), DT_S, "prescribed")
     with pytest.raises(EngineError, match="rocker0 has no mass_kg"):
         refuse_other_model(*told, replace(facts, mass_kg=without), DT_S, "free")
-    session: Any = opened(engine("mujoco"), chain)
+    session = opened("mujoco", chain)
     session._model.dof_armature[session._crank] = 0.01
     with pytest.raises(EngineError, match=r"rocker0 has inertia_kg_m2 0\.0933333, not 0\.0833333"):
         refuse_other_model(*told, session.facts(), DT_S, "free")
@@ -197,13 +157,15 @@ def test_the_mjcf_of_a_free_crank_has_neither_flywheel_nor_motor() -> None:
 
 
 @pytest.mark.parametrize("name", ENGINES)
-def test_a_free_crank_without_mass_is_unsupported(name: str) -> None:
+def test_a_free_crank_without_mass_is_unsupported_and_steps_too_long_are_refused(name: str) -> None:
     scene = Chain(1).scene()
     bare = replace(scene.links["rocker0"], mass_kg=0.0, inertia_kg_m2=0.0)
     light = replace(scene, links={**scene.links, "rocker0": bare})
     result = run(light, start_of(Chain(1)), name, dt_s=DT_S, steps=10, drive="free")
     assert result.status == "unsupported"
     assert "rocker0: mass_kg 0" in result.reason
+    with pytest.raises(EngineError, match=r"dt: 0\.5 s leaves 4 steps in a period of 2\.006 s"):
+        ran(Chain(1), name, dt_s=0.5)
 
 
 def test_the_pace_of_free_motion_comes_from_the_state_and_from_gravity() -> None:
@@ -219,12 +181,6 @@ def test_the_pace_of_free_motion_comes_from_the_state_and_from_gravity() -> None
     still = replace(state, omega=dict.fromkeys(state.omega, 0.0))
     weightless = replace(scene, gravity_m_s2=(0.0, 0.0))
     assert (pace(weightless, still, "free"), period(weightless, still, "free")) == (0.0, np.inf)
-
-
-@pytest.mark.parametrize("name", ENGINES)
-def test_steps_too_long_for_the_fall_are_refused(name: str) -> None:
-    with pytest.raises(EngineError, match=r"dt: 0\.5 s leaves 4 steps in a period of 2\.006 s"):
-        ran(Chain(1), name, dt_s=0.5)
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -259,14 +215,6 @@ def test_a_free_run_that_spins_away_is_diverged(fake_engine: ModuleType) -> None
     assert (apart.status, apart.stopped_at_s) == ("diverged", pytest.approx(0.2))
 
 
-@pytest.mark.parametrize("name", ENGINES)
-def test_free_runs_can_be_timed(name: str) -> None:
-    given: dict[str, Any] = {"dt_s": DT_S, "steps": 100, "repeats": 2, "drive": "free"}
-    bare = time_run(Chain(1).scene(), start_of(Chain(1)), name, **given)
-    assert len(bare.walls_s) == 2
-    assert bare.best.us_per_step == pytest.approx(1e6 * min(bare.walls_s) / 100)
-
-
 @pytest.mark.parametrize(
     ("name", "profile"), [("mujoco", "tuned"), ("mujoco", "as-shipped"), ("pymunk", "tuned")]
 )
@@ -289,19 +237,3 @@ def test_the_energy_of_a_run_is_that_of_the_closed_form_at_the_instants_of_the_v
     early = 9.81 * (height - 0.5 * np.sin(turning.at(result.motion.time_s)[0]))
     if result.velocity_time_s[0] != 0.0:  # the heights of the positions' own instants would be off
         assert np.abs(early).max() > 10.0 * offs[1]
-
-
-@pytest.mark.parametrize("name", ENGINES)
-def test_the_energy_of_a_driven_run_is_not_kept(name: str) -> None:
-    assert ran(Chain(1), name, drive="prescribed", steps=10).energy is None
-
-
-def test_a_slider_crank_that_coasts_keeps_the_energy_of_its_links_and_block() -> None:
-    scene: Scene = load_scene("slider-crank-offset")
-    assert max(slider.mass_kg for slider in scene.sliders.values()) > 0.0
-    state = solve(scene, np.array([0.0])).state(0)
-    result = run(scene, state, "mujoco", dt_s=1e-4, steps=7000, every=10, drive="free")
-    energy, crank = result.energy.total_j, result.motion.links[scene.driver.link]
-    assert np.abs(energy / energy[0] - 1.0).max() < 1e-5
-    assert np.ptp(crank.omega) > 0.3 * np.abs(crank.omega).max()
-    assert np.ptp(crank.theta) > 2.0 * np.pi
