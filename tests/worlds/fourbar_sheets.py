@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.files import load_scene
 from reports.causes import Cause, causes
 from reports.logs.channel import Channel
@@ -31,6 +32,16 @@ def angle(link: str, unit: str = "rad", **options: object) -> Channel:
 
 def omega(link: str, unit: str = "rad/s", **options: object) -> Channel:
     return Channel(f"{link}_w", OMEGA, link, unit, **options)
+
+
+def at(sheet: Sheet, time_s: Array, *columns: str) -> Sheet:
+    """The sheet with the readings of other instants, in some columns or all."""
+    return sheet.of(solve(SCENE, time_s, bound=False), columns or None)
+
+
+def later(sheet: Sheet, samples: float, *columns: str) -> Sheet:
+    """The sheet with the readings of so many samples later."""
+    return at(sheet, sheet.time_s + samples * sheet.step_s, *columns)
 
 
 def only(planted: Sheet) -> Cause:
