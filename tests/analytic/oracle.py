@@ -81,12 +81,6 @@ def rrr(p1: Place, p2: Place, l1: Number, l2: Number, branch: int) -> tuple[Jet,
     return phi + at_p1 * branch, phi - at_p2 * branch + mp.pi
 
 
-def rrr_short(p1: Place, p2: Place, l1: Number, l2: Number) -> Number:
-    """By how much the dyad is short of closing; negative where it closes."""
-    d = (p2 - p1).length.value
-    return max(d - (mp.mpf(l1) + l2), abs(mp.mpf(l1) - l2) - d)
-
-
 def rrp(p1: Place, line: Line, length: Number, branch: int) -> tuple[Jet, Jet]:
     """The angle of P1 C, and the displacement of C."""
     x, y = line.coordinates(p1)
@@ -96,6 +90,7 @@ def rrp(p1: Place, line: Line, length: Number, branch: int) -> tuple[Jet, Jet]:
 
 
 def rrp_short(p1: Place, line: Line, length: Number) -> Number:
+    """By how much the dyad is short of closing; negative where it closes."""
     return abs(line.coordinates(p1)[1].value) - length
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 import pytest
@@ -14,8 +14,7 @@ from analytic.dyads.parts import OpenError, Sliding, Turning
 from analytic.dyads.plane import EPS, ZERO, PointError, PointKinematics, Vec, fixed_point
 from models.array import Array
 from tests.analytic.change_points.jets import Jet
-from tests.analytic.dyads.dyad_cases import KINDS, Bunch
-from tests.analytic.dyads.dyad_inputs import BUNCH, Draw, Exact, Moved
+from tests.analytic.dyads.dyad_cases import BUNCH, KINDS, Bunch, Draw, Exact, Moved
 from tests.worlds.tiers import at_length, slowly
 
 LEVELS = ("position", "rate", "acceleration")
@@ -38,24 +37,19 @@ class Found:
     size: Array
 
     def complaint(self, level: int) -> str:
-        worst = int(np.nanargmax(self.error[:, level] - self.bound[:, level]))
-        return (
-            f"{LEVELS[level]}: error {self.error[worst, level]:.3g} above the bound "
-            f"{self.bound[worst, level]:.3g} at sine {self.sine[worst]:.3g}"
-        )
+        error, bound = self.error[:, level], self.bound[:, level]
+        i = int(np.nanargmax(error - bound))
+        return f"{LEVELS[level]}: error {error[i]:.3g} above {bound[i]:.3g} at sine {self.sine[i]}"
 
 
 def _levels(unknown: Turning | Sliding) -> tuple[list[Array], list[Array]]:
     """Values and bounds as arrays (3, n); the direction of a turning unknown comes apart."""
-    error = unknown.error
     if isinstance(unknown, Turning):
         values = [np.zeros(BUNCH), unknown.omega, unknown.alpha]
-        bounds = [error.theta, error.omega, error.alpha]
     else:
         values = [unknown.s, unknown.speed, unknown.acceleration]
-        bounds = [error.displacement, error.speed, error.acceleration]
-    spread = [np.broadcast_to(np.asarray(b, dtype=float), (BUNCH,)) for b in bounds]
-    return values, spread
+    bounds = astuple(unknown.error)
+    return values, [np.broadcast_to(np.asarray(b, dtype=float), (BUNCH,)) for b in bounds]
 
 
 def _angle_between(unknown: Turning, i: int, angle: Jet) -> float:
@@ -67,8 +61,7 @@ def _angle_between(unknown: Turning, i: int, angle: Jet) -> float:
 
 def _compare(bunch: Bunch, shift: Exact | Moved) -> Found:
     """The true errors of a bunch; NaN where the exact dyad, stretched, has no rates."""
-    rows: list[list[float]] = []
-    bounds: list[list[float]] = []
+    rows, bounds = [], []
     solved = [(u, *_levels(u)) for u in (bunch.dyad.first, bunch.dyad.second)]
     for i in range(BUNCH):
         for (unknown, values, bound), truth in zip(solved, bunch.truth(i, shift), strict=True):
