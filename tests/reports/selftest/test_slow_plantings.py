@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from types import ModuleType, SimpleNamespace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -26,22 +26,26 @@ CHAIN = elastic_cell(LOOSE, ENGINE).given
 """Segments that are let go, as an engine is given them."""
 ELASTIC = elastic_cell(BENT, ENGINE)
 STEP_S = 0.4 / 1440
+Given = Callable[[str, Scene], tuple[Any, Any]]
 
 
-def given(
-    name: str, scene: Scene, module: ModuleType, monkeypatch: pytest.MonkeyPatch
-) -> tuple[Any, Any]:
+@pytest.fixture
+def given(monkeypatch: pytest.MonkeyPatch) -> Given:
     """The scene and the start that an engine is given with a fault of its own size; one of 0
     gives it the right scene."""
-    asked: list[tuple[object, ...]] = []
-    monkeypatch.setattr(module, "run", lambda *given, **_: asked.append(given))
-    fault = FAULTS[name]
-    for size in (fault.planted, 0.0):
-        fault.plant(size)(scene, "the start", ENGINE, "tuned", dt_s=STEP_S)
-    (wrong, start, *names), (right, *_) = asked
-    assert right == scene
-    assert names == [ENGINE, "tuned"]
-    return wrong, start
+
+    def find(name: str, scene: Scene) -> tuple[Any, Any]:
+        asked: list[tuple[object, ...]] = []
+        for module in (free_changes, segment_changes):
+            monkeypatch.setattr(module, "run", lambda *given, **_: asked.append(given))
+        for size in (FAULTS[name].planted, 0.0):
+            FAULTS[name].plant(size)(scene, "the start", ENGINE, "tuned", dt_s=STEP_S)
+        (wrong, start, *names), (right, *_) = asked
+        assert right == scene
+        assert names == [ENGINE, "tuned"]
+        return wrong, start
+
+    return find
 
 
 def heavier(link: Link) -> Link:
@@ -53,9 +57,9 @@ def heavier(link: Link) -> Link:
     [("loose-torque-late", 1.0, STEP_S), ("loose-torque-back", -1.0, 0)],
 )
 def test_a_torque_of_links_that_are_let_go_is_late_or_turns_the_other_way(
-    name: str, times: float, late_s: float, monkeypatch: pytest.MonkeyPatch
+    name: str, times: float, late_s: float, given: Given
 ) -> None:
-    wrong, start = given(name, CHAIN, segment_changes, monkeypatch)
+    wrong, start = given(name, CHAIN)
     time_s = np.linspace(0.0, 1.5, 98)
     right = CHAIN.loads["pulse"].magnitude(time_s)
     assert np.ptp(right) > 0.0
@@ -65,29 +69,23 @@ def test_a_torque_of_links_that_are_let_go_is_late_or_turns_the_other_way(
 
 
 ROCKER = list(CHAIN.links)[-1]
-OTHER_CHAINS: dict[str, tuple[str, dict[str, object]]] = {
-    "loose-modulus-off": (
-        "CC132",
-        {"springs": {n: replace(s, rate=1.01 * s.rate) for n, s in CHAIN.springs.items()}},
-    ),
-    "loose-damping": (
-        "CC132",
-        {"springs": {n: replace(s, damping=1e-3 * s.rate) for n, s in CHAIN.springs.items()}},
-    ),
-    "loose-rocker-heavy": (
-        "CC127",
-        {"links": {**CHAIN.links, ROCKER: heavier(CHAIN.links[ROCKER])}},
-    ),
-}
+HEAVY = {**CHAIN.links, ROCKER: heavier(CHAIN.links[ROCKER])}
+STIFF = {n: replace(s, rate=1.01 * s.rate) for n, s in CHAIN.springs.items()}
+DAMPED = {n: replace(s, damping=1e-3 * s.rate) for n, s in CHAIN.springs.items()}
 
 
-@pytest.mark.parametrize("name", OTHER_CHAINS)
+@pytest.mark.parametrize(
+    ("name", "other", "rule"),
+    [
+        ("loose-modulus-off", {"springs": STIFF}, "CC132"),
+        ("loose-damping", {"springs": DAMPED}, "CC132"),
+        ("loose-rocker-heavy", {"links": HEAVY}, "CC127"),
+    ],
+)
 def test_links_that_are_let_go_have_other_springs_or_masses_and_the_same_start(
-    name: str, monkeypatch: pytest.MonkeyPatch
+    name: str, other: dict[str, object], rule: str, given: Given
 ) -> None:
-    rule, other = OTHER_CHAINS[name]
-    wrong, start = given(name, CHAIN, segment_changes, monkeypatch)
-    assert (wrong, start) == (replace(CHAIN, **other), "the start")
+    assert given(name, CHAIN) == (replace(CHAIN, **other), "the start")
     assert (FAULTS[name].scenes, FAULTS[name].rule) == ((LOOSE,), rule)
 
 
@@ -112,21 +110,23 @@ def longer(scene: Scene) -> Scene:
     [("elastic-other", softer_and_heavier, "CC132"), ("elastic-long", longer, "CC103")],
 )
 def test_another_elastic_machine_starts_on_its_own_periodic_motion(
-    name: str, change: Callable[[Scene], Scene], rule: str, monkeypatch: pytest.MonkeyPatch
+    name: str,
+    change: Callable[[Scene], Scene],
+    rule: str,
+    given: Given,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(segment_changes, "segment_start", lambda *asked: asked)
-    wrong, (chain, shape) = given(name, ELASTIC.given, segment_changes, monkeypatch)
+    wrong, (chain, shape) = given(name, ELASTIC.given)
     other = SegmentedScene(change(ELASTIC.scene), 4)
     assert (chain.scene, chain.count, shape) == (other.scene, 4, "periodic")
     assert wrong == other.rigid
     assert (FAULTS[name].scenes, FAULTS[name].rule) == ((BENT,), rule)
 
 
-def test_gravity_that_is_hardly_too_strong_is_looked_for_at_finer_steps(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_gravity_that_is_hardly_too_strong_is_looked_for_at_finer_steps(given: Given) -> None:
     scene, fault = load_scene(SWING), FAULTS["gravity-hardly"]
-    wrong, start = given(fault.name, scene, free_changes, monkeypatch)
+    wrong, start = given(fault.name, scene)
     assert wrong.gravity_m_s2 == pytest.approx((0.0, -9.81 * 1.0001))
     assert replace(wrong, gravity_m_s2=scene.gravity_m_s2) == scene
     assert start == release(wrong, STEP_S).at(np.zeros(1)).state()

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import pytest
 
 from reports.judge.rules import RULES
-from reports.judge.rules.rule import Evidence, Finding
+from reports.judge.rules.rule import Evidence, Finding, Level
 from reports.selftest import trial
 from reports.selftest.all_faults import FAULTS
 from reports.selftest.fault import FOURBAR, Fault
@@ -17,6 +17,7 @@ from reports.workers.isolated import Lost
 
 SPIKE = FAULTS["spike"]
 WHOLE = FAULTS["log-cut"]
+OTHER_RULE = replace(SPIKE, rule="CC102")
 
 
 @pytest.fixture(autouse=True)
@@ -27,28 +28,30 @@ def _fresh() -> Iterator[None]:
     trial.healthy.cache_clear()
 
 
-class Blind:
-    """A rule that sees nothing."""
+class Stubborn:
+    """A rule that always says the same."""
 
     title = explanation = cure = ""
 
-    def __init__(self, rule: str) -> None:
-        self.id = rule
+    def __init__(self, rule: str, level: Level) -> None:
+        self.id, self.level = rule, level
 
     def check(self, evidence: Evidence) -> Finding | None:
-        return Finding(self.id, "pass", "all is well")
+        return Finding(self.id, self.level, "as ever")
 
 
-class Nervous(Blind):
-    """A rule that is never content."""
-
-    def check(self, evidence: Evidence) -> Finding | None:
-        return Finding(self.id, "fail", "nothing is well")
+Plant = Callable[[Fault], trial.Verdict]
 
 
-def planted(fault: Fault, monkeypatch: pytest.MonkeyPatch) -> trial.Verdict:
-    monkeypatch.setitem(FAULTS, fault.name, replace(fault, scenes=(FOURBAR,)))
-    return trial.tried(fault.name, ("mujoco",))
+@pytest.fixture
+def planted(monkeypatch: pytest.MonkeyPatch) -> Plant:
+    """The verdict on a fault in one scene and engine."""
+
+    def tried(fault: Fault, *, search: bool = True) -> trial.Verdict:
+        monkeypatch.setitem(FAULTS, fault.name, replace(fault, scenes=(FOURBAR,)))
+        return trial.tried(fault.name, ("mujoco",), search=search)
+
+    return tried
 
 
 @pytest.mark.parametrize("threshold", [3e-12, 4.4e-8, 9.99e-6])
@@ -59,8 +62,7 @@ def test_the_smallest_size_that_is_caught_is_found_to_a_tenth(threshold: float) 
         tried.append(size)
         return size >= threshold
 
-    least = trial._least(SPIKE, caught)
-    assert threshold <= least <= 1.1 * threshold
+    assert threshold <= trial._least(SPIKE, caught) <= 1.1 * threshold
     assert len(tried) < 15
 
 
@@ -80,55 +82,51 @@ def test_a_size_that_escapes_between_two_that_are_caught_bounds_the_search() -> 
     assert 1e-7 < least < 1.1e-7
 
 
-def test_a_fault_is_caught_with_its_smallest_size(monkeypatch: pytest.MonkeyPatch) -> None:
-    verdict = planted(SPIKE, monkeypatch)
+def test_a_fault_is_caught_with_its_smallest_size(planted: Plant) -> None:
+    verdict = planted(SPIKE)
     assert verdict.caught
     least = verdict.least("mujoco")
-    assert least is not None
     assert 1e-7 < least < 1e-5
     for size, seen in ((least, True), (0.8 * least, False)):
-        monkeypatch.setitem(FAULTS, "spike", replace(SPIKE, size=size, scenes=(FOURBAR,)))
-        assert trial.tried("spike", ("mujoco",), search=False).caught is seen
+        assert planted(replace(SPIKE, size=size), search=False).caught is seen
 
 
-def test_a_fault_escapes_where_its_rule_is_blind(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(RULES, "CC114", Blind("CC114"))
-    verdict = planted(SPIKE, monkeypatch)
-    assert not verdict.caught
-    assert verdict.sound
+def test_a_fault_escapes_where_its_rule_is_blind(
+    planted: Plant, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(RULES, "CC114", Stubborn("CC114", "pass"))
+    verdict = planted(SPIKE)
+    assert (verdict.caught, verdict.sound) == (False, True)
     assert verdict.places[0].finding is None
     assert verdict.least("mujoco") is None
 
 
-def test_another_rule_that_fails_does_not_make_up_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    verdict = planted(replace(SPIKE, rule="CC102"), monkeypatch)
+def test_another_rule_that_fails_does_not_make_up_for_it(planted: Plant) -> None:
+    verdict = planted(OTHER_RULE)
     assert "CC114" in verdict.places[0].failed
     assert not verdict.caught
 
 
-def test_the_rule_must_say_the_words_that_it_should(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_rule_must_say_the_words_that_it_should(planted: Plant) -> None:
     gravity = FAULTS["gravity-left-on"]
-    assert planted(gravity, monkeypatch).caught
-    assert not planted(replace(gravity, says=("magnetism",)), monkeypatch).caught
+    assert planted(gravity).caught
+    assert not planted(replace(gravity, says=("magnetism",))).caught
 
 
 def test_a_rule_that_fails_without_any_fault_spoils_the_catch(
-    monkeypatch: pytest.MonkeyPatch,
+    planted: Plant, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setitem(RULES, "CC105", Nervous("CC105"))
-    verdict = planted(FAULTS["joint-dropped"], monkeypatch)
+    monkeypatch.setitem(RULES, "CC105", Stubborn("CC105", "fail"))
+    verdict = planted(FAULTS["joint-dropped"])
     assert verdict.places[0].finding is not None
     assert verdict.places[0].false == ("CC105",)
-    assert not verdict.sound
-    assert not verdict.caught
+    assert (verdict.caught, verdict.sound) == (False, False)
 
 
-def test_a_fault_that_is_there_at_size_0_is_not_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    always = replace(SPIKE, plant=lambda _: SPIKE.plant(1e-5))
-    verdict = planted(always, monkeypatch)
-    assert verdict.sound
+def test_a_fault_that_is_there_at_size_0_is_not_caught(planted: Plant) -> None:
+    verdict = planted(replace(SPIKE, plant=lambda _: SPIKE.plant(1e-5)))
     assert verdict.places[0].false == ("CC114", "CC118")
-    assert not verdict.caught
+    assert (verdict.caught, verdict.sound) == (False, True)
 
 
 def test_a_fault_that_ends_the_process_is_not_caught() -> None:
@@ -138,13 +136,11 @@ def test_a_fault_that_ends_the_process_is_not_caught() -> None:
     assert verdict.least("mujoco") is None
 
 
-def test_a_fault_that_plants_nothing_fails_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    nothing = replace(SPIKE, plant=FAULTS["joint-slips"].plant, size=0.0)
-    verdict = planted(nothing, monkeypatch)
+def test_a_fault_that_plants_nothing_fails_and_says_so(planted: Plant) -> None:
+    verdict = planted(replace(SPIKE, plant=FAULTS["joint-slips"].plant, size=0.0))
     assert not verdict.caught
     assert [place.nothing for place in verdict.places] == [True]
-    other = planted(replace(SPIKE, rule="CC102"), monkeypatch)
-    assert [place.nothing for place in other.places] == [False]
+    assert [place.nothing for place in planted(OTHER_RULE).places] == [False]
 
 
 def test_what_need_not_be_seen_and_plants_nothing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
