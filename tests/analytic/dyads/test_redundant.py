@@ -29,9 +29,7 @@ def parallelogram(rockers: int, *, lever_m: float = 0.1, shift: Point = (0.0, 0.
     tops = {f"B{i}": [0.3 * i, 0.0] for i in range(rockers + 1)}
     rods = [
         f'links.{name} = {{ bar = ["A{i}", "B{i}"], length_m = {length!r} }}'
-        for i, (name, length) in enumerate(
-            {**dict.fromkeys(names, 0.1), "lever": lever_m}.items(), 1
-        )
+        for i, (name, length) in enumerate(lengths.items(), 1)
     ]
     text = f"""
 name = "parallelogram"
