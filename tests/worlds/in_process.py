@@ -34,7 +34,7 @@ class Here(Generic[Answer]):
         return function(*arguments)
 
     def close(self) -> None:
-        """There is nothing to end."""
+        self.closed = True
 
 
 @contextmanager

@@ -7,10 +7,10 @@ import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import pandas as pd
 import pytest
@@ -32,28 +32,31 @@ GRID = ("fourbar-lecture-1", "slotted-lever", "--steps-per-turn", "90,180", "--n
 BY_CHANCE = {"wall_s", "logged_us_per_step", "run_on"}
 
 
+MISSING = {"version": None, "status": "unsupported", "reason": "engine pymunk: not installed"}
+
+
 @dataclass(eq=False)
 class Cluster:
     """Does all at once in this thread; results come last first."""
 
     workers: Sequence[str] = ("one",)
     closed: bool = False
-    results: dict[int, object] = field(default_factory=dict)
 
     def scheduler_info(self) -> dict[str, object]:
         return {"workers": self.workers}
 
     def map(self, function: Callable[[Cell], object], cells: Sequence[Cell], pure: bool) -> object:
         assert not pure
-        self.results = {number: function(cell) for number, cell in enumerate(cells)}
-        return [SimpleNamespace(key=number) for number in self.results]
-
-    def as_completed(self, futures: Any, with_results: bool) -> Iterator[tuple[object, object]]:
-        assert with_results
-        return iter([(each, self.results[each.key]) for each in reversed(futures)])
+        found = enumerate(map(function, cells))
+        return [SimpleNamespace(key=number, result=each) for number, each in found]
 
     def close(self) -> None:
         self.closed = True
+
+
+def as_completed(futures: Any, with_results: bool) -> Iterator[tuple[object, object]]:
+    assert with_results
+    return iter([(each, each.result) for each in reversed(futures)])
 
 
 def dask(monkeypatch: pytest.MonkeyPatch, cluster: Cluster, error: Exception | None = None) -> None:
@@ -65,8 +68,8 @@ def dask(monkeypatch: pytest.MonkeyPatch, cluster: Cluster, error: Exception | N
             raise error
         return cluster
 
-    module = SimpleNamespace(Client=client, as_completed=cluster.as_completed)
-    monkeypatch.setitem(sys.modules, "distributed", cast(Any, module))
+    module = SimpleNamespace(Client=client, as_completed=as_completed)
+    monkeypatch.setitem(sys.modules, "distributed", module)
 
 
 def test_outcomes_come_as_they_end_from_a_child_of_each_limit(
@@ -81,9 +84,6 @@ def test_outcomes_come_as_they_end_from_a_child_of_each_limit(
 
         def call(self, function: Callable[..., object], *arguments: object) -> object:
             return (function, *arguments)
-
-        def close(self) -> None:
-            self.closed = True
 
     cluster = Cluster()
     dask(monkeypatch, cluster)
@@ -114,7 +114,7 @@ def test_no_cluster_is_said_in_one_line(
     dask(monkeypatch, cluster, error)
     with pytest.raises(CrankcheckError, match=f"^--dask tcp://{words}"):
         clusters.connected("tcp://there:1")
-    monkeypatch.setitem(sys.modules, "distributed", cast(Any, None))
+    monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(CrankcheckError, match=r"^--dask: distributed is not installed; pip"):
         clusters.connected("tcp://there:1")
 
@@ -125,10 +125,7 @@ def test_no_cluster_is_said_in_one_line(
         ({}, ""),
         ({"version": "0.1"}, "a worker has pymunk 0.1, here it is "),
         ({"crankcheck": "0.1"}, "a worker has crankcheck 0.1, here it is "),
-        (
-            {"version": None, "status": "unsupported", "reason": "engine pymunk: not installed"},
-            r"a worker has no pymunk; install pymunk==\d",
-        ),
+        (MISSING, r"a worker has no pymunk; install pymunk==\d"),
     ],
 )
 def test_workers_with_other_packages_are_refused(
@@ -155,15 +152,12 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     pytest.importorskip("distributed", reason="pip install 'crankcheck[dask]'")
     address, folder = nowhere(), tmp_path_factory.mktemp("cluster")
     wait = f"import distributed; distributed.Client({address!r}).wait_for_workers(2, 600)"
+    worker = ("worker", address, "--nthreads", "1", "--local-directory", str(folder))
+    scheduler = ("scheduler", "--host", "127.0.0.1", "--port", address.rpartition(":")[2])
     with programs() as start:
-
-        def begin(*arguments: str) -> None:
-            command = (PYTHON, "-P", "-m", "dask", *arguments, "--no-dashboard")
+        for each in (scheduler, worker, worker):
+            command = (PYTHON, "-P", "-m", "dask", *each, "--no-dashboard")
             start(*command, output=subprocess.DEVNULL)
-
-        begin("scheduler", "--host", "127.0.0.1", "--port", address.rpartition(":")[2])
-        for _ in range(2):
-            begin("worker", address, "--nthreads", "1", "--local-directory", str(folder))
         subprocess.run([PYTHON, "-W", "ignore", "-c", wait], check=True)
         yield address
 

@@ -29,9 +29,6 @@ class Remembering(Here[object]):
             self.answers[key] = function(*arguments)
         return self.answers[key]
 
-    def close(self) -> None:
-        self.closed = True
-
 
 def timed(_: object, cells: Sequence[tuple[Cell, float]], rounds: int) -> list[object]:
     """In place of a clock: a cell takes as many microseconds as there are cells up to it."""
