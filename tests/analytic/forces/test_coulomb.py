@@ -98,14 +98,6 @@ def test_where_they_contract_substitution_leads_to_the_same(gain: float) -> None
     assert np.max(found.iterations) < 30
 
 
-def test_weights_are_positive_where_the_spectral_radius_is_below_1() -> None:
-    gains = np.random.default_rng(2).uniform(0.0, 0.7, (500, 3, 3))
-    radius = np.abs(np.linalg.eigvals(gains)).max(axis=1)
-    below = np.all(weights(gains) > 0.0, axis=1)
-    np.testing.assert_array_equal(below, radius < 1.0)
-    assert 50 < below.sum() < 450
-
-
 def test_a_singular_system_spoils_no_other() -> None:
     matrices = np.array([np.eye(2), np.ones((2, 2)), 2.0 * np.eye(2)])
     x = solve_small(matrices, np.ones((3, 2)))

@@ -16,8 +16,6 @@ from analytic.free.limit_position import REACH
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
 from analytic.free.toggle_barrier import ToggleBarrier
-from analytic.kinematics import solve
-from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
@@ -26,6 +24,7 @@ from models.released import let_go
 from models.scene import Scene
 from tests.analytic.free.mechanisms import fourbar, past_limits, released, slider_crank
 from tests.analytic.free.second_method import newton_euler
+from tests.analytic.multibody.scenes import by_bodies
 from tests.analytic.multibody.scenes import scene as parsed
 from tests.worlds.loading import loaded_mechanism
 from tests.worlds.tiers import slowly
@@ -106,9 +105,7 @@ def test_past_limits_everything_goes_on_smoothly_in_the_right_assembly(
 def test_a_limit_with_another_singular_position_beside_it_is_passed() -> None:
     """Less than 0.1 of the range beyond a limit of the driver an earlier dyad is open as well."""
     scene = let_go(replace(loaded_mechanism(36)[0], loads={}), 0.2)
-    near, time_s = solve(scene, np.zeros(1), bound=False).state(), np.array([0.1, 0.2])
-    free, bodies = release(scene, 0.2), release_multibody(scene, 0.2, near=near)
-    here, there = free.at(time_s), bodies.at(time_s)
+    here, there = (each(scene, 0.2).at(np.array([0.1, 0.2])) for each in (release, by_bodies))
     for name, link in here.links.items():
         assert np.abs(link.theta - there.links[name].theta).max() < 1e-10
 

@@ -1,5 +1,5 @@
-"""Free motion against a second method, by its energy, and of the mechanism turned, moved, mirrored,
-larger or faster."""
+"""Free motion against a second method, by its energy, of the mechanism turned, moved, mirrored,
+larger or faster; and of several freedoms, by all bodies."""
 
 from __future__ import annotations
 
@@ -11,16 +11,18 @@ from typing import Any
 import numpy as np
 import pytest
 
+from analytic.free.bodies_motion import BodiesMotion
 from analytic.free.formula_change import FormulaChange
 from analytic.free.free_motion import FreeMotion
 from analytic.free.machine import Machine
+from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
 from analytic.free.window import WindowSolution
 from analytic.free.window_kinks import WindowKinks
-from analytic.kinematics import reach, solve
-from analytic.multibody.release_multibody import release_multibody
+from analytic.kinematics import reach
+from analytic.multibody.multibody_motion import Projection
 from models.characteristics import Constant
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, StructureError
 from models.files import load_scene, parse_scene
 from models.friction import ConstantFriction, CoulombFriction
 from models.loads import Load
@@ -32,6 +34,8 @@ from models.tabulated import Tabulated
 from models.waves import Pulse
 from tests.analytic.free.mechanisms import fourbar, past_limits, released, slider_crank
 from tests.analytic.free.second_method import driver_by_steps
+from tests.analytic.multibody.scenes import DOUBLE_PENDULUM, by_bodies
+from tests.analytic.multibody.scenes import scene as parsed
 from tests.worlds.let_go import EVERYTHING
 from tests.worlds.loading import massless
 from tests.worlds.other_way import MOVES, faster
@@ -144,11 +148,9 @@ def test_where_a_stroke_lets_it_go_both_ways_it_goes_where_it_is_pushed_without(
     scene = slider_crank()
     push = Load("push", "block C", "C", Constant(100.0), "time", "C", "forward")
     assert release(scene, 0.05).at(np.array([0.05])).sliders["C"].speed[0] < 0.0
-    free = release(replace(scene, loads={"push": push}), 0.05)
-    at = free.at(np.array([0.05]))
+    pushed = replace(scene, loads={"push": push})
+    at, bodies = (let_go(pushed, 0.05).at(np.array([0.05])) for let_go in (release, by_bodies))
     assert at.sliders["C"].speed[0] < 0.0
-    near = solve(scene, np.zeros(1), bound=False).state()
-    bodies = release_multibody(free.scene, 0.05, near=near).at(at.time_s)
     assert bodies.links["crank"].theta[0] == pytest.approx(at.links["crank"].theta[0], abs=1e-11)
 
 
@@ -303,3 +305,71 @@ def test_the_free_motion_of_the_moved_scene_is_the_moved_motion(
     largest = float(np.max(energy.kinetic))
     assert np.all(np.abs(again.kinetic / gain - energy.kinetic) <= 10.0 * largest * off)
     assert np.all(np.abs(again.work / gain - energy.work) <= 10.0 * largest * off)
+
+
+@pytest.fixture(scope="module", params=[0.15, slowly(0.3, reason="errors that grow with time")])
+def pendulum(request: pytest.FixtureRequest) -> FreeMotion:
+    return release(parsed(DOUBLE_PENDULUM), request.param)
+
+
+def test_several_freedoms_go_by_all_bodies_and_one_by_its_driver(pendulum: FreeMotion) -> None:
+    assert isinstance(pendulum, BodiesMotion)
+    assert (pendulum.freedoms, pendulum.by_dyads, pendulum.passages) == (2, False, ())
+    assert isinstance(release(load_scene("fourbar-chain"), 0.01), MachineMotion)
+    energy = pendulum.energy(np.linspace(0.0, pendulum.until_s, 31))
+    assert np.ptp(energy.balance) < 1e-11 * energy.kinetic.max()
+
+
+def test_beside_a_run_both_its_angles_stay_and_its_pins_are_closed(pendulum: FreeMotion) -> None:
+    """Its lower rod is turned, and its pins are open."""
+    run = pendulum.at(np.linspace(0.0, pendulum.until_s, 7))
+    run.links["lower"].theta[:] += 0.2
+    run.points["C"].position[:] += 1e-3
+    beside = pendulum.beside(run)
+    for name, link in run.links.items():
+        assert np.abs(beside.links[name].theta - link.theta).max() < 1e-14
+    theta = [run.links[name].theta for name in ("upper", "lower")]
+    x = 0.3 * np.cos(theta[0]) + 0.2 * np.cos(theta[1])
+    assert np.abs(beside.points["C"].position[:, 0] - x).max() < 1e-14
+
+
+def test_beside_a_run_with_nothing_there_is_nothing(pendulum: FreeMotion) -> None:
+    run = pendulum.at(np.linspace(0.0, pendulum.until_s, 3))
+    run.links["lower"].theta[1] = math.nan
+    found = pendulum.beside(run).points["C"].position
+    assert np.isnan(found[1]).all()
+    assert np.isfinite(found[[0, 2]]).all()
+
+
+def test_what_leads_to_the_start_of_several_freedoms_goes_on(
+    pendulum: FreeMotion,
+) -> None:
+    h = 1e-3
+    before = pendulum.outside(np.array([-h])).links
+    after = pendulum.at(np.array([0.0, h])).links
+    for name, link in after.items():
+        second = (before[name].theta[0] - 2.0 * link.theta[0] + link.theta[1]) / h**2
+        assert second == pytest.approx(link.alpha[0], rel=1e-3)
+        # A central difference is off by the third derivative, some 1e4 rad/s^4.
+        steady = (link.omega[1] - before[name].omega[0]) / (2.0 * h)
+        assert steady == pytest.approx(link.alpha[0], abs=1e-2)
+
+
+def test_the_error_of_several_freedoms_covers_a_coarser_motion(
+    pendulum: FreeMotion,
+) -> None:
+    assert isinstance(pendulum, BodiesMotion)
+    rough = BodiesMotion(replace(pendulum.bodies, method=Projection(1e-10)))
+    time_s = np.linspace(0.0, pendulum.until_s, 31)
+    own, other = rough.at(time_s), pendulum.at(time_s)
+    for name, link in own.links.items():
+        off = np.abs(link.theta - other.links[name].theta)
+        assert np.all(off <= own.bound.links[name].theta)
+        assert np.all(own.bound.links[name].theta <= rough.error_rad(time_s))
+    assert float(pendulum.error_rad(time_s).max()) < 1e-10
+
+
+def test_several_freedoms_that_can_not_be_let_go_are_told_both_ways() -> None:
+    unnamed = DOUBLE_PENDULUM.split("[start]")[0]
+    with pytest.raises(StructureError, match=r"mobility W = .* lower start is not named"):
+        release(parsed(unnamed.replace("speed_rad_s = 1.0", "")), 0.1)
