@@ -17,7 +17,7 @@ from models.errors import EngineError
 from models.files import load_scene, shipped
 from models.scene import GROUND, Scene
 from models.spring_ends import line_ends, whole_turns
-from models.springs import LineSpring, PinSpring, SlideSpring, Spring
+from models.springs import LineSpring, PinSpring, SlideSpring
 from models.tree import plan
 from sim.check import refuse_other_model
 from sim.energy import energy
@@ -25,6 +25,7 @@ from sim.engine import Poses
 from sim.measure import gaps, motion
 from sim.spring_lengths import spring_lengths
 from sim.tree_poses import body_poses
+from tests.worlds.runs import acted_on, start_of
 
 
 def exact(scene: Scene, fake_engine: ModuleType, samples: int = 97) -> Poses:
@@ -158,11 +159,7 @@ def test_velocities_that_lag_are_those_of_their_own_instant(
 DT_S = 1e-3
 
 
-def with_springs(scene: Scene, *springs: Spring) -> Scene:
-    return replace(scene, springs={spring.name: spring for spring in springs})
-
-
-FOURBAR = with_springs(
+FOURBAR = acted_on(
     load_scene("fourbar-lecture-1"),
     LineSpring("across", 100.0, 1.0, 0.05, ("A", "C")),
     LineSpring("diagonal", 10.0, 0.0, 0.0, ("B", "D")),
@@ -170,18 +167,18 @@ FOURBAR = with_springs(
     PinSpring("crank", 0.1, 0.0, 0.0, "A", (GROUND, "crank")),
 )
 SLIDERS = (
-    with_springs(
+    acted_on(
         load_scene("slider-crank-offset"),
         SlideSpring("along", 300.0, 3.0, 0.1, "C"),
         LineSpring("block", 20.0, 0.0, 0.0, ("C", "A")),
     ),
-    with_springs(
+    acted_on(
         load_scene("slider-crank-excel-210"),  # a block without mass
         SlideSpring("along", 300.0, 3.0, 0.1, "C"),
         LineSpring("pin", 20.0, 0.0, 0.0, ("C", "A")),
     ),
-    with_springs(load_scene("slotted-lever"), SlideSpring("along", 300.0, 3.0, 0.1, "B")),
-    with_springs(load_scene("shaper"), SlideSpring("ram", 300.0, 3.0, 0.1, "F")),
+    acted_on(load_scene("slotted-lever"), SlideSpring("along", 300.0, 3.0, 0.1, "B")),
+    acted_on(load_scene("shaper"), SlideSpring("ram", 300.0, 3.0, 0.1, "F")),
 )
 """Springs along lines of the ground and of a link, of blocks with and without mass, of a link."""
 
@@ -237,7 +234,7 @@ def test_springs_add_what_they_keep_at_the_instants_of_the_velocities(
 
 def test_what_the_engine_holds_of_a_spring_is_held_to_the_scene(fake_engine: ModuleType) -> None:
     fake = fake_engine.FakeEngine(solve)
-    state = solve(FOURBAR, np.zeros(1)).state()
+    state = start_of(FOURBAR)
     facts = fake.open(FOURBAR, state, {}, DT_S, "prescribed").facts()
     refuse_other_model(FOURBAR, state, facts, DT_S, "prescribed")
     own = dict(facts.springs)
@@ -268,7 +265,7 @@ def test_the_end_of_a_spring_is_on_a_body_that_carries_its_point() -> None:
 
 def test_coordinates_beyond_numbers_are_a_run_that_came_apart_and_no_warning() -> None:
     scene = load_scene("slider-crank-offset")
-    start = solve(scene, np.array([0.0])).state(0)
+    start = start_of(scene)
     limbs = plan(scene, start).limbs
     q = np.full((2, sum(len(limb.freedoms) for limb in limbs)), 1e300)
     found = body_poses(limbs, q, q, q)

@@ -11,20 +11,19 @@ import numpy as np
 import pytest
 
 from analytic.forces.kinetostatics import forces
-from analytic.kinematics import solve
 from models.array import Array
 from models.characteristics import Constant, Sine
 from models.files import load_scene
 from models.forces import Forces
-from models.friction import ConstantFriction
 from models.hard import double_parallelogram
 from models.loads import Load
 from models.scene import Scene
+from reports.contract.subject import numbers
 from sim.engine import Drive, Run
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.spoiler import SPOILER
 from sim.run import run
-from sim.settings import resolved
+from tests.worlds.runs import acted_on, opened, ran, rubbing, start_of
 
 START = 4
 """The samples that the start takes: of the first there are no forces, in the next two the joints
@@ -32,9 +31,7 @@ make up for half a step, and in one more for what that has left of places."""
 
 
 def of_a_turn(scene: Scene, steps: int, **given: object) -> Run:
-    period = scene.driver.law.period_s
-    state = solve(scene, np.zeros(1)).state()
-    return run(scene, state, ENGINE, dt_s=period / steps, steps=steps, with_forces=True, **given)  # type: ignore[arg-type]
+    return ran(scene, ENGINE, per_turn=steps, with_forces=True, **given)
 
 
 def errors(scene: Scene, steps: int) -> dict[str, float]:
@@ -87,17 +84,13 @@ def test_forces_are_the_reference_s_to_the_second_order(name: str) -> None:
 
 def test_the_motion_is_that_of_a_run_without_forces_to_the_bit() -> None:
     scene = load_scene("slider-crank-offset")
-    state = solve(scene, np.zeros(1)).state()
-    for drive in ("prescribed", "servo", "free"):
-        settings = resolved(ENGINE.profiles["tuned"], None)
-        one, other = (ENGINE.open(scene, state, settings, 1e-3, drive) for _ in range(2))
+    for drive in ("servo", "free"):
+        one, other = (opened(scene, ENGINE, dt_s=1e-3, drive=drive) for _ in range(2))
         for every in (3, 1):
             told, alone = other.record_forces(10, every), one.record(10, every)
             assert alone.forces is None
             np.testing.assert_array_equal(told.forces.time_s, told.poses.time_s)
-            for name, pose in alone.poses.bodies.items():
-                for key, series in vars(pose).items():
-                    np.testing.assert_array_equal(vars(told.poses.bodies[name])[key], series)
+            np.testing.assert_array_equal(numbers(told.poses), numbers(alone.poses))
 
 
 def test_no_step_leads_to_the_first_sample_and_it_has_no_forces() -> None:
@@ -105,9 +98,7 @@ def test_no_step_leads_to_the_first_sample_and_it_has_no_forces() -> None:
     assert np.isnan(found.torque[0])
     assert np.isfinite(found.torque[1:]).all()
     assert np.isnan(found.pins["C"]["rocker"][0]).all()
-    scene = load_scene("fourbar-lecture-1")
-    state = solve(scene, np.zeros(1)).state()
-    session = ENGINE.open(scene, state, resolved(ENGINE.profiles["tuned"], None), 1e-3, "servo")
+    session = opened(load_scene("fourbar-lecture-1"), ENGINE, dt_s=1e-3, drive="servo")
     log = session.record_forces(5, 10)  # no step is logged
     np.testing.assert_array_equal(log.forces.torque, [np.nan])
     SPOILER.lose(session)
@@ -118,18 +109,16 @@ def test_no_step_leads_to_the_first_sample_and_it_has_no_forces() -> None:
 @pytest.mark.parametrize("name", ["sixbar-watt", "shaper", "scotch-yoke"])
 def test_momentum_says_of_every_joint_what_its_impulse_does(name: str, drive: Drive) -> None:
     """Converged or not: iterations change what the joints bear, not what they did."""
-    result = of_a_turn(load_scene(name), 180, drive=drive, settings={"iterations": 5})
+    given = {"settings": {"iterations": 5}, "well": False}
+    result = of_a_turn(load_scene(name), 180, drive=drive, **given)
     assert result.motion.forces.contradictions == ()
     if drive == "free":
         assert not result.motion.forces.torque[1:].any()
 
 
 def test_an_impulse_that_momentum_does_not_confirm_is_said() -> None:
-    scene = load_scene("fourbar-lecture-1")
-    state = solve(scene, np.zeros(1)).state()
-    session = ENGINE.open(scene, state, resolved(ENGINE.profiles["tuned"], None), 1e-3, "servo")
-    whole = session.record_forces(20, 1).forces
-    assert whole.contradictions == ()
+    session = opened(load_scene("fourbar-lecture-1"), ENGINE, dt_s=1e-3, drive="servo")
+    assert session.record_forces(20, 1).forces.contradictions == ()
     SPOILER.slip(session, 0.01)
     slipped = session.record_forces(20, 1).forces
     said = "; ".join(slipped.contradictions)
@@ -140,8 +129,7 @@ def test_an_impulse_that_momentum_does_not_confirm_is_said() -> None:
 def test_of_redundant_links_the_torque_alone_is_given() -> None:
     scene = double_parallelogram("double-parallelogram", source="test")
     scene = replace(scene, gravity_m_s2=(0.0, -9.81))
-    state = solve(scene, np.zeros(1)).state()
-    found = run(scene, state, ENGINE, dt_s=1e-3, steps=200, with_forces=True).motion.forces
+    found = ran(scene, ENGINE, dt_s=1e-3, steps=200, with_forces=True).motion.forces
     exact = forces(scene, found.time_s, bound=False)
     assert not found.pins
     assert "redundant links" in found.undetermined
@@ -150,7 +138,7 @@ def test_of_redundant_links_the_torque_alone_is_given() -> None:
 
 
 def loaded(name: str, *loads: Load) -> Scene:
-    return replace(load_scene(name), loads={load.name: load for load in loads})
+    return acted_on(load_scene(name), *loads)
 
 
 TURN = Sine(2.0, math.tau, 0.3)
@@ -191,10 +179,9 @@ def test_a_load_of_a_stroke_acts_on_that_stroke() -> None:
 
 def test_loads_move_a_free_mechanism_and_not_a_driven_one() -> None:
     pushed = LOADED["over the crank's angle, and on the crank"]
-    state = solve(pushed, np.zeros(1)).state()
     for drive in ("prescribed", "free"):
         moved, alone = (
-            run(scene, state, ENGINE, dt_s=1e-3, steps=50, drive=drive).motion  # type: ignore[arg-type]
+            ran(scene, ENGINE, dt_s=1e-3, steps=50, drive=drive).motion
             for scene in (pushed, replace(pushed, loads={}))
         )
         apart = np.abs(moved.links["crank"].theta - alone.links["crank"].theta).max()
@@ -207,11 +194,6 @@ def renamed(name: str, slider: str) -> Scene:
     ((old, only),) = scene.sliders.items()
     branch = {slider if key == old else key: sign for key, sign in scene.branch.items()}
     return replace(scene, sliders={slider: replace(only, name=slider)}, branch=branch)
-
-
-def rubbing(scene: Scene, **sizes: float) -> Scene:
-    friction = {joint: ConstantFriction(joint, size) for joint, size in sizes.items()}
-    return replace(scene, friction=friction)
 
 
 RUBBING = {
@@ -241,9 +223,9 @@ def test_friction_of_a_pin_brings_a_free_mechanism_to_rest_and_that_of_a_slider_
     None
 ):
     scene = rubbing(load_scene("slider-crank-offset"), B=5.0)
-    state = solve(scene, np.zeros(1)).state()
-    result = run(scene, state, ENGINE, dt_s=1e-3, steps=1000, drive="free")
+    state, given = start_of(scene), {"dt_s": 1e-3, "drive": "free"}
+    result = run(scene, state, ENGINE, steps=1000, **given)
     assert np.abs(result.motion.links["crank"].omega[-100:]).max() < 1e-6
-    refused = run(rubbing(scene, C=1.0), state, ENGINE, dt_s=1e-3, steps=10, drive="free")
+    refused = run(rubbing(scene, C=1.0), state, ENGINE, steps=10, **given)
     assert refused.status == "unsupported"
     assert "friction.C: pymunk has no friction that holds a slider at rest" in refused.reason

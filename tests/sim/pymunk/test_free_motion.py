@@ -27,7 +27,7 @@ from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from models.staircase import Staircase
 from models.tabulated import Tabulated
 from models.window_chain import Chain
-from sim.engine import Run, Settings
+from sim.engine import Run
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.force_recipe import FORCE_RECIPE
 from sim.pymunk.snippet import SNIPPET
@@ -36,6 +36,7 @@ from sim.settings import resolved
 from sim.snippets import Stepping
 from tests.sim.pymunk.test_forces import START
 from tests.worlds.let_go import released
+from tests.worlds.runs import acted_on, opened, ran
 from tests.worlds.tiers import slowly
 
 INERTIA = 1.0 / 3.0
@@ -45,13 +46,8 @@ INERTIA = 1.0 / 3.0
 def rod(*loads: Load, springs: tuple[Spring, ...] = ()) -> Scene:
     """One rod on a pin, without weight, let go at an angle of 0."""
     bare = Chain(0, gravity_m_s2=0.0).scene()
-    driver = Driver("rocker0", Released(0.0, 0.0, 1.0))
-    return replace(
-        bare,
-        driver=driver,
-        loads={load.name: load for load in loads},
-        springs={spring.name: spring for spring in springs},
-    )
+    still = replace(bare, driver=Driver("rocker0", Released(0.0, 0.0, 1.0)))
+    return acted_on(still, *loads, *springs)
 
 
 def start(scene: Scene, alpha: float) -> State:
@@ -62,10 +58,8 @@ def start(scene: Scene, alpha: float) -> State:
 
 
 def let_go(scene: Scene, alpha: float, dt_s: float, until_s: float = 1.0, **given: Any) -> Run:
-    steps = round(until_s / dt_s)
-    result = run(scene, start(scene, alpha), ENGINE, dt_s=dt_s, steps=steps, drive="free", **given)
-    assert (result.status, result.reason) == ("ok", "")
-    return result
+    given |= {"dt_s": dt_s, "steps": round(until_s / dt_s), "drive": "free"}
+    return ran(scene, ENGINE, start=start(scene, alpha), **given)
 
 
 def angle(result: Run) -> Array:
@@ -155,18 +149,14 @@ def cranking(*springs: Spring, name: str = "slider-crank-offset") -> Scene:
     """A slider-crank without weight, let go at 1 rad with 2 rad/s."""
     scene = load_scene(name)
     driver = Driver(scene.driver.link, Released(1.0, 2.0, 1.0))
-    own = {spring.name: spring for spring in springs}
-    return replace(scene, driver=driver, gravity_m_s2=(0.0, 0.0), springs=own)
+    return acted_on(replace(scene, driver=driver, gravity_m_s2=(0.0, 0.0)), *springs)
 
 
 def off_by(scene: Scene, dt_s: float, **settings: str) -> float:
     """The largest error of the crank's angle in 0.2 s [rad]."""
     motion = release(scene, 0.2)
-    state = motion.at(np.zeros(1), bound=False).state()
-    result = run(
-        scene, state, ENGINE, dt_s=dt_s, steps=round(0.2 / dt_s), drive="free", settings=settings
-    )
-    assert (result.status, result.reason) == ("ok", "")
+    given = {"dt_s": dt_s, "steps": round(0.2 / dt_s), "drive": "free", "settings": settings}
+    result = ran(scene, ENGINE, start=motion.at(np.zeros(1), bound=False).state(), **given)
     exact = motion.at(result.motion.time_s, bound=False).links["crank"].theta
     return float(np.abs(angle(result) - exact).max())
 
@@ -185,10 +175,9 @@ def test_springs_of_every_kind_keep_the_order_of_the_step(name: str) -> None:
 
 def test_springs_without_dampers_are_pymunk_s_own_to_rounding() -> None:
     scene = cranking(*(replace(one, damping=0.0) for one in (ALONG, ACROSS, KNEE)))
-    settings = resolved(ENGINE.profiles["tuned"], None)
-    state, ends = released(scene)[0], []
+    given, ends = {"start": released(scene)[0], "dt_s": 1e-3, "drive": "free"}, []
     for springs in ("forces", "native"):
-        session = ENGINE.open(scene, state, {**settings, "springs": springs}, 1e-3, "free")
+        session = opened(scene, ENGINE, {"springs": springs}, **given)
         told = session.facts().springs
         assert told == {
             name: pytest.approx((spring.rate, 0.0, spring.free), abs=1e-12)
@@ -203,17 +192,8 @@ def test_springs_without_dampers_are_pymunk_s_own_to_rounding() -> None:
 def test_springs_are_no_part_of_what_joints_bear(name: str, springs: str) -> None:
     """Nor of the torque of a drive that is not there."""
     scene = cranking(ALONG, ACROSS, KNEE, name=name)
-    state = released(scene)[0]
-    found = run(
-        scene,
-        state,
-        ENGINE,
-        dt_s=1e-3,
-        steps=100,
-        drive="free",
-        with_forces=True,
-        settings={"springs": springs},
-    ).motion
+    given = {"dt_s": 1e-3, "steps": 100, "drive": "free", "settings": {"springs": springs}}
+    found = ran(scene, ENGINE, start=released(scene)[0], with_forces=True, **given).motion
     assert found.forces.contradictions == ()
     assert not found.forces.torque[1:].any()
 
@@ -230,21 +210,10 @@ SLIDING = {
 def test_a_driven_mechanism_takes_its_springs_with_it(name: str) -> None:
     """The torque of the drive is what the power of springs asks for, either way."""
     scene = replace(load_scene(name), springs={"one": replace(SLIDING[name], name="one")})
-    period_s = scene.driver.law.period_s
-    state = solve(scene, np.zeros(1)).state()
-    told = [
-        run(
-            scene,
-            state,
-            ENGINE,
-            dt_s=period_s / 720,
-            steps=720,
-            with_forces=True,
-            settings={"springs": springs},
-        )
+    forces, native = (
+        ran(scene, ENGINE, with_forces=True, settings={"springs": springs}).motion.forces
         for springs in ("forces", "native")
-    ]
-    forces, native = (one.motion.forces for one in told if one.motion is not None)
+    )
     assert forces.contradictions == native.contradictions == ()
     exact = power(scene, forces.time_s)
     size = np.abs(exact).max()
@@ -302,11 +271,8 @@ def test_the_force_recipe_refuses_springs_and_free_motion() -> None:
 def off(name: str, dt_s: float, paths: str) -> float:
     """How far pins are open, over the longest link, after the first steps of half a second."""
     scene = load_scene(name)
-    start = solve(scene, np.zeros(1)).state()
-    steps = round(0.5 / dt_s)
-    own: Settings = {"free_paths": paths}
-    done = run(scene, start, "pymunk", "tuned", dt_s=dt_s, steps=steps, drive="free", settings=own)
-    assert done.status == "ok", done.reason
+    given = {"dt_s": dt_s, "steps": round(0.5 / dt_s), "settings": {"free_paths": paths}}
+    done = ran(scene, "pymunk", drive="free", **given)
     return max(float(np.max(gap[8:])) for gap in done.gaps.values()) / scene.longest_m
 
 
@@ -323,12 +289,9 @@ def test_a_driven_pin_of_two_moving_links_converges_as_its_profile_does(
     profile: str, order: float
 ) -> None:
     scene = load_scene("fourbar-by-coupler")
-    start = solve(scene, np.zeros(1)).state()
     errors = []
     for steps in (720, 2880):
-        dt_s = scene.driver.law.period_s / steps
-        done = run(scene, start, "pymunk", profile, dt_s=dt_s, steps=2 * steps)
-        assert done.status == "ok", done.reason
+        done = ran(scene, "pymunk", profile, per_turn=steps, turns=2.0)
         true = solve(scene, done.motion.time_s, bound=False).links["rocker"].theta
         errors.append(float(np.max(np.abs(done.motion.links["rocker"].theta - true))))
     assert errors[0] < 1e-2
