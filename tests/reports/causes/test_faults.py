@@ -1,19 +1,32 @@
-"""Every fault is named with its channels, and nothing else is; healthy logs have none."""
+"""Every fault is named with its channels, and nothing else is; healthy logs have no cause, nor have
+logs of which nothing can be said. In logs of other mechanisms, of parts of what may be logged,
+sampled otherwise, nothing is told that is not so.
+
+A cause with the name of another fault is true as well where it leaves no more than the noise that
+the log had before: a line through the crank's pin that is turned, and a lever whose zero is, are
+one thing.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
-from itertools import cycle
+from itertools import cycle, product
 
 import numpy as np
 import pytest
 
+import crankcheck
+from analytic.kinematics import solve, solve_driven
 from models.files import load_scene
-from reports.causes import causes
+from reports.causes import Cause, causes
+from reports.logs.channel import Channel
+from reports.logs.kinds import KINDS as KINDS_OF
 from tests.reports.causes.conftest import CLEAR, FAULTS, SCENES, Diagnosed, Infected
+from tests.worlds import other_kinds
+from tests.worlds.other_kinds import KINDS, PARTS, SAMPLING, scene_of
 from tests.worlds.plantings import PLANTINGS
-from tests.worlds.sheets import sheet
-from tests.worlds.tiers import slow
+from tests.worlds.sheets import Sheet, sheet
+from tests.worlds.tiers import few, slow, slowly
 
 NONE = [name for name, each in PLANTINGS.items() if not each.names]
 MANY = 4
@@ -79,3 +92,125 @@ def test_the_names_of_many_faults_at_random_are_not_mistaken(
                 assert not found
     assert sum(right.values()) > 140
     assert right[False] <= MISSED * right[True]
+
+
+TEN = ("two_swapped", "another_unit", "another_sign", "one_late", "slow_clock", "another_assembly",
+       "another_length", "stuck_sample", "lost_turn", "low_passed")  # fmt: skip
+NOISE = 0.2
+"""What a cause may leave, over the limit, to be as good as the fault that was planted."""
+LIMIT = 1e-3
+ALSO = {"low_passed": ("smoothed",)}
+"""What a fault may be called as well."""
+TURN_ABOUT = list(zip(product(KINDS, ("healthy", *TEN)), cycle(PARTS), strict=False))
+"""Each fault in each kind, of the parts in turn. Each fifth is looked at at once: each fault in one
+kind or two."""
+
+
+def false(planted: Sheet, fault: str) -> list[str]:
+    """The causes that are told of a log, and are not so."""
+
+    def as_good(cause: Cause) -> bool:
+        of_cause = [planted.case.excerpts[column] for column in cause.columns]
+        return all(cause.left * np.max(np.abs(e.error)) <= NOISE * e.limit for e in of_cause)
+
+    names = (*PLANTINGS[fault].names, *ALSO.get(fault, ()))
+    found = causes(planted.case)
+    return [each.text for each in found if each.name not in names and not as_good(each)]
+
+
+@pytest.mark.parametrize("at", few(TURN_ABOUT, TURN_ABOUT[1::5], "the same fault in other kinds"))
+def test_nothing_false_is_told(at: tuple[tuple[str, str], str]) -> None:
+    (kind, fault), part = at
+    planted = other_kinds.infected(kind, fault, part, "plain", LIMIT)
+    if planted is None:
+        return  # no turn to be lost in a log of lengths, say
+    assert not false(planted, fault)
+    assert fault != "healthy" or not planted.case.out
+
+
+def test_a_delay_is_found_though_a_nudge_of_it_takes_the_last_sample_out_of_the_log() -> None:
+    scene = scene_of("parallel links")
+    time_s = np.arange(161) * scene.driver.law.period_s / 400.0
+    channels = {axis: Channel(axis, KINDS_OF["point", axis], "F", "m") for axis in ("x", "y")}
+    whole = Sheet(scene, time_s, channels, {}, dict.fromkeys(channels, 3e-4))
+    plain, delay_s = whole.of(solve(scene, time_s, bound=False)), -2.5 * whole.step_s
+    (cause,) = causes(plain.of(solve(scene, time_s + delay_s, bound=False), ["x"]).case)
+    assert cause.name == "delay"
+    assert cause.correction["delay_s"] == pytest.approx(delay_s, rel=1e-6)
+
+
+@slow("only here is each fault planted at coarse and at few samples")
+@pytest.mark.parametrize("sampling", [name for name in SAMPLING if name != "plain"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_nor_with_other_samples_and_other_limits(kind: str, sampling: str) -> None:
+    told, limits = [], cycle((1e-4, 1e-2))
+    faults = ("healthy", "noise", "wandering", *TEN)
+    each = product(faults, ("all", "without the crank"))
+    for (fault, part), limit in zip(each, limits, strict=False):
+        planted = other_kinds.infected(kind, fault, part, sampling, limit)
+        if planted is not None:
+            told += [f"{fault}, {part}, {limit}: {one}" for one in false(planted, fault)]
+    assert not told
+
+
+TIME_S = np.linspace(0.0, 0.6, 301)
+FOURBAR = "fourbar-lecture-1"
+ROCKER = solve(load_scene(FOURBAR), TIME_S).links["rocker"].theta
+
+
+def judged(column: str, values: object, scene: str = FOURBAR) -> crankcheck.LogVerdict:
+    return crankcheck.judge(scene, {"time_s": TIME_S[: len(values)], column: values}, target=1e-3)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("scene", "column"),
+    [
+        (FOURBAR, "rocker_omega_rad_s"),
+        (FOURBAR, "crank_deg"),
+        ("tangent", "lever_theta_rad"),
+        ("tangent", "sleeve_slider_speed_m_s"),
+        ("slotted-lever", "lever_alpha_rad_s2"),
+        ("sixbar-watt", "C_vx_m_s"),
+    ],
+)
+@pytest.mark.parametrize("value", [slowly(0.0, reason="as without power; its mean is 0"), 37.3])
+def test_a_sensor_that_stands_still_is_out_and_said_to_stand(
+    scene: str, column: str, value: float
+) -> None:
+    one = judged(column, np.full(TIME_S.size, value), scene)
+    assert one.verdict == "out"
+    assert [cause.name for cause in one.causes] == ["stuck"]
+
+
+NOISE = {f"{n} rows": ("rocker_deg", np.random.default_rng(n).normal(size=n)) for n in (2, 3, 7)}
+NOTHING = {
+    **NOISE,
+    "a gap": ("C_gap_mm", np.full(TIME_S.size, 5.0)),
+    "noise": ("rocker_rad", ROCKER + 0.01 * np.random.default_rng(1).normal(size=TIME_S.size)),
+}
+
+
+@pytest.mark.parametrize("case", NOTHING)
+def test_of_a_gap_of_a_few_rows_and_of_noise_nothing_is_said(case: str) -> None:
+    one = judged(*NOTHING[case])
+    assert (one.verdict, one.causes) == ("out", ())
+
+
+def test_another_start_and_another_speed_are_both_told() -> None:
+    crank = 10.05 * TIME_S + 0.3
+    rocker = solve_driven(load_scene(FOURBAR), crank, 10.05, 0.0).links["rocker"].theta
+    log = {"time_s": TIME_S, "crank_rad": crank, "rocker_rad": rocker}
+    (cause,) = crankcheck.judge(FOURBAR, log, target=1e-3).causes
+    assert "10.05 rad/s, not 10 rad/s" in cause.text
+    assert cause.left < 1e-6
+
+
+@pytest.mark.parametrize("shift", [12, -12, 40])
+@pytest.mark.parametrize("ends", ["held", "from the other end"])
+def test_a_delay_is_one_whatever_stands_where_it_had_no_readings(shift: int, ends: str) -> None:
+    places = np.arange(TIME_S.size) - shift
+    late = ROCKER[np.clip(places, 0, TIME_S.size - 1) if ends == "held" else places % TIME_S.size]
+    (cause,) = judged("rocker_rad", late).causes
+    assert cause.name == "delay"
+    assert f"{abs(shift)}.00 samples" in cause.text or f" {abs(shift)}.0 samples" in cause.text
+    assert ("earlier" if shift > 0 else "later") in cause.text

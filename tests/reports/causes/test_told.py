@@ -5,7 +5,7 @@ from __future__ import annotations
 import cProfile
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -17,7 +17,7 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.files import load_scene
 from models.motion import Motion
-from reports.causes import Case, causes
+from reports.causes import Case, Cause, causes
 from reports.causes.words import change
 from reports.compare.beside import Truth
 from reports.logs.beside_truth import AtCrank
@@ -25,9 +25,13 @@ from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.kinds import KINDS
 from reports.logs.units import UNITS
 from tests.reports.causes.conftest import Diagnosed
-from tests.worlds.fourbar_sheets import SCENE, angle, of, omega, only
+from tests.worlds.fourbar_sheets import SCENE, angle, at, later, of, omega, only
 from tests.worlds.sheets import sheet
 from tests.worlds.tiers import slowly
+
+PLAIN = of(angle("rocker"), angle("coupler"))
+ANGLE = PLAIN.values["rocker_a"]
+FOUR = of(angle("rocker"), angle("coupler"), omega("rocker"), omega("coupler"))
 
 
 def mended(case: Case, column: str, correction: Mapping[str, object]) -> float:
@@ -71,9 +75,7 @@ def test_what_is_to_be_written_in_the_map_mends_the_log(fault: str, diagnosed: D
 
 def test_a_delay_is_told_in_samples_and_seconds_and_for_all_that_share_it() -> None:
     plain = of(angle("rocker"), angle("coupler"), omega("rocker"), omega("coupler"), omega("crank"))
-    early = plain.of(solve(SCENE, plain.time_s - 0.5 * plain.step_s, bound=False))
-    late = plain.put({c: early.values[c] for c in ("rocker_w", "coupler_w", "crank_w")})
-    cause = only(late)
+    cause = only(later(plain, -0.5, "rocker_w", "coupler_w", "crank_w"))
     assert cause.name == "delay"
     assert cause.columns == ("rocker_w", "coupler_w")
     assert "belong 0.50 samples (2.62 ms) earlier" in cause.text
@@ -82,13 +84,13 @@ def test_a_delay_is_told_in_samples_and_seconds_and_for_all_that_share_it() -> N
 
 def test_a_delay_comes_on_top_of_the_one_that_the_map_says() -> None:
     plain = of(omega("rocker", delay_s=0.01), angle("coupler"))
-    late = plain.of(solve(SCENE, plain.time_s + 0.004, bound=False), ["rocker_w"])
+    late = at(plain, plain.time_s + 0.004, "rocker_w")
     assert only(late).correction["delay_s"] == pytest.approx(0.014, rel=1e-6)
 
 
 def test_a_late_channel_within_its_limit_is_told_of_too() -> None:
     plain = of(angle("rocker"), omega("rocker"), omega("coupler"))
-    late = plain.of(solve(SCENE, plain.time_s - 0.5 * plain.step_s, bound=False), ["rocker_w"])
+    late = later(plain, -0.5, "rocker_w")
     wide = replace(late, limits=dict.fromkeys(late.limits, 10.0))
     assert not wide.case.out
     assert only(wide).columns == ("rocker_w",)
@@ -102,16 +104,15 @@ def test_a_channel_whose_last_digit_is_all_that_is_off_is_not_late() -> None:
 
 
 def test_readings_that_are_off_by_a_part_of_the_last_digit_are_rounded_all_the_same() -> None:
-    plain = of(angle("rocker"), angle("coupler"))
-    off = 2.5e-5 * np.sin(1e3 * plain.time_s)
-    rounded = plain.put({"rocker_a": np.round(plain.values["rocker_a"] + off, 4)})
+    off = 2.5e-5 * np.sin(1e3 * PLAIN.time_s)
+    rounded = PLAIN.put({"rocker_a": np.round(ANGLE + off, 4)})
     cause = only(replace(rounded, limits=dict.fromkeys(rounded.limits, 3e-5)))
     assert "(column rocker_a) is rounded to 4 decimals (rad)" in cause.text
 
 
 def test_all_that_is_late_is_a_start_elsewhere() -> None:
     plain = of(angle("rocker"), angle("crank"), omega("rocker"))
-    cause = only(plain.of(solve(SCENE, plain.time_s + 0.01, bound=False)))
+    cause = only(at(plain, plain.time_s + 0.01))
     assert cause.name == "start"
     assert "or the driver starts at 95.73 deg, not at 90 deg" in cause.text
 
@@ -120,23 +121,20 @@ def test_where_nothing_tells_a_delay_from_a_zero_both_are_told() -> None:
     plain = of(angle("crank"), angle("rocker"))
     cause = only(plain.put({"crank_a": plain.values["crank_a"] - 0.05}))
     assert cause.name == "offset"
-    assert "is off by -0.05 rad all along, as if it belonged 0.95 samples (5.00 ms) earlier" in (
-        cause.text
-    )
+    told = "is off by -0.05 rad all along, as if it belonged 0.95 samples (5.00 ms) earlier"
+    assert told in cause.text
 
 
 def test_rates_tell_a_slow_clock_from_a_fast_driver() -> None:
     plain = of(angle("rocker"), angle("crank"), omega("rocker"), omega("crank"))
-    slow = solve(SCENE, 1.002 * plain.time_s, bound=False)
-    places = plain.of(slow, ["rocker_a", "crank_a"])
-    clock = only(plain.of(slow))
-    assert "the clock of the log runs 0.2 % slow; the rates say" in clock.text
+    slow = at(plain, 1.002 * plain.time_s)
+    assert "the clock of the log runs 0.2 % slow; the rates say" in only(slow).text
     law = replace(SCENE.driver.law, speed_rad_s=10.02)
     fast = replace(SCENE, driver=replace(SCENE.driver, law=law))
     driver = only(plain.of(solve(fast, plain.time_s, bound=False)))
     assert driver.text.startswith("the driver turns 0.2 % fast (10.02 rad/s, not 10 rad/s), or")
-    alone = {c: places.channels[c] for c in ("rocker_a", "crank_a")}
-    both = only(replace(places, channels=alone, limits=dict.fromkeys(alone, 0.001)))
+    alone = {c: slow.channels[c] for c in ("rocker_a", "crank_a")}
+    both = only(replace(slow, channels=alone, limits=dict.fromkeys(alone, 0.001)))
     assert "clock of the log runs 0.2 % slow, or the driver turns 0.2 % fast" in both.text
 
 
@@ -168,9 +166,8 @@ def test_the_words_of_a_cause(fault: str, words: str, diagnosed: Diagnosed) -> N
 def test_a_unit_of_time_is_told_with_its_column() -> None:
     plain = of(angle("rocker"), omega("rocker"))
     cause = only(replace(plain, time_s=1000.0 * plain.time_s, stamp=("tick", "s")))
-    assert cause.text == (
-        'the times (column tick) are in ms, not in s: unit = "ms" under [time] of the map'
-    )
+    told = 'the times (column tick) are in ms, not in s: unit = "ms" under [time] of the map'
+    assert cause.text == told
 
 
 @pytest.mark.parametrize(
@@ -186,7 +183,7 @@ def test_a_length_is_told_with_its_number_in_the_scene() -> None:
     longer = replace(link, points={**link.points, "C": (0.2525, 0.0)})
     other = replace(SCENE, links={**SCENE.links, "coupler": longer})
     cause = only(plain.of(solve(other, plain.time_s, bound=False)))
-    assert cause.text == ("length BC of coupler is 0.2525 m in the log, 0.25 m in the scene (+1 %)")
+    assert cause.text == "length BC of coupler is 0.2525 m in the log, 0.25 m in the scene (+1 %)"
 
 
 def test_a_log_that_goes_over_to_the_other_assembly_says_when() -> None:
@@ -200,10 +197,13 @@ def test_a_log_that_goes_over_to_the_other_assembly_says_when() -> None:
 
 
 def test_single_precision_is_told() -> None:
-    plain = of(angle("rocker"), angle("coupler"))
-    coarse = plain.put({"rocker_a": plain.values["rocker_a"].astype(np.float32).astype(float)})
+    coarse = PLAIN.put({"rocker_a": ANGLE.astype(np.float32).astype(float)})
     tight = replace(coarse, limits={"rocker_a": 1e-9, "coupler_a": 1e-9})
     assert only(tight).name == "float32"
+
+
+def by_name(found: Iterable[Cause]) -> dict[str, tuple[str, ...]]:
+    return {cause.name: cause.columns for cause in found}
 
 
 def test_two_faults_in_different_channels_are_each_named() -> None:
@@ -213,28 +213,21 @@ def test_two_faults_in_different_channels_are_each_named() -> None:
     stuck = plain.values[second].copy()
     stuck[100:130] = stuck[99]
     found = causes(plain.put({first: -plain.values[first], second: stuck}).case)
-    assert {cause.name: cause.columns for cause in found} == {
-        "sign": (first,),
-        "stuck": (second,),
-    }
+    assert by_name(found) == {"sign": (first,), "stuck": (second,)}
 
 
 def test_a_fault_of_the_log_and_one_of_a_channel_are_each_named() -> None:
-    plain = of(angle("rocker"), angle("coupler"), omega("rocker"), omega("coupler"))
-    slow = plain.of(solve(SCENE, 1.01 * plain.time_s, bound=False))
+    slow = at(FOUR, 1.01 * FOUR.time_s)
     wrong = slow.put({"coupler_a": -slow.values["coupler_a"]})
-    assert {cause.name: cause.columns for cause in causes(wrong.case)} == {
-        "drift": ("rocker_a", "rocker_w", "coupler_w"),
-        "sign": ("coupler_a",),
-    }
+    told = {"drift": ("rocker_a", "rocker_w", "coupler_w"), "sign": ("coupler_a",)}
+    assert by_name(causes(wrong.case)) == told
 
 
 def test_a_sample_that_sticks_in_a_log_that_is_late_is_named_too() -> None:
-    plain = of(angle("rocker"), angle("coupler"), omega("rocker"), omega("coupler"))
-    late = plain.of(solve(SCENE, plain.time_s + 0.3, bound=False))
+    late = at(FOUR, FOUR.time_s + 0.3)
     stuck = late.values["rocker_a"].copy()
     stuck[100:105] = stuck[99]
-    found = {cause.name: cause.columns for cause in causes(late.put({"rocker_a": stuck}).case)}
+    found = by_name(causes(late.put({"rocker_a": stuck}).case))
     assert found["stuck"] == ("rocker_a",)
     assert "rocker_a" in found["start"]
 
@@ -244,16 +237,13 @@ def test_causes_are_found_of_the_geometry_at_the_logged_crank() -> None:
     crank = plain.values["crank_a"] + 0.2 * np.sin(plain.time_s)
     truth = AtCrank(SCENE, time_s=plain.time_s, crank_rad=crank)
     motion = truth.at(plain.time_s)
-    driven = plain.of(motion).put({"crank_a": crank})
-    wrong = driven.put({"rocker_a": motion.links["coupler"].theta})
-    case = replace(wrong.case, truth=truth)
-    (cause,) = causes(case)
-    assert (cause.name, cause.columns) == ("misnamed", ("rocker_a",))
+    wrong = {"crank_a": crank, "rocker_a": motion.links["coupler"].theta}
+    found = causes(replace(plain.of(motion).put(wrong).case, truth=truth))
+    assert by_name(found) == {"misnamed": ("rocker_a",)}
 
 
 def test_a_channel_without_a_limit_is_not_judged() -> None:
-    plain = of(angle("rocker"), angle("coupler"))
-    wrong = plain.put({"rocker_a": -plain.values["rocker_a"]})
+    wrong = PLAIN.put({"rocker_a": -ANGLE})
     for limits in ({"coupler_a": 1e-3}, {"coupler_a": 1e-3, "rocker_a": math.inf}):
         assert not causes(replace(wrong, limits=limits).case)
 
@@ -264,10 +254,8 @@ def test_what_is_no_log_of_anything_raises_nothing(rows: int) -> None:
     plain = of(angle("rocker"), omega("rocker"), angle("crank"), rows=rows)
     rng = np.random.default_rng(rows)
     for values in (np.zeros(rows), rng.normal(size=rows) * 1e300, np.full(rows, math.nan)):
-        for wrong in (
-            plain.put({"rocker_a": values}),
-            plain.put(dict.fromkeys(plain.values, values)),
-        ):
+        for columns in (["rocker_a"], plain.values):
+            wrong = plain.put(dict.fromkeys(columns, values))
             causes(wrong.case)
             causes(replace(wrong, limits=dict.fromkeys(wrong.limits, 0.0)).case)
 
@@ -276,7 +264,7 @@ def work_on(rows: int, monkeypatch: pytest.MonkeyPatch) -> tuple[int, list[int]]
     """What causes of a late channel in a log of so many rows take: calls, and the instants of each
     solution of the reference."""
     plain = of(angle("rocker"), omega("rocker"), omega("coupler"), rows=rows, turns=rows / 2000.0)
-    case = plain.of(solve(SCENE, plain.time_s - 1e-4, bound=False), ["rocker_w"]).case
+    case = at(plain, plain.time_s - 1e-4, "rocker_w").case
     for reading in case.readings:
         reading.expected(case.truth)  # which has been compared with already
     solved: list[int] = []
