@@ -1,4 +1,5 @@
-"""Every page has a place in the site, and its links lead somewhere, there and in the checkout."""
+"""Every page has a place in the site, and its links lead somewhere, there and in the checkout; the
+references are whole: every command with every option, every name of the face."""
 
 from __future__ import annotations
 
@@ -10,30 +11,19 @@ from typing import Any
 
 import pytest
 
+import crankcheck
+from crankcheck import engine, testing
+from docs.site import staging
 from docs.site.building import HERE
-from docs.site.python_pages import home, references
-from docs.site.staging import (
-    CODE,
-    LINK,
-    MADE,
-    ROOT,
-    Sources,
-    anchor_of,
-    outside_code,
-    pages,
-    relinked,
-    section,
-    sources,
-)
+from docs.site.commands_page import commands_page
+from docs.site.docstrings import one_by_one
+from docs.site.python_pages import face_page, home, others_page, references, theory_rooms
+from docs.site.staging import MADE, ROOT, relinked, sources
+from tests.worlds.command import COMMAND
+from tests.worlds.documents import ran
 
 WRITTEN = sources()
-SITE = pages()
-
-
-def navigation() -> list[str]:
-    """The pages of the navigation, in its order."""
-    config = tomllib.loads((HERE / "zensical.toml").read_text(encoding="utf-8"))
-    return list(leaves(config["project"]["nav"]))
+SITE = staging.pages()
 
 
 def leaves(entries: list[Any]) -> Iterator[str]:
@@ -45,24 +35,22 @@ def leaves(entries: list[Any]) -> Iterator[str]:
             yield from [below] if isinstance(below, str) else leaves(below)
 
 
-def test_every_page_stands_in_the_navigation_once() -> None:
-    assert sorted(navigation()) == sorted(SITE)
-
-
-def test_every_page_begins_with_its_title() -> None:
+def test_every_page_stands_in_the_navigation_once_and_begins_with_its_title() -> None:
+    config = tomllib.loads((HERE / "zensical.toml").read_text(encoding="utf-8"))
+    assert sorted(leaves(config["project"]["nav"])) == sorted(SITE)
     assert not [path for path, page in WRITTEN.text.items() if not page.startswith("# ")]
 
 
 def anchors(page: str) -> set[str]:
     prose = re.sub(r"^```.*?^```", "", page, flags=re.DOTALL | re.MULTILINE)
     titles = re.findall(r"^#+ (.+)$", prose, re.MULTILINE)
-    return {anchor_of(title.replace("`", "")) for title in titles}
+    return {staging.anchor_of(title.replace("`", "")) for title in titles}
 
 
 def dead_links(text: Mapping[str, str]) -> Iterator[str]:
     """Of the checkout; anchors that are made with the site are left to the site's own check."""
     for path, page in text.items():
-        for _, target in LINK.findall(CODE.sub("", page)):
+        for _, target in staging.LINK.findall(staging.CODE.sub("", page)):
             file, _, anchor = target.partition("#")
             there = posixpath.normpath(posixpath.join(posixpath.dirname(path), file))
             there = there if file else path
@@ -74,11 +62,8 @@ def dead_links(text: Mapping[str, str]) -> Iterator[str]:
                 yield f"{path}: {target}: no such heading"
 
 
-def test_every_link_leads_somewhere() -> None:
+def test_every_link_leads_somewhere_and_dead_ones_are_seen() -> None:
     assert not list(dead_links(WRITTEN.text))
-
-
-def test_dead_links_are_seen() -> None:
     page = "# A\n[x](nowhere.md) [y](#b) [z](#a) `[in code](none.md)` [w](https://example.org)\n"
     faults = list(dead_links({"docs/a.md": page}))
     assert faults == [
@@ -94,11 +79,8 @@ def test_every_name_of_code_that_a_page_refers_to_is_there_and_public() -> None:
 
 def test_names_of_code_are_found_in_both_ways_of_writing() -> None:
     page = "[solve][analytic.kinematics.solve], [analytic.dyads.plane][], [`models.scene.Scene`][]"
-    assert references(page) == {
-        "analytic.kinematics.solve",
-        "analytic.dyads.plane",
-        "models.scene.Scene",
-    }
+    names = {"analytic.kinematics.solve", "analytic.dyads.plane", "models.scene.Scene"}
+    assert references(page) == names
     assert home("analytic.kinematics.solve") == "analytic.kinematics"
     assert home("models.motion.State.point_velocities") == home("models.motion.no_such") == ""
 
@@ -120,7 +102,7 @@ def test_names_of_code_are_found_in_both_ways_of_writing() -> None:
 )
 def test_links_are_as_the_site_has_its_places(link: str, path: str, place: str, sited: str) -> None:
     text = {"README.md": "", "docs/free.md": "", "docs/reference/scenes.md": ""}
-    written = Sources(text, {"scenes": "reference/scenes.md"})
+    written = staging.Sources(text, {"scenes": "reference/scenes.md"})
     assert relinked(link, path, place, written) == sited
 
 
@@ -129,7 +111,7 @@ def test_a_section_of_the_readme_stands_on_one_page() -> None:
     assert "my-slider-crank" not in SITE["tour.md"]
     assert "\n## Hard cases\n" in SITE["tour.md"]
     with pytest.raises(ValueError, match="no section 'Never'"):
-        section(WRITTEN.text["README.md"], "Never")
+        staging.section(WRITTEN.text["README.md"], "Never")
 
 
 def test_what_is_made_is_on_its_page() -> None:
@@ -140,7 +122,52 @@ def test_what_is_made_is_on_its_page() -> None:
 
 
 def test_code_is_left_as_it_is() -> None:
-    page = "a `a` a\n\n```console\n$ a\n```\n\n- b\n\n  ```text\n  a\n  ```\n"
-    assert outside_code(page, lambda prose: prose.replace("a", "A")) == page.replace(
-        "a `a` a", "A `a` A"
-    )
+    code = "\n\n```console\n$ a\n```\n\n- b\n\n  ```text\n  a\n  ```\n"
+    written = staging.outside_code(f"a `a` a{code}", lambda prose: prose.replace("a", "A"))
+    assert written == f"A `a` A{code}"
+
+
+def test_every_command_stands_there_with_every_option() -> None:
+    told = dict(re.findall(r"^## (crankcheck [\w ]+)\n(.*?)(?=^## )", commands_page(), re.S | re.M))
+    listed = ran([COMMAND, "--help"], ROOT).stdout
+    names = re.findall(r"^│ ([a-z]+) ", listed, re.M)
+    assert len(names) > 20
+    assert set(names) <= {called.split()[1] for called in told}
+    for called in ("crankcheck verify", "crankcheck polygon", "crankcheck engines check"):
+        shown = ran([COMMAND, *called.split()[1:], "--help"], ROOT).stdout
+        options = set(re.findall(r"(?<![\w-])--[a-z][\w-]+", shown)) - {"--help"}
+        assert options <= set(re.findall(r"--[a-z][\w-]+", told[called])), called
+
+
+def test_options_are_told_with_defaults_and_limits() -> None:
+    page = commands_page()
+    assert "| `--at-deg DEG` | `60.0` | The driver's angle. |" in page
+    jobs = "| `--jobs <int range>` | `0` | Processes; 0: one per processor. (`0<=x<=1024`) |"
+    assert [part for part in (jobs, r"NAME=1\|-1", "130 interrupted") if part not in page] == []
+
+
+def test_every_public_name_has_its_entry() -> None:
+    entries = set(re.findall(r"^::: (\S+)$", face_page(), re.M))
+    faces = {f"crankcheck.{name}" for name in crankcheck.__all__ if name != "__version__"}
+    assert faces <= entries
+    assert {f"crankcheck.testing.{name}" for name in testing.__all__} <= entries
+    for name in engine.__all__:
+        assert f"crankcheck.engine.{name}" in entries or f"`{name}`" in face_page()
+
+
+def test_rooms_of_the_theory_have_pages_and_other_modules_are_shown_where_one_names_them() -> None:
+    rooms = theory_rooms(ROOT)
+    assert {"dyads", "kinematics", "free"} <= set(rooms)
+    assert len(rooms) == len(set(rooms))
+    page = others_page({"a.md": "[models.scene.Scene][] and [x][analytic.kinematics.solve]"})
+    assert page.startswith("## models.scene\n\n::: models.scene\n")
+    assert "analytic" not in page
+
+
+def test_parameters_told_together_are_told_one_by_one() -> None:
+    """So that each has the type and the default of its own."""
+    page = "A.\n\nParameters\n----------\na, b\n    As of c.\nd : int\n    D.\n\nAn, end."
+    told = one_by_one(page)
+    assert "\na\n    As of c.\nb\n    As of c.\nd : int\n    D.\n" in told
+    assert told.startswith("A.\n")
+    assert told.endswith("\n\nAn, end.")

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -12,7 +10,7 @@ import pytest
 from playwright.sync_api import BrowserContext, TimeoutError, sync_playwright
 
 from docs.site.building import build
-from docs.site.staging import ROOT, pages
+from docs.site.staging import pages
 from tests.reports.page.conftest import FLAGS, PHONE, WIDE, chromium
 from tests.worlds.tiers import slow
 
@@ -38,9 +36,8 @@ def test_a_site_with_a_fault_is_not_built(site: Path, monkeypatch: pytest.Monkey
     monkeypatch.setattr("docs.site.building.pages", lambda: faulty)
     before = (site / "index.html").read_bytes()
     (fault,) = build(site, examples=False)
-    assert "index.md" in fault
-    assert "page does not exist" in fault
-    assert "unresolved autoref" in fault
+    parts = ("index.md", "page does not exist", "unresolved autoref")
+    assert [part for part in parts if part not in fault] == []
     assert "Traceback" not in fault
     assert (site / "index.html").read_bytes() == before
 
@@ -91,19 +88,3 @@ def sought(context: BrowserContext, site: Path) -> list[str]:
         return [f"the search finds nothing of Coriolis: {late}"]
     typed = page.get_by_placeholder("Search").input_value()
     return [] if typed == "coriolis" else [f"the search keeps {typed!r} of coriolis"]
-
-
-def test_faults_end_the_command_with_1(tmp_path: Path) -> None:
-    """By a formula, which is looked at before all else."""
-    script = (
-        "import sys; from docs.site import building, __main__ as command;"
-        "building.pages = lambda: {'a.md': r'# A $\\nonsense$'};"
-        f"sys.argv = ['site', '-o', {str(tmp_path / 'out')!r}]; sys.exit(command.main())"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 1
-    assert done.stderr.startswith("a.md\nno MathML for \\nonsense")
-    assert "Traceback" not in done.stderr
-    assert not (tmp_path / "out").exists()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -12,6 +11,7 @@ from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check
 from reports.verify import advised as advice
 from reports.verify.advised import advised
+from tests.worlds.turns import of_turns
 
 
 def heavy_block(ratio: float) -> Scene:
@@ -20,11 +20,6 @@ def heavy_block(ratio: float) -> Scene:
     rod = scene.links["rod"].mass_kg
     blocks = {n: replace(s, mass_kg=ratio * rod) for n, s in scene.sliders.items()}
     return replace(scene, sliders=blocks)
-
-
-def cell(scene: Scene, engine: str = "mujoco", steps: int = 360) -> Cell:
-    dt_s = scene.driver.law.period_s / steps
-    return Cell(scene, engine, "tuned", dt_s, steps, converge=False)
 
 
 def cures(checked: Checked) -> set[str]:
@@ -45,7 +40,7 @@ def runs(monkeypatch: pytest.MonkeyPatch) -> list[Cell]:
 
 
 def test_a_setting_that_helps_is_named_with_what_it_leaves(runs: list[Cell]) -> None:
-    found = advised(cell(heavy_block(1.5e4)))
+    found = advised(of_turns(heavy_block(1.5e4)))
     (told,) = cures(found)
     assert told.startswith("Tried at the same step: sweep --set mujoco.solref_timeconst_steps=2 ")
     worst = max(f.number / f.limit for f in found.failures if f.number and f.limit)
@@ -55,24 +50,16 @@ def test_a_setting_that_helps_is_named_with_what_it_leaves(runs: list[Cell]) -> 
 
 
 def test_where_nothing_helps_all_that_was_tried_is_named_and_half_the_step_told() -> None:
-    one = replace(cell(load_scene("fourbar-lecture-1")), tolerance={"angle": 1e-12})
-    (told,) = cures(advised(one))
+    (told,) = cures(advised(of_turns("fourbar-lecture-1", tolerance={"angle": 1e-12})))
     assert told.startswith("Nothing tried at the same step lowers the error threefold: ")
     for setting in ("close=B", "close=D", "solref_timeconst_steps=2", "solref_dampratio=0.3"):
         assert f"mujoco.{setting}" in told
     assert "Half the step leaves" in told
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        lambda one: one,
-        lambda one: replace(one, profile="as-shipped"),
-        lambda one: replace(one, drive="servo"),
-    ],
-)
+@pytest.mark.parametrize("asked", [{}, {"profile": "as-shipped"}, {"drive": "servo"}])
 def test_nothing_is_run_again_that_is_within_or_has_another_cure(
-    runs: list[Cell], change: Callable[[Cell], Cell]
+    runs: list[Cell], asked: dict[str, str]
 ) -> None:
-    advised(change(cell(load_scene("fourbar-lecture-1"))))
+    advised(of_turns("fourbar-lecture-1", **asked))
     assert len(runs) == 1

@@ -1,4 +1,5 @@
-"""The clauses on an engine that ends its process, hangs or raises; and what is printed of them."""
+"""Every clause is seen to break by a fault of its own, and by hardly any other's; what comes of an
+engine that ends its process, hangs or raises; and what is printed of the clauses."""
 
 from __future__ import annotations
 
@@ -8,12 +9,47 @@ import pytest
 from rich.console import Console
 
 from models.errors import EngineError
-from reports.contract.ruling import SCENES, Ruling, named, put_to_all, refuses_all
+from reports.contract.clauses import CLAUSES
+from reports.contract.ruling import SCENES, Ruling, named, put_to, put_to_all, refuses_all
 from reports.contract.table import show
 from reports.workers.isolated import Limits
 from sim.registry import engine
 from tests.worlds.own_engines import fresh, with_faults
 from tests.worlds.tiers import slow, slowly
+from tests.worlds.wrong_engines import FAULTS, late_accelerations
+
+FOURBAR = ("fourbar-lecture-1",)
+OF_FORCES = {"EC81", "EC82", "EC83", "EC84", "EC85", "EC86"}
+"""Forces follow from the motion, and one that is wrong is wrong in more than one of these."""
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_breaks_its_clause(name: str) -> None:
+    clause, words, fault, _ = FAULTS[name]
+    breaches = put_to(fault(engine("pymunk")), CLAUSES[clause], FOURBAR).breaches
+    assert any(words in text for text in breaches), breaches
+
+
+@slow("each fault put to all clauses: whether they are independent")
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_breaks_hardly_any_other_clause(name: str) -> None:
+    clause, _, fault, besides = FAULTS[name]
+    wrong = fault(engine("pymunk"))
+    rulings = [put_to(wrong, one, FOURBAR) for one in CLAUSES.values()]
+    broken = {ruling.id: ruling.breaches for ruling in rulings if ruling.breaches}
+    assert set(broken) - {clause} <= besides | OF_FORCES, broken
+
+
+def test_accelerations_of_another_instant_are_seen() -> None:
+    ruling = put_to(late_accelerations(engine("mujoco")), CLAUSES["EC42"], FOURBAR)
+    assert "is that of -1.00 steps, and acceleration_shift says +0.00" in ruling.breaches[0]
+
+
+def test_every_clause_has_a_fault_and_says_all_that_it_has_to() -> None:
+    assert {clause for clause, *_ in FAULTS.values()} == set(CLAUSES)
+    for clause in CLAUSES.values():
+        assert clause.title
+        assert [text[-1:] for text in (clause.why, clause.cure)] == [".", "."]
 
 
 @slow("children that die: tests/reports/sweep has each of these ends in `make test`")
@@ -23,20 +59,16 @@ def test_an_engine_that_crashes_hangs_or_raises_costs_its_clauses_alone(
     """In two processes, in which the others go on. What hangs, hangs for ever."""
     faults = {
         "law, last = self.scene": "FAULTS[steps](steps)\n        law, last = self.scene",
-        "import time\n": "import os\nimport time\nfrom collections import defaultdict\n",
-        '\nVERSION, SHIFT = "1.0", -0.5\n': (
-            '\nVERSION, SHIFT = "1.0", -0.5\n'
-            "FAULTS = defaultdict(lambda: lambda n: None)\n"
-            "FAULTS[8] = lambda n: os.abort()\nFAULTS[60] = lambda n: time.sleep(1e6)\n"
-        ),
+        "import time\n": "import os\nimport time\nfrom collections import defaultdict\n"
+        "FAULTS = defaultdict(lambda: lambda n: None)\n"
+        "FAULTS[8] = lambda n: os.abort()\nFAULTS[60] = lambda n: time.sleep(1e6)\n",
         "        return self._poses([self._row()])": "        raise KeyError('no reading')",
     }
     (tmp_path / "faulty_penalty.py").write_text(with_faults(faults))
     with fresh(tmp_path, monkeypatch):
         assert engine("faulty_penalty:ENGINE").name == "penalty"
-        hung, ended, raised, sound = put_to_all(
-            "penalty", ["EC31", "EC32", "EC34", "EC11"], 2, Limits(20.0, 4.0)
-        )
+        clauses = ["EC31", "EC32", "EC34", "EC11"]
+        hung, ended, raised, sound = put_to_all("penalty", clauses, 2, Limits(20.0, 4.0))
     assert hung.breaches == ("no end within 20 s",)
     assert ended.breaches == ("the engine ended its process (signal SIGABRT)",)
     assert raised.breaches[0].startswith("read raised KeyError: 'no reading' (faulty_penalty.py, ")
@@ -85,9 +117,7 @@ def test_what_refuses_every_scene_holds_nothing() -> None:
     ("code", "limit_s", "reason"),
     [
         ("import os\nos._exit(3)\n", 600.0, "the engine ended its process (exit code 3)"),
-        slowly(
-            "while True:\n    pass\n", 0.5, "no end within 0.5 s", reason="a limit on an import"
-        ),
+        slowly("while True: pass\n", 0.5, "no end within 0.5 s", reason="a limit on an import"),
         slowly("1 / 0\n", 600.0, "ZeroDivisionError", reason="an error of an import"),
     ],
 )
