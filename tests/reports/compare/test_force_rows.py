@@ -162,21 +162,15 @@ gravity_m_s2 = [0.0, -9.81]
 ground = { points = { A = [0.0, 0.0] } }
 friction = { R = { torque_n_m = 0.05 } }
 branch = { S = 1 }
-
+driver = { link = "crank", speed_rad_s = 10.0, start_deg = 30.0 }
 [links]
 crank = { bar = ["A", "B"], length_m = 0.1 }
 yoke = { points = { Q = [0.0, 0.0], R = [0.0, 0.3] }, mass_kg = 1.0 }
 tool = { points = { R = [0.0, 0.0], S = [0.1, 0.0] }, mass_kg = 1.0 }
-
 [sliders]
 Q = { on = "ground", link = "yoke" }
 B = { on = "yoke", direction_deg = 90.0 }
 S = { on = "ground", through_m = [0.0, 0.3] }
-
-[driver]
-link = "crank"
-speed_rad_s = 10.0
-start_deg = 30.0
 """
 
 

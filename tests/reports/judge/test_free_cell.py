@@ -96,8 +96,7 @@ def test_driven_scenes_that_are_let_go_are_held_to_what_their_masses_shake_by(
 HELD = """
 name = "held"
 source = "a test"
-[ground]
-points = { A = [0.0, 0.0] }
+ground = { points = { A = [0.0, 0.0] } }
 [links]
 crank = { bar = ["A", "B"], length_m = 0.1 }
 rod = { bar = ["B", "C"], length_m = 0.3 }
@@ -109,15 +108,9 @@ law = "free"
 start_deg = -90.0
 speed_rad_s = 2.0
 duration_s = 0.4
-[loads.feed]
-block = "C"
-force_n = 2.0
-[loads.cut]
-block = "C"
-direction_deg = 180.0
-stroke = "forward"
-slider = "C"
-force_n = 5.0
+[loads]
+feed = { block = "C", force_n = 2.0 }
+cut = { block = "C", direction_deg = 180.0, stroke = "forward", slider = "C", force_n = 5.0 }
 """
 
 
