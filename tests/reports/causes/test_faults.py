@@ -182,9 +182,9 @@ def test_a_sensor_that_stands_still_is_out_and_said_to_stand(
     assert [cause.name for cause in one.causes] == ["stuck"]
 
 
-NOISE = {f"{n} rows": ("rocker_deg", np.random.default_rng(n).normal(size=n)) for n in (2, 3, 7)}
+FEW_ROWS = {f"{n} rows": ("rocker_deg", np.random.default_rng(n).normal(size=n)) for n in (2, 3, 7)}
 NOTHING = {
-    **NOISE,
+    **FEW_ROWS,
     "a gap": ("C_gap_mm", np.full(TIME_S.size, 5.0)),
     "noise": ("rocker_rad", ROCKER + 0.01 * np.random.default_rng(1).normal(size=TIME_S.size)),
 }
