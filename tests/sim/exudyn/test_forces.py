@@ -5,30 +5,31 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
 
 from analytic.forces import kinetostatics
-from analytic.kinematics import solve
 from models.array import Array
 from models.characteristics import Constant, Polynomial, Sine
 from models.errors import EngineError
 from models.files import load_scene, shipped
 from models.forces import Forces
-from models.friction import ConstantFriction, CoulombFriction
+from models.friction import CoulombFriction
 from models.loads import Load
 from models.scene import Scene
 from models.tabulated import Tabulated
 from reports.contract.clauses.reactions import named
-from sim.engine import Drive, Settings
+from reports.contract.subject import numbers
+from sim.engine import Settings
 from sim.exudyn.engine import ENGINE
-from sim.exudyn.session import ExudynSession
 from sim.force_recipes import force_recipe
-from sim.run import run
-from sim.settings import resolved
 from tests.sim.test_force_recipes import printed
+from tests.worlds import runs
 from tests.worlds.loading import loaded_mechanism
+from tests.worlds.runs import acted_on, ran, rubbing, start_of, tuned
 from tests.worlds.tiers import few, slowly
 
 FOURBAR = load_scene("fourbar-lecture-1")
@@ -48,16 +49,8 @@ KINDS = ("sixbar-watt", "slider-crank-excel-210", "shaper", "scotch-yoke", "slot
 WAVE = Sine(1.0, 0.1, 0.4)
 
 
-def opened(
-    scene: Scene,
-    steps: int = 720,
-    settings: Settings | None = None,
-    drive: Drive = "prescribed",
-    start_s: float = 0.0,
-) -> ExudynSession:
-    state = solve(scene, np.array([start_s])).state()
-    asked = resolved(ENGINE.profiles["tuned"], settings)
-    return ENGINE.open(scene, state, asked, scene.driver.law.period_s / steps, drive)
+def opened(scene: Scene, steps: int = 720, settings: Settings | None = None, **given: Any) -> Any:
+    return runs.opened(scene, ENGINE, settings, steps=steps, **given)
 
 
 def off(scene: Scene, forces: Forces) -> tuple[Array, Array]:
@@ -117,8 +110,7 @@ def test_the_motion_is_the_same_to_the_bit_and_two_stretches_are_one(settings: S
     scene = load_scene("fourbar-double-rocker")
     plain, whole, parts = (opened(scene, settings=settings) for _ in range(3))
     moved, log = plain.record(90, 3).poses, whole.record_forces(90, 3)
-    for one, other in zip(moved.bodies.values(), log.poses.bodies.values(), strict=True):
-        assert all(np.array_equal(vars(one)[key], vars(other)[key]) for key in vars(one))
+    np.testing.assert_array_equal(numbers(moved), numbers(log.poses))
     parts.record_forces(30, 3)
     later = parts.record_forces(60, 3).forces.torque
     np.testing.assert_allclose(later, log.forces.torque[10:], rtol=1e-7)
@@ -139,22 +131,22 @@ def test_loads_of_every_kind_are_felt_in_mechanisms_of_every_dyad(number: int) -
         assert np.nanmax(wrong[SETTLED:]) < 1e-4
 
 
-LOADED = {
-    "force": Load("force", "block C", "C", Sine(800.0, 0.1, 0.3), direction_rad=0.7),
-    "turning": Load("turning", "block C", "C", Constant(300.0), direction_rad=0.7, frame="body"),
-    "torque": Load("torque", "block C", None, Polynomial((30.0, 500.0)), "displacement", "C"),
-}
+LOADED = (
+    Load("force", "block C", "C", Sine(800.0, 0.1, 0.3), direction_rad=0.7),
+    Load("turning", "block C", "C", Constant(300.0), direction_rad=0.7, frame="body"),
+    Load("torque", "block C", None, Polynomial((30.0, 500.0)), "displacement", "C"),
+)
 
 
 def test_what_acts_on_a_block_without_mass_goes_to_its_pin_and_its_guide() -> None:
-    loaded = replace(MASSLESS, loads=LOADED)
+    loaded = acted_on(MASSLESS, *LOADED)
     forces = opened(loaded).record_forces(720, 1).forces
     for wrong in off(loaded, forces):
         assert np.nanmax(wrong[SETTLED:]) < 1e-4
     assert float(np.abs(forces.sliders["C"].moment).max()) > 10.0
     moving = load_scene("slotted-lever")
     along = Load("along", "block B", "B", WAVE, direction_rad=0.7, frame="body")
-    turned = replace(moving, loads={"along": along})
+    turned = acted_on(moving, along)
     wrong, _ = off(turned, opened(turned).record_forces(720, 1).forces)
     assert np.nanmax(wrong[SETTLED:]) < 2.5e-4
 
@@ -169,15 +161,11 @@ def test_constant_friction_takes_the_power_that_it_has_to(
     name: str, sizes: Mapping[str, float]
 ) -> None:
     plain = load_scene(name)
-    rubbing = {joint: ConstantFriction(joint, size) for joint, size in sizes.items()}
-    rubbed = replace(plain, friction=rubbing)
+    rubbed = rubbing(plain, **sizes)
     felt, bare = (opened(s).record_forces(720, 1).forces for s in (rubbed, plain))
     times = plain.driver.law.period_s / 720 * np.arange(721)
-    true = [
-        kinetostatics.forces(s, times, bound=False, skip_dead_points=True).torque
-        for s in (rubbed, plain)
-    ]
-    taken = true[0] - true[1]
+    exact = partial(kinetostatics.forces, bound=False, skip_dead_points=True)
+    taken = exact(rubbed, times).torque - exact(plain, times).torque
     same = np.abs((felt.torque - bare.torque) - taken) < 1e-6 * np.abs(taken).max()
     assert same.mean() > 0.99  # but where a joint turns back on a sample
     reactions, _ = off(rubbed, felt)
@@ -185,34 +173,29 @@ def test_constant_friction_takes_the_power_that_it_has_to(
 
 
 def test_what_it_can_not_be_given_is_refused_with_the_reason() -> None:
-    state = solve(FOURBAR, np.zeros(1)).state()
-    rubbing = replace(FOURBAR, friction={"C": ConstantFriction("C", 0.1)})
-    done = run(rubbing, state, ENGINE, dt_s=1e-3, steps=10, drive="free")
+    done = ran(rubbing(FOURBAR, C=0.1), ENGINE, steps=10, drive="free", well=False)
     assert done.status == "unsupported"
     assert "joints that nothing drives come to rest and stick" in done.reason
     with pytest.raises(EngineError, match="none that follows the reactions"):
-        opened(replace(FOURBAR, friction={"C": CoulombFriction("C", 0.1, 0.01)}))
+        opened(acted_on(FOURBAR, CoulombFriction("C", 0.1, 0.01)))
     with pytest.raises(EngineError, match=r"loads.l: found body wheel; use one of crank, coupler"):
-        opened(replace(FOURBAR, loads={"l": Load("l", "wheel", None, WAVE)}))
+        opened(acted_on(FOURBAR, Load("l", "wheel", None, WAVE)))
 
 
 def test_a_table_that_ends_too_soon_is_told_without_exudyns_words_about_it() -> None:
-    state = solve(FOURBAR, np.zeros(1)).state()
-    short = Load("short", "rocker", None, Tabulated((0.0, 0.05), (1.0, 2.0)))
-    done = run(replace(FOURBAR, loads={"short": short}), state, ENGINE, dt_s=1e-3, steps=100)
-    assert done.status == "diverged"
-    assert done.reason.startswith("stopped after 0.05 s: loads.short: over the time [s] the table")
-    late = replace(short, characteristic=Tabulated((1.0, 2.0), (1.0, 2.0)))
-    done = run(replace(FOURBAR, loads={"short": late}), state, ENGINE, dt_s=1e-3, steps=100)
-    assert done.status == "unsupported"
-    assert "the table goes from 1 to 2, and 0 is asked for" in done.reason
+    for from_s, until_s, status, said in (
+        (0.0, 0.05, "diverged", "stopped after 0.05 s: loads.short: over the time [s] the table"),
+        (1.0, 2.0, "unsupported", "the table goes from 1 to 2, and 0 is asked for"),
+    ):
+        short = Load("short", "rocker", None, Tabulated((from_s, until_s), (1.0, 2.0)))
+        done = ran(acted_on(FOURBAR, short), ENGINE, dt_s=1e-3, steps=100, well=False)
+        assert (done.status, said in done.reason) == (status, True)
 
 
 @pytest.mark.parametrize("name", ["fourbar-lecture-1", "shaper", "slotted-lever"])
 def test_the_recipe_prints_what_is_reported(name: str) -> None:
     scene = replace(load_scene(name), gravity_m_s2=(0.5, -9.81))
-    state, settings = solve(scene, np.zeros(1)).state(), resolved(ENGINE.profiles["tuned"], None)
-    text = force_recipe("exudyn", scene, state, settings, 180)
+    text = force_recipe("exudyn", scene, start_of(scene), tuned("exudyn"), 180)
     assert "crankcheck" not in text
     assert max(len(line) for line in text.splitlines() if line.startswith("#")) <= 100
     log = np.genfromtxt(io.StringIO(printed(text)), delimiter=",", names=True, deletechars="")
@@ -227,7 +210,6 @@ def test_the_recipe_prints_what_is_reported(name: str) -> None:
 
 
 def test_a_recipe_that_would_leave_something_out_is_refused() -> None:
-    state = solve(MASSLESS, np.zeros(1)).state()
-    settings = resolved(ENGINE.profiles["tuned"], None)
+    loaded, state = acted_on(MASSLESS, *LOADED), start_of(MASSLESS)
     with pytest.raises(EngineError, match="does not cover loads; take that out"):
-        force_recipe("exudyn", replace(MASSLESS, loads=LOADED), state, settings, 90)
+        force_recipe("exudyn", loaded, state, tuned("exudyn"), 90)

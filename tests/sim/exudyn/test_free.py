@@ -13,11 +13,10 @@ import pytest
 from scipy.integrate import solve_ivp  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.free.machine import Machine
-from analytic.kinematics import solve
 from models.array import Array
-from models.characteristics import Polynomial
+from models.characteristics import Characteristic, Polynomial
 from models.files import load_scene
-from models.loads import Load
+from models.loads import Load, Over
 from models.released import Released
 from models.scene import GROUND, Driver, Scene
 from models.springs import LineSpring, PinSpring, SlideSpring, Spring
@@ -26,10 +25,10 @@ from models.waves import Pulse
 from sim.engine import Run, Settings
 from sim.exudyn.engine import ENGINE
 from sim.exudyn.jumps import StepMeans
-from sim.run import run
-from sim.settings import resolved
 from sim.spring_lengths import spring_lengths
+from tests.worlds import runs
 from tests.worlds.let_go import released
+from tests.worlds.runs import acted_on, opened
 from tests.worlds.tiers import few
 
 UNTIL_S = 0.4
@@ -38,14 +37,12 @@ UNTIL_S = 0.4
 def let_go(name: str, start_rad: float, speed_rad_s: float = 0.0, *acting: Spring | Load) -> Scene:
     """A shipped scene with its driver free, in gravity, with what acts on it."""
     scene = load_scene(name)
-    springs = {one.name: one for one in acting if not isinstance(one, Load)}
-    loads = {one.name: one for one in acting if isinstance(one, Load)}
     driver = Driver(scene.driver.link, Released(start_rad, speed_rad_s, UNTIL_S))
-    return replace(scene, driver=driver, springs=springs, loads=loads, gravity_m_s2=(0.0, -9.81))
+    return acted_on(replace(scene, driver=driver, gravity_m_s2=(0.0, -9.81)), *acting)
 
 
-def torque(characteristic: Pulse | Staircase) -> Load:
-    return Load("torque", "crank", None, characteristic)
+def torque(characteristic: Characteristic, over: Over = "time") -> Load:
+    return Load("torque", "crank", None, characteristic, over)
 
 
 SCENES = {
@@ -65,12 +62,9 @@ SCENES = {
     "jumps": let_go(
         "fourbar-lecture-1", -1.2, 0.0,
         torque(Staircase((-1.0, 0.0, 0.05, 0.0503, 0.25), (0.1, 0.3, 0.8, -0.5, 0.0)))),
-    "motor": let_go(
-        "fourbar-lecture-1", 0.3, 1.0,
-        Load("motor", "crank", None, Polynomial((2.0, -0.2)), "omega")),
+    "motor": let_go("fourbar-lecture-1", 0.3, 1.0, torque(Polynomial((2.0, -0.2)), "omega")),
     "steep motor": let_go(
-        "fourbar-lecture-1", 0.3, 10.0,
-        Load("motor", "crank", None, Polynomial((30.0, -3.0)), "omega")),
+        "fourbar-lecture-1", 0.3, 10.0, torque(Polynomial((30.0, -3.0)), "omega")),
     "drag": let_go(
         "slider-crank-offset", 1.0, 4.0,
         Load("drag", "block C", "C", Polynomial((0.0, -2.0, 0.0, -0.5)), "speed", "C")),
@@ -102,18 +96,8 @@ def exact(name: str) -> tuple[Array, Array]:
 
 def ran(scene: Scene, dt_s: float, settings: Settings | None = None) -> Run:
     steps = round(UNTIL_S / dt_s)
-    done = run(
-        scene,
-        released(scene)[0],
-        ENGINE,
-        dt_s=dt_s,
-        steps=steps,
-        every=steps // 40,
-        drive="free",
-        settings=settings,
-    )
-    assert done.status == "ok", done.reason
-    return done
+    given = {"dt_s": dt_s, "steps": steps, "every": steps // 40, "settings": settings}
+    return runs.ran(scene, ENGINE, start=released(scene)[0], drive="free", **given)
 
 
 def off(name: str, dt_s: float) -> float:
@@ -157,8 +141,7 @@ def test_what_damps_is_less_where_nothing_drives_and_loses_less_energy() -> None
 
 def test_springs_are_held_as_the_scene_has_them_and_a_steep_motor_shows() -> None:
     scene = SCENES["springs"]
-    settings = resolved(ENGINE.profiles["tuned"], None)
-    facts = ENGINE.open(scene, released(scene)[0], settings, 1e-3, "free").facts()
+    facts = opened(scene, ENGINE, start=released(scene)[0], dt_s=1e-3, drive="free").facts()
     for name, spring in scene.springs.items():
         wanted = (spring.rate, spring.damping, spring.free)
         assert facts.springs[name] == pytest.approx(wanted, abs=1e-14)
@@ -168,9 +151,8 @@ def test_springs_are_held_as_the_scene_has_them_and_a_steep_motor_shows() -> Non
 
 def test_the_spring_of_a_block_without_mass_goes_to_its_pin() -> None:
     scene = SCENES["spring of a block without mass"]
-    done = run(
-        scene, released(scene)[0], ENGINE, dt_s=1e-3, steps=60, drive="free", with_forces=True
-    )
+    given = {"dt_s": 1e-3, "steps": 60, "drive": "free", "with_forces": True}
+    done = runs.ran(scene, ENGINE, start=released(scene)[0], **given)
     forces, slid = done.motion.forces, done.motion.sliders["C"]
     (line,) = (one for one in scene.springs.values() if isinstance(one, SlideSpring))
     pull = line.rate * (slid.displacement - line.free) + line.damping * slid.speed
@@ -201,14 +183,10 @@ def test_springs_of_a_driven_mechanism_are_borne_by_its_drive() -> None:
     """By virtual power: the torque is that without them, and what they pull with."""
     plain = load_scene("fourbar-lecture-1")
     sprung = replace(plain, springs=SCENES["springs"].springs)
-    state, given = solve(plain, np.zeros(1)).state(), {"dt_s": 1e-3, "steps": 300}
     with_, without = (
-        run(scene, state, ENGINE, with_forces=True, **given)  # type: ignore[arg-type]
-        for scene in (sprung, plain)
+        runs.ran(scene, ENGINE, dt_s=1e-3, steps=300, with_forces=True) for scene in (sprung, plain)
     )
-    session = ENGINE.open(
-        sprung, state, resolved(ENGINE.profiles["tuned"], None), 1e-3, "prescribed"
-    )
+    session = opened(sprung, ENGINE, dt_s=1e-3)
     lengths = spring_lengths(sprung, session.record(300, 1).poses)
     power = np.zeros(301)
     for name, spring in sprung.springs.items():

@@ -19,9 +19,8 @@ from sim.engine import Run, Settings
 from sim.exudyn.crank import CrankCourse, speeds
 from sim.exudyn.engine import ENGINE
 from sim.exudyn.session import ExudynSession
-from sim.run import run
 from tests.worlds import runs
-from tests.worlds.runs import driven_by, start_of
+from tests.worlds.runs import driven_by
 
 FOURBAR = load_scene("fourbar-lecture-1")
 REDUNDANT = double_parallelogram("double-parallelogram", source="test")
@@ -37,12 +36,9 @@ def opened(scene: Scene = FOURBAR, profile: str = "tuned", **settings: object) -
     return runs.opened(scene, ENGINE, settings, profile=profile, dt_s=1e-3)
 
 
-def ran(
-    scene: Scene = FOURBAR, profile: str = "tuned", *, per_turn: int = 400, **given: Any
-) -> Run:
+def ran(scene: Scene = FOURBAR, profile: str = "tuned", per_turn: int = 400, **given: Any) -> Run:
     """A turn, however it ends."""
-    dt_s = scene.driver.law.period_s / per_turn
-    return run(scene, start_of(scene), ENGINE, profile, dt_s=dt_s, steps=per_turn, **given)
+    return runs.ran(scene, ENGINE, profile, per_turn=per_turn, well=False, **given)
 
 
 def threads() -> int:
