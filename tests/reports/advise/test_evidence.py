@@ -119,9 +119,7 @@ def test_another_motion_or_scene_of_the_name_and_one_that_it_lacks_are_told(stud
         ("loads", f'{TEXTS[FOURBAR.name]}\n[loads.pull]\nlink = "crank"\ntorque_n_m = 1.0\n'),
     ],
 )
-def test_with_gravity_or_loads_it_serves_its_own_speed_alone(
-    study: Study, kind: str, text: str
-) -> None:
+def test_with_gravity_or_loads_only_its_speed_serves(study: Study, kind: str, text: str) -> None:
     scene, texts = parse_scene(text, kind), {**TEXTS, FOURBAR.name: text}
     manifest = replace(study.stored.manifest, scenes=texts)
     pulled = replace(study, stored=replace(study.stored, manifest=manifest))

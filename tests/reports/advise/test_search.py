@@ -33,6 +33,7 @@ DEMAND = demanded(
 )
 FIRST, SECOND = (scene.name for scene in DEMAND.scenes)
 FRAMES = DEMAND.frames_per_turn
+NOTHING = MeasuredStudy()
 CHOICE = Choice("fake", "tuned", "tuned", {})
 Law = Callable[[str, int], TriedRun | Lost | float]
 """From scene and sub-steps to what a run gives."""
@@ -54,12 +55,12 @@ class Child:
 
 
 def searched(
-    law: Law, known: MeasuredStudy | None = None, **changes: Any
+    law: Law, known: MeasuredStudy = NOTHING, **changes: Any
 ) -> tuple[SearchResult, Child]:
     demand = replace(DEMAND, **changes)
     child = Child(law, demand.frame_s)
     isolated = cast("Isolated[TriedRun]", child)
-    return _reached(demand, known or MeasuredStudy(), isolated, CHOICE), child
+    return _reached(demand, known, isolated, CHOICE), child
 
 
 def studied(law: Callable[[str, float], float], low: float) -> MeasuredStudy:
@@ -138,7 +139,7 @@ def test_an_error_that_grows_has_to_stay_under_the_target_for_longer() -> None:
         return TriedRun((3e-3 if long else 1e-3) * 2.0 / n, growth=1.0 if long else 1.3)
 
     child = Child(law)
-    found = _reached(DEMAND, MeasuredStudy(), cast("Isolated[TriedRun]", child), CHOICE)
+    found = _reached(DEMAND, NOTHING, cast("Isolated[TriedRun]", child), CHOICE)
     assert found.promise.substeps == 6
     assert any(turns == pytest.approx(80.0, rel=0.01) for _, _, turns in child.asked)
 

@@ -42,9 +42,7 @@ class FakeInstaller:
         self.commands: list[list[str]] = []
         self.variables: list[dict[str, str]] = []
 
-    def __call__(
-        self, command: Sequence[str], variables: Mapping[str, str], folder: Path | None
-    ) -> Ended:
+    def __call__(self, command: Sequence[str], variables: Mapping[str, str], _: object) -> Ended:
         self.commands.append([*command])
         self.variables.append({**variables})
         if "venv" in command:
@@ -72,9 +70,7 @@ def test_versions_are_taken_once_and_the_oldest_first() -> None:
     assert [one.name for one in found] == ["mujoco-3.9", "mujoco-3.10.0rc1", "mujoco-3.10.0"]
 
 
-def test_uv_makes_the_environment_where_there_is_one_and_venv_and_pip_elsewhere(
-    tmp_path: Path,
-) -> None:
+def test_uv_makes_the_environment_where_there_is_one_and_pip_elsewhere(tmp_path: Path) -> None:
     env, python = str(tmp_path / "env"), str(python_of(tmp_path / "env"))
     make, install = commands("/bin/uv", tmp_path / "env", ONE, tmp_path / "held.txt")
     assert (make[:2], make[-1]) == (["/bin/uv", "venv"], env)
@@ -87,9 +83,7 @@ def test_uv_makes_the_environment_where_there_is_one_and_venv_and_pip_elsewhere(
 
 
 @pytest.mark.parametrize("uv", [None, "/bin/uv"])
-def test_wheels_only_and_numpy_held_at_the_version_that_runs(
-    tmp_path: Path, uv: str | None
-) -> None:
+def test_only_wheels_and_numpy_held_at_the_one_that_runs(tmp_path: Path, uv: str | None) -> None:
     installer = FakeInstaller()
     ready(tmp_path, ONE, uv, installer)
     install = next(command for command in installer.commands if "install" in command)
@@ -135,9 +129,7 @@ def test_another_version_numpy_or_python_has_another_environment(
     assert len({*places}) == 4
 
 
-def test_variables_of_this_environment_do_not_reach_the_new_one(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_our_paths_stay_out_of_the_new_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("PYTHONPATH", "VIRTUAL_ENV", "PYTHONHOME", "PIP_TARGET", "PIP_CONSTRAINT"):
         monkeypatch.setenv(name, "elsewhere")
     monkeypatch.setenv("PIP_INDEX_URL", "kept")
@@ -247,7 +239,7 @@ def test_a_cache_that_is_a_file_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("platform", "variables", "ending"),
+    ("platform", "env", "ending"),
     [
         ("linux", {"XDG_CACHE_HOME": "/big/cache"}, "/big/cache/crankcheck"),
         ("linux", {"XDG_CACHE_HOME": "not/absolute"}, "/.cache/crankcheck"),
@@ -258,10 +250,8 @@ def test_a_cache_that_is_a_file_is_refused(tmp_path: Path) -> None:
     ],
 )
 @pytest.mark.skipif(sys.platform == "win32", reason="paths are written as POSIX has them")
-def test_the_cache_is_where_the_system_has_caches(
-    platform: str, variables: dict[str, str], ending: str
-) -> None:
-    assert str(user_cache(platform, variables)).endswith(ending)
+def test_the_cache_is_where_caches_are(platform: str, env: dict[str, str], ending: str) -> None:
+    assert str(user_cache(platform, env)).endswith(ending)
 
 
 HOLDER = """

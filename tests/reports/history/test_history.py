@@ -163,9 +163,7 @@ def measured(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Path]:
     return folders
 
 
-def test_versions_are_held_to_one_another(
-    history: History, measured: list[Path], tmp_path: Path
-) -> None:
+def test_two_versions_are_compared(history: History, measured: list[Path], tmp_path: Path) -> None:
     """One of them is missing."""
     versions = ("3.7.0", "9.9.9", "3.6.0")
     code, output, _ = history(*versions, folder=tmp_path / "out", cache=tmp_path / "cache")
@@ -224,9 +222,7 @@ def test_packages_of_our_names_in_the_working_folder_change_nothing(
     assert (tmp_path / "mine" / "out" / "mujoco-3.7.0" / "verify.csv").is_file()
 
 
-def test_another_code_of_crankcheck_has_another_key(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_another_code_has_another_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (package := tmp_path / "probe_of_history").mkdir()
     (package / "__init__.py").touch()
     monkeypatch.setattr(verification, "ROOMS", tmp_path)
@@ -238,9 +234,7 @@ def test_another_code_of_crankcheck_has_another_key(
 
 
 @posix
-def test_a_verification_that_dies_is_a_row_with_its_reason(
-    history: History, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_that_dies_has_its_reason(history: History, monkeypatch: pytest.MonkeyPatch) -> None:
     for code, reason in (
         ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", "ended by signal 9"),
         ("import sys; print('crankcheck: out of luck', file=sys.stderr)", "not run: out of luck"),

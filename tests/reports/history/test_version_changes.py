@@ -224,9 +224,7 @@ def history() -> list[VersionResult]:
 
 
 @pytest.mark.parametrize("width", [60, 80, 99, 100, 140])
-def test_the_history_fits_the_terminal_with_nothing_clipped(
-    history: list[VersionResult], width: int
-) -> None:
+def test_the_history_fits_the_terminal_unclipped(history: list[VersionResult], width: int) -> None:
     stream = io.StringIO()
     show(Console(file=stream, width=width), history, "made by hand")
     lines = stream.getvalue().splitlines()
@@ -239,9 +237,7 @@ def test_the_history_fits_the_terminal_with_nothing_clipped(
     assert "not installed: no" in text
 
 
-def test_the_file_holds_every_number_and_the_reason_of_a_version_without_any(
-    history: list[VersionResult],
-) -> None:
+def test_the_file_holds_every_number_or_the_reason_for_none(history: list[VersionResult]) -> None:
     lines = list(csv.DictReader(io.StringIO(table_text(history))))
     assert len(lines) == 2 * 18 * 2 * 5 + 1
     gaps = [x for x in lines if x["quantity"] == "pin gap" and x["version"] == "3.7.0"]

@@ -32,9 +32,7 @@ def look(
 @pytest.mark.parametrize("order", [1.0, 2.0, 4.0])
 @pytest.mark.parametrize("start", [40, 160, 20_000])
 @pytest.mark.parametrize("exact", [97, 1000, 9000])
-def test_finds_the_coarsest_step_of_a_power_law_in_few_runs(
-    order: float, start: int, exact: int
-) -> None:
+def test_finds_the_step_of_a_power_law_in_few_runs(order: float, start: int, exact: int) -> None:
     steps, errors = look(lambda n: (exact / n) ** order, 1.0, start)
     assert exact <= steps <= max(exact + 1, RESOLUTION * exact)
     assert len(errors) <= (8 if start < 20_000 else 13)

@@ -183,9 +183,7 @@ def test_what_can_not_be_run_is_said_before(options: dict[str, Any], words: str)
         ("f.toml", f'drive = "servo"\n{FREE}', "drive: found 'servo' with free = true"),
     ],
 )
-def test_a_faulty_study_file_is_named_with_its_fault(
-    tmp_path: Path, name: str, text: str, words: str
-) -> None:
+def test_faults_of_study_files_are_named(tmp_path: Path, name: str, text: str, words: str) -> None:
     path = written(tmp_path, name, text)
     with pytest.raises(CrankcheckError, match=words):
         load_study(path)

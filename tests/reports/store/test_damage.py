@@ -178,9 +178,7 @@ def test_an_unreadable_file_is_damaged_too(
     same(read_store(store), read_store(whole))
 
 
-def test_a_baseline_that_lost_cells_passes_those_it_has(
-    store: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_cut_baseline_passes_what_it_has(store: Path, capsys: pytest.CaptureFixture[str]) -> None:
     cut("cells")(store)  # of MuJoCo
 
     def run(*engines: str) -> tuple[int, str]:
@@ -195,9 +193,7 @@ def test_a_baseline_that_lost_cells_passes_those_it_has(
     assert "1 cell of what was asked for, such as fourbar-lecture-1, mujoco tuned" in message
 
 
-def test_a_lost_manifest_is_made_again_and_no_whole_cell_is_run_again(
-    store: Path, swept: Sweep, whole: Path
-) -> None:
+def test_a_lost_manifest_is_made_again_without_runs(store: Path, swept: Sweep, whole: Path) -> None:
     (store / MANIFEST).unlink()
     parts = {path: path.read_bytes() for path in store.glob("*/*.parquet")}
     assert swept(store, "pymunk") == 0
@@ -246,9 +242,7 @@ def test_what_was_moved_before_is_not_overwritten(store: Path, swept: Sweep) -> 
     assert found == {"manifest.json": "one", "manifest-2.json": "two", "manifest-3.json": "three"}
 
 
-def test_a_finished_sweep_adds_no_run_and_one_that_adds_something_does(
-    swept: Sweep, tmp_path: Path
-) -> None:
+def test_a_finished_sweep_adds_no_run_and_one_with_more_does(swept: Sweep, tmp_path: Path) -> None:
     def runs() -> int:
         return len(json.loads((tmp_path / "s" / MANIFEST).read_text())["runs"])
 
@@ -267,9 +261,7 @@ SPARK = "cells/part-00000-of-spark.parquet"
     "names",
     ["thesis.txt", MANIFEST, "cells/biology.txt", f"{SPARK} {MANIFEST}", ".lock damaged/old.txt"],
 )
-def test_a_folder_that_is_no_store_is_refused_untouched(
-    names: str, tmp_path: Path, swept: Sweep
-) -> None:
+def test_what_is_no_store_is_refused_untouched(names: str, tmp_path: Path, swept: Sweep) -> None:
     home = tmp_path / "home"
     for name in names.split():
         (home / name).parent.mkdir(parents=True, exist_ok=True)

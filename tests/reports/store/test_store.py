@@ -111,9 +111,7 @@ def test_a_second_run_adds_and_replaces_nothing(tmp_path: Path, outcome: Measure
     assert [run["command"] for run in read_manifest(tmp_path).runs] == [["k1"], ["k2"]]
 
 
-def test_all_parts_have_one_schema_whatever_is_missing(
-    tmp_path: Path, outcome: MeasuredCell
-) -> None:
+def test_parts_have_one_schema_whatever_is_missing(tmp_path: Path, outcome: MeasuredCell) -> None:
     filled(tmp_path, outcome, "k1")
     lost = dict.fromkeys(outcome.row) | {"status": "crashed"}
     with Writer(tmp_path, Manifest()) as writer:
@@ -176,9 +174,7 @@ def test_cells_that_a_sweep_is_to_write_yet_are_no_damage(
     assert ("what mends it" in notice, BUSY in notice) == (True, False)
 
 
-def test_a_comparison_with_a_running_sweep_waits_for_its_cells(
-    store: Path, whole: Path, held: FileLock
-) -> None:
+def test_a_running_sweep_is_not_compared_yet(store: Path, whole: Path, held: FileLock) -> None:
     gone("cells")(store)
     for old, new in ((store, whole), (whole, store)):
         message = refusal(differ, old, new)
@@ -219,9 +215,7 @@ def test_a_whole_store_is_read_without_a_word_and_one_without_a_cell_is_said_to_
     assert f"{BUSY}; 0 cells can be read, 4 missing" in refusal(read_store, store)
 
 
-def test_a_sweep_that_begins_or_ends_meanwhile_is_seen(
-    store: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_sweep_that_comes_or_goes_is_seen(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     gone("cells")(store)
     for busy in ([True], [False, True]):
         seen = iter(busy)
@@ -249,9 +243,7 @@ def test_a_lock_that_can_not_be_tried_hinders_no_reader(
     assert sorted(store.rglob("*")) == before
 
 
-def test_a_reader_takes_the_lock_from_no_sweep_that_starts(
-    store: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_reader_takes_the_lock_of_no_sweep(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert lock.READER_S < lock.SWEEP_S
     monkeypatch.setattr(lock, "SWEEP_S", 600.0)  # a busy machine may be late with a timer
     reader = FileLock(store / ".lock", thread_local=False)

@@ -170,9 +170,7 @@ def nowhere() -> str:
 
 
 @slow("a real scheduler and workers, six processes: `make test` holds our side of it to a fake")
-def test_a_cluster_gives_the_same_rows_bit_by_bit(
-    programs: Start, address: str, tmp_path: Path
-) -> None:
+def test_a_cluster_gives_the_very_same_rows(programs: Start, address: str, tmp_path: Path) -> None:
     stores = []
     for name, more in (("here", ()), ("there", ("--dask", address))):
         done = programs(COMMAND, "sweep", *GRID, "-o", tmp_path / name, *more)

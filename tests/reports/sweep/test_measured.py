@@ -105,9 +105,7 @@ def swept(folder: Path, *faults: str, engine: str = "bad", **more: Any) -> str:
 
 
 @pytest.mark.usefixtures("_bad_engine")
-def test_every_fault_is_a_row_with_its_reason(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_each_fault_is_a_row_with_a_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path / "store"
     monkeypatch.setattr("reports.sweep.running.Isolated", Here)  # of timing
     monkeypatch.setattr("reports.sweep.measured.REPEAT_S", 1e-3)
@@ -122,9 +120,7 @@ def test_every_fault_is_a_row_with_its_reason(
     assert "1 timeout, such as" in told
 
 
-def test_what_stands_in_the_working_folder_is_not_imported(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_no_file_of_the_folder_is_imported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mine = shadows(tmp_path / "mine")
     (mine / "queue.py").write_text("raise SystemExit('mine')")
     monkeypatch.chdir(mine)
@@ -144,9 +140,7 @@ class Watched(Isolated[Answer]):
 
 
 @pytest.mark.usefixtures("_bad_engine")
-def test_a_wider_limit_runs_again_what_was_ended(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_wider_limit_runs_what_was_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("reports.workers.scheduler.Isolated", Watched)
     folder = tmp_path / "store"
 
@@ -190,9 +184,7 @@ def test_cells_take_turns_and_one_that_is_lost_is_timed_no_more() -> None:
 @pytest.mark.parametrize(
     ("guess_us", "steps"), [(50.0, 300), (1e-9, 50_000), (0.2, 50_000), (1.0, 15_000), (1e6, 200)]
 )
-def test_a_repeat_has_steps_for_about_15_ms(
-    guess_us: float, steps: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_repeat_takes_15_ms(guess_us: float, steps: int, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[tuple[object, ...]] = []
 
     def time_run(*arguments: object, **options: object) -> SimpleNamespace:

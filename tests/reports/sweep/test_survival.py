@@ -103,9 +103,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Stored:
 
 
 @pytest.mark.parametrize("part", few((1, 3, 4, 8), {3}, "one moment shows it; the ends may differ"))
-def test_a_killed_sweep_goes_on_where_it_was(
-    programs: Start, whole: Stored, tmp_path: Path, part: int
-) -> None:
+def test_a_killed_sweep_goes_on(programs: Start, whole: Stored, tmp_path: Path, part: int) -> None:
     folder = tmp_path / "store"
     killed = begun(programs, tmp_path, (*CELLS, part), signal.SIGKILL, "--no-timing")
     killed.communicate()
@@ -146,9 +144,7 @@ def test_ctrl_c_keeps_what_is_done(
     assert not read_store(folder).cells.key.duplicated().any()
 
 
-def test_ctrl_c_keeps_the_timings_of_the_blocks_before(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_ctrl_c_keeps_the_timings_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     blocks: list[int] = []
 
     def second_stops(isolated: object, cells: Sequence[object], rounds: int, _: object) -> object:

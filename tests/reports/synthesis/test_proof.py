@@ -197,9 +197,7 @@ def is_easy(kind: str, one: Examined) -> bool:
     ids=["1", "4", "50"],
 )
 @pytest.mark.parametrize("kind", TASKS)
-def test_engines_meet_what_the_reference_meets(
-    kind: str, count: int, engines: tuple[str, ...]
-) -> None:
+def test_engines_prove_random_solutions(kind: str, count: int, engines: tuple[str, ...]) -> None:
     """Tasks whose best solution transmits well enough."""
     if "exudyn" in engines:
         pytest.importorskip("exudyn")

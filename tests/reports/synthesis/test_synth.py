@@ -159,9 +159,7 @@ def test_what_no_mechanism_does_is_said(tmp_path: Path, kind: str, text: str, sa
 FOUR = poses((0.0, 0.0, 10.0), (0.2, 0.1, 35.0), (0.35, 0.3, 80.0), (0.5, 0.35, 100.0))
 
 
-def test_fixed_pivots_stand_where_they_are_wished(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_fixed_pivots_stand_where_wished(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(coupler, "CHOSEN", 4)
     region = "pivots_in = { from_m = [-0.3, -0.3], to_m = [0.8, 0.8] }\n"
     frame = frame_of("coupler", written(tmp_path, FOUR + region))

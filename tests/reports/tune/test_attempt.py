@@ -133,9 +133,7 @@ def test_an_engine_that_can_not_hold_the_scene_is_told_before_the_search() -> No
         Bench(goal, [lambda settings: 1.0], Limits()).refuse_unsupported(SETTINGS)
 
 
-def test_times_are_sums_over_the_scenes_at_the_step_that_was_found(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_times_are_sums_over_the_scenes_at_the_step_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """The clock counts cells: of the first attempt these are 1 and 2, of the second 3 and 4."""
     goal = goal_of(*SCENES)
     attempts = [Attempt(SETTINGS, None, n, 1e-5, "", 1.0, 1) for n in (100, 300)]

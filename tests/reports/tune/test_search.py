@@ -90,9 +90,7 @@ def test_the_profile_is_tried_first_and_then_what_the_seed_says() -> None:
 
 
 @pytest.mark.parametrize("seed", few(range(3), {0}, "luck of a seed"))
-def test_the_search_beats_as_many_guesses_and_soon_leaves_what_is_cheap_and_misses(
-    seed: int,
-) -> None:
+def test_the_search_beats_as_many_guesses_and_leaves_what_is_cheap_and_misses(seed: int) -> None:
     found = done(budget=40, seed=seed)
     best = best_of(found)
     assert best.settings["kind"] == "fast"
@@ -133,9 +131,7 @@ def test_a_search_that_was_cut_short_goes_on_to_what_a_whole_one_finds(path: Pat
     assert len(called.settings) == sum(a.runs > 0 for a in whole) - at
 
 
-def test_a_larger_budget_begins_with_the_trials_of_a_smaller_one_which_optuna_reads(
-    path: Path,
-) -> None:
+def test_a_larger_budget_begins_with_trials_of_a_smaller_one_which_optuna_reads(path: Path) -> None:
     for budget in (4, 12):
         with study_in(path, {}) as study:
             found = search(study, plan(budget), known)
@@ -189,12 +185,8 @@ def test_a_profile_that_is_as_cheap_is_taken_as_it_is() -> None:
     assert plainer(space, first, best, costs) == (first, [])
 
 
-@pytest.mark.parametrize(
-    "late", few(((0,), (1,), (9,), (0, 5, 13)), {(0, 5, 13)}, "places of a single one")
-)
-def test_what_the_clock_ended_is_not_kept_and_tried_again(
-    path: Path, late: tuple[int, ...]
-) -> None:
+@pytest.mark.parametrize("late", few(((0,), (1,), (9,), (0, 5, 13)), {(0, 5, 13)}, "single ones"))
+def test_what_the_clock_ended_is_not_kept_and_tried_anew(path: Path, late: tuple[int, ...]) -> None:
     with study_in(path, {}) as study:
         once = search(study, plan(), Called(late=late))
         kept = attempts(study)
@@ -278,9 +270,7 @@ def theirs(path: Path) -> None:
         (os.mkfifo, "no plain file; name a new file"),  # and it is not waited for
     ],
 )
-def test_something_else_is_refused_and_left_alone(
-    make: Callable[[Path], None], words: str, path: Path
-) -> None:
+def test_other_files_are_refused_whole(make: Callable[..., None], words: str, path: Path) -> None:
     make(path)
     before = path.read_bytes() if path.is_file() else None
     with pytest.raises(CrankcheckError, match=words):

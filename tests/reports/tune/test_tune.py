@@ -61,9 +61,7 @@ def test_one_seed_gives_the_same_settings_twice(whole: tuple[int, str]) -> None:
     assert told(replace(SMALL, seed=4)) != whole
 
 
-def test_what_is_found_is_no_dearer_than_the_profile_and_reaches_the_target(
-    whole: tuple[int, str],
-) -> None:
+def test_what_is_found_reaches_the_target_no_dearer_than_tuned(whole: tuple[int, str]) -> None:
     code, text = whole
     assert code == 0
     tuned, found = line(text, "error of place")
@@ -97,9 +95,7 @@ def test_the_snippet_has_the_settings_that_were_found(whole: tuple[int, str]) ->
     assert mujoco_disturbance(pasted).moving < 1e-9
 
 
-def test_a_search_in_two_halves_finds_what_a_whole_one_does(
-    path: Path, whole: tuple[int, str]
-) -> None:
+def test_a_search_in_two_halves_finds_what_a_whole_does(path: Path, whole: tuple[int, str]) -> None:
     told(replace(SMALL, budget=4, output=path))
     for _ in range(2):
         assert told(replace(SMALL, output=path)) == whole
@@ -133,9 +129,7 @@ def test_what_the_clock_ended_is_told_and_not_kept(path: Path) -> None:
         told(replace(request, limit_s=20.0))
 
 
-def test_nothing_that_reaches_is_told_with_what_came_nearest(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_nothing_that_reaches_is_told_with_what_is_nearest(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("reports.tune.attempt.MOST_SEARCHED", 4000)
     code, text = told(replace(SMALL, engine="pymunk", target=1e-10, budget=1))
     assert code == 1
@@ -231,9 +225,7 @@ if __name__ == "__main__":
 """
 
 
-def test_a_search_that_is_stopped_says_what_it_keeps(
-    path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_stopped_search_says_what_it_keeps(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     progress, real, calls = io.StringIO(), Bench.attempt, []
 
     def attempt(bench: Bench, settings: Settings, best: Attempt | None) -> Attempt:

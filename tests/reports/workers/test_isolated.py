@@ -87,9 +87,7 @@ class LastMoment(threading.Timer):
             super().cancel()
 
 
-def test_a_limit_that_ends_with_the_job_does_not_end_the_next(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_limit_that_ends_with_its_job_ends_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(isolation.threading, "Timer", LastMoment)
     with closing(Isolated[int](Limits(LIMIT_S))) as isolated:
         pids = [isolated.call(os.getpid) for _ in range(2)]
@@ -97,9 +95,7 @@ def test_a_limit_that_ends_with_the_job_does_not_end_the_next(
     assert len(set(pids)) == 2
 
 
-def test_what_the_function_imports_is_not_of_the_memory_of_a_job(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_imports_are_no_memory_of_a_job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = "held = bytearray(300_000_000)\ndef size():\n    return len(held)\n"
     (tmp_path / "large.py").write_text(text)
     monkeypatch.syspath_prepend(tmp_path)
@@ -178,9 +174,7 @@ def test_few_are_done_here() -> None:
 
 
 @pytest.mark.parametrize("at_once", [1, 2])
-def test_few_are_apart_where_they_have_to_be_and_what_the_work_raises_is_raised_here(
-    at_once: int,
-) -> None:
+def test_few_are_apart_where_they_must_be_and_what_one_raises_is_raised_here(at_once: int) -> None:
     results = run_all(jobs.unlucky, [1, 2], at_once, MUCH, lost, apart=True)
     assert results == ["1", "2: the engine ended its process (exit code 3)"]
     with pytest.raises(CrankcheckError, match="no 3"):
@@ -199,9 +193,7 @@ def test_at_the_end_all_children_are_ended_in_the_middle_of_their_work() -> None
     assert list(as_they_end(drive, [], 0, MUCH)) == []  # nothing to do
 
 
-def test_a_worker_has_one_thread_and_what_the_user_says_stays(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_worker_has_one_thread_unless_the_user_says_more(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in CHOICES:
         monkeypatch.delenv(name, raising=False)
     for threads in ("1", "2"):
