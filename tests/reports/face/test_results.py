@@ -96,12 +96,7 @@ def without_time(text: str) -> str:
     return "\n".join(line.rstrip() for line in re.split(r",\s+made ", text)[0].rstrip().split("\n"))
 
 
-def period(samples: int) -> np.ndarray:
-    """Instants of a period of the shaper's driver."""
-    period_s = crankcheck.load_scene("shaper").driver.law.period_s
-    return period_s / (samples - 1) * np.arange(samples)
-
-
+PERIOD_S = crankcheck.load_scene("shaper").driver.law.period_s
 COARSE = (SCENE, "pymunk", "as-shipped")
 PAIRS: dict[str, Callable[[], Shown]] = {
     f"verify {SCENE} --engine mujoco --profile tuned --turns 1": partial(
@@ -111,7 +106,7 @@ PAIRS: dict[str, Callable[[], Shown]] = {
     "--no-convergence --drive servo": lambda: crankcheck.check(
         *COARSE, dt_s=5e-3, drive="servo", tolerance={"angle": 1e-3}, converge=False
     ),
-    "solve shaper": lambda: crankcheck.solve("shaper", period(13)),
+    "solve shaper": lambda: crankcheck.solve("shaper", PERIOD_S / 12 * np.arange(13)),
     "solve fourbar-lecture-1 --at-deg 90": lambda: crankcheck.solve_driven(
         SCENE, math.pi / 2, 10.0, 0.0
     ),
@@ -193,16 +188,15 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> crankcheck.Sweep:
         return crankcheck.sweep(scenes, folder, keep_trajectories=True, **asked)
 
 
-def test_the_frame_of_a_sweep_is_a_row_per_cell(swept: crankcheck.Sweep) -> None:
+def test_a_sweep_has_a_frame_of_its_cells_and_keeps_the_text_of_a_scene_without_a_file(
+    swept: crankcheck.Sweep,
+) -> None:
     frame = swept.frame()
     assert len(frame) == swept.cells == swept.done.ran == 4
     assert set(frame["scene"]) == {SCENE, "own"}
     assert swept.verdict == "within"
     assert str(swept).startswith("4 cells: 4 run now, 0 were there; 0 timed now\nstored in ")
     assert "4 cells" in swept._repr_html_()
-
-
-def test_a_scene_without_a_file_is_kept_as_its_text(swept: crankcheck.Sweep) -> None:
     manifest = read_manifest(swept.folder)
     own = parse_scene(manifest.scenes["own"], "own")
     assert own.links == crankcheck.load_scene(SCENE).links
@@ -282,9 +276,7 @@ def test_a_model_gives_a_verdict_lines_a_scene_a_diff_and_a_frame_of_every_error
     assert set(gaps["body"]) == {joint.name for joint in verdict.joints()}
 
 
-def test_a_model_prints_its_table_and_is_drawn_in_a_notebook(
-    verdict: crankcheck.ModelVerdict,
-) -> None:
+def test_a_model_prints_its_table_and_is_drawn(verdict: crankcheck.ModelVerdict) -> None:
     assert str(verdict) == repr(verdict)
     assert "OUT OF TOLERANCE as written" in str(verdict)
     page = verdict._repr_html_()

@@ -32,10 +32,7 @@ from tests.worlds.tiers import few
 DRIVEN = [name for name, drawing in FIGURES.items() if "driven" in drawing.drives]
 SHOWN = [(name, scene) for name in DRIVEN for scene in (*SCENES, None)]
 EMPTY = {("split", None), ("mechanism", None), *(("profile", scene) for scene in SCENES)}
-QUICK = {
-    *((name, SCENES[1]) for name in DRIVEN if name != "profile"),
-    *((name, None) for name in DRIVEN),
-}
+QUICK = {(n, scene) for n in DRIVEN for scene in (SCENES[1], None)} - {("profile", SCENES[1])}
 LET_GO = [name for name, drawing in FIGURES.items() if "let go" in drawing.drives]
 LETTERED = ("scotch-yoke", "sixbar-stephenson", "shaper", "tangent")
 OTHER = "what differs between figures is that one is of a scene, of all, or of what was let go"
@@ -65,7 +62,6 @@ def test_words_of_what_was_let_go_keep_off_each_other(free_store: Path, name: st
 
 def test_energies_are_drawn_over_the_whole_run(free_store: Path) -> None:
     drawn = figure_of(Report(read_store(free_store)), "energy", SCENE)
-    assert drawn is not None
     ends = [axes.get_xlim() for axes in drawn.axes]
     assert ends == [(0.0, pytest.approx(LASTS_S))] * len(ends)
 
@@ -109,29 +105,24 @@ def test_no_two_variants_share_marker_and_dashes(number: int) -> None:
         Line2D([], [], **mark.style)  # matplotlib knows the marker and takes the dashes
 
 
-def test_engines_differ_in_filling_and_in_dashes(report: Report) -> None:
+def test_engines_differ_in_filling_and_in_dashes_and_drives_in_name(report: Report) -> None:
     found = marks(report.lines)
     for of in (lambda mark: mark.filled, lambda mark: mark.dashes):
         mujoco = {of(mark) for (engine, *_), mark in found.items() if engine == "mujoco"}
         pymunk = {of(mark) for (engine, *_), mark in found.items() if engine == "pymunk"}
         assert len(mujoco) == len(pymunk) == 1
         assert mujoco != pymunk
+    assert label(("mujoco", "tuned", "servo")) != label(("mujoco", "tuned", "prescribed"))
 
 
-def test_variants_of_an_engine_are_a_scale_of_brightness_that_prints() -> None:
+def test_variants_and_parts_of_an_error_are_scales_of_brightness_that_print() -> None:
+    """But for parts that differ in their dashes."""
     for hue in COLOURS:
         bright = [brightness(colour) for colour in hue]
         assert all(b - a > 0.08 for a, b in itertools.pairwise(bright))
         assert bright[-1] < 0.72  # on white paper
-
-
-def test_the_parts_of_an_error_differ_in_dashes_or_are_much_brighter() -> None:
     dashes = [look.get("dashes") for _, look in LOOKS.values()]
     assert len(set(dashes) - {None}) == len(LOOKS) - 2
     total, rest = LOOKS["total"][1], LOOKS["discretisation"][1]
     assert brightness(total["color"]) - brightness(rest["color"]) > 0.5
     assert total["linewidth"] > 2.0
-
-
-def test_a_drive_that_is_not_the_usual_one_is_named() -> None:
-    assert label(("mujoco", "tuned", "servo")) != label(("mujoco", "tuned", "prescribed"))

@@ -128,11 +128,10 @@ def test_a_place_in_brackets_is_no_style(
     assert result.output.startswith("[/b].")
 
 
-def test_the_terminal_shows_the_source_as_it_is(scene: Path) -> None:
+def test_the_terminal_the_page_and_the_summary_show_the_source_as_text(
+    scene: Path, store: Path, page: Path
+) -> None:
     assert "".join(NASTY.split()) in "".join(crank("solve", scene).output.split())
-
-
-def test_the_page_and_the_summary_show_the_source_as_text(store: Path, page: Path) -> None:
     found = Outline(page.read_text(encoding="utf-8"))
     assert " ".join(NASTY.split()) in " ".join(found.text.split())
     assert "49" not in found.text.partition("{{ 7")[2][:20]
@@ -153,21 +152,18 @@ def test_a_browser_runs_nothing_of_it(wide: Tab, page: Path) -> None:
     assert wide.said == []
 
 
-@pytest.mark.parametrize(
-    "kinds", [("svg",), slowly(("svg", "pdf"), reason="a PDF, whose fonts take 0.5 s")]
-)
+@pytest.mark.parametrize("kinds", [["svg"], slowly(["svg", "pdf"], reason="fonts take 0.5 s")])
 def test_figures_are_drawn_with_the_source_as_text(
-    store: Path, tmp_path: Path, kinds: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+    store: Path, tmp_path: Path, kinds: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    folder = tmp_path / "figs"
     monkeypatch.setattr("reports.cli.commands.figures.FORMATS", kinds)
-    run_figures(store, folder, Console(file=io.StringIO()), only=["mechanism"])
-    root = Xml.parse(folder / "mechanism-fourbar-lecture-1.svg").getroot()
+    run_figures(store, tmp_path, Console(file=io.StringIO()), only=["mechanism"])
+    root = Xml.parse(tmp_path / f"mechanism-{NAME}.svg").getroot()
     assert not [each for each in root.iter() if str(each.tag).endswith("script")]
     shown = " ".join("".join(text.itertext()) for text in root.iter() if text.text)
     assert "</script><script>window.hacked" in shown.replace("\n", "")
     if "pdf" in kinds:
-        assert (folder / "mechanism-fourbar-lecture-1.pdf").read_bytes().startswith(b"%PDF-")
+        assert (tmp_path / f"mechanism-{NAME}.pdf").read_bytes().startswith(b"%PDF-")
 
 
 def test_a_name_in_a_store_does_not_leave_the_folder_of_figures(

@@ -96,10 +96,8 @@ def test_each_failure_has_its_picture_and_a_shared_truth_is_carried_once(
     assert sorted(picture["run"] for picture in found["pictures"]) == failed
     assert len(failed) > 10
     assert len(found["drawings"]) < len(failed)
-    options = [each["value"] for each in Outline(text).named("option")]
-    assert set(map(str, failed)) <= set(options)
-    run = found["runs"][failed[0]]
-    assert run["command"] == command(hard_matrix.runs[failed[0]])
+    assert set(map(str, failed)) <= {each["value"] for each in Outline(text).named("option")}
+    assert found["runs"][failed[0]]["command"] == command(hard_matrix.runs[failed[0]])
 
 
 def test_a_matrix_that_was_stored_gives_the_same_page(
@@ -113,11 +111,9 @@ def test_a_matrix_that_was_stored_gives_the_same_page(
     assert stability_page(read_matrix(tmp_path)) == text
 
 
-@pytest.mark.parametrize(
-    ("error", "wanted"), [(0.0, 0), (9e-7, 0), (1e-6, 1), (5e-3, 2), (1e-2, 3), (1.0, 4), (1e9, 4)]
-)
-def test_the_shade_follows_the_power_of_the_error(error: float, wanted: int) -> None:
-    assert shade(error) == wanted
+def test_the_shade_follows_the_power_of_the_error() -> None:
+    shades = {0.0: 0, 9e-7: 0, 1e-6: 1, 5e-3: 2, 1e-2: 3, 1.0: 4, 1e9: 4}
+    assert {error: shade(error) for error in shades} == shades
     assert len(SHADES) == 4
 
 
@@ -144,15 +140,14 @@ def test_what_is_no_number_is_shown(hard_matrix: Matrix) -> None:
     assert single(hard_matrix, value=math.nan)[1].startswith("nan, mujoco")
 
 
-def test_an_outcome_that_is_not_known_is_shown_as_such(hard_matrix: Matrix) -> None:
+def test_an_outcome_is_held_where_a_good_engine_has_it_and_shown_if_it_is_not_known(
+    hard_matrix: Matrix,
+) -> None:
     text, told, classes = single(hard_matrix, outcome=f"{EVIL} exploded")
     assert "o-strange" in classes
     assert "exploded (fails)" in told
     assert "not known to this page" in text
     assert Outline(text).named("img") == []
-
-
-def test_what_a_good_engine_does_is_held_whatever_it_is_called(hard_matrix: Matrix) -> None:
     locked = one_case(hard_matrix, outcome="locked")
     right = replace(locked, cases=(replace(locked.cases[0], good=("locked",)),))
     for matrix, state in ((locked, "failed"), (right, "held")):
@@ -169,21 +164,17 @@ def test_a_value_that_was_not_run_or_only_by_a_bisection_says_so(hard_matrix: Ma
         assert heat(found).columns[0].words == "holds 0 of 3 throughout"
 
 
-def test_a_matrix_of_one_run_or_of_nothing_has_a_page(hard_matrix: Matrix) -> None:
-    text = stability_page(one_case(hard_matrix))
-    assert "hard-failures" not in text.split("<script>")[2]
-    assert "1 case, 1 run;" in text
-    nothing = stability_page(Matrix({}, (), (), ()))
-    assert "0 cases, 0 runs" in nothing
-    assert Outline(text).open == Outline(nothing).open == []
-
-
-def test_long_reasons_are_cut_in_the_map_and_whole_where_the_run_is_told(
+def test_a_matrix_of_nothing_or_of_one_run_has_a_page_in_which_a_long_reason_is_whole(
     hard_matrix: Matrix,
 ) -> None:
+    nothing = stability_page(Matrix({}, (), (), ()))
+    assert "0 cases, 0 runs" in nothing
     reason = "it broke " * 300
     text, told, _ = single(hard_matrix, reason=reason)
-    assert len(told) < 400
+    assert Outline(text).open == Outline(nothing).open == []
+    assert "hard-failures" not in text.split("<script>")[2]
+    assert "1 case, 1 run;" in text
+    assert len(told) < 400  # in the map it is cut
     assert embedded_in(text, "hard")["runs"][0]["reason"] == reason
 
 
