@@ -20,14 +20,11 @@ PAGES = {
     path.relative_to(DOCS).with_suffix("").as_posix(): path.read_text(encoding="utf-8")
     for path in sorted(DOCS.rglob("*.md"))
 }
-WITH_EXAMPLES = [
-    name for name, page in PAGES.items() if re.search("^```(console|python)", page, re.M)
-]
+EXAMPLE = re.compile("^```(console|python)", re.M)
+WITH_EXAMPLES = [name for name, page in PAGES.items() if EXAMPLE.search(page)]
 (ENGINES,) = (page for page in PAGES.values() if "`examples/engine/penalty_engine.py` is" in page)
 MADE = {"forces": "figs", "elastic": "figs", "how-to/own-model": "out"}
 """Folders that a page has made, and names all files of."""
-
-
 SHORT = ("index", "theory/centres")
 """Pages whose commands take some tenths of a second."""
 
@@ -42,38 +39,25 @@ def test_what_a_page_shows_is_what_is_printed(name: str, tmp_path: Path) -> None
         pytest.skip("no patch: apt-get install patch")
     assert not faults_of(page, tmp_path)
     if folder := MADE.get(name):
+        names = set(re.findall(r"`([^`\n]+)`", page))
         made = list((tmp_path / folder).iterdir())
         assert made
-        assert not [path for path in made if not {f"`{path.name}`", f"`{path.stem}`"} & spans(page)]
-
-
-def spans(page: str) -> set[str]:
-    """What stands between backticks, with them."""
-    return set(re.findall(r"`[^`\n]+`", page))
-
-
-def test_the_guide_to_python_shows_what_its_examples_print() -> None:
-    examples = scripts(PAGES["python"])
-    assert len(examples) >= 10
-    assert all(shown is not None for _, shown in examples)
-
-
-def test_every_name_for_engines_stands_on_its_page() -> None:
-    told = words_of_code(without_blocks(ENGINES))
-    assert not set(engine.__all__) - told
-
-
-def test_every_name_of_the_face_stands_on_the_page() -> None:
-    page = PAGES["python"]
-    shown = words_of_code(without_blocks(page)) | set(
-        re.findall(r"\w+", " ".join(blocks(page, "python")))
-    )
-    assert not {*crankcheck.__all__, *testing.__all__} - shown
-
-
-def without_blocks(page: str) -> str:
-    return re.sub(r"```.*?```", "", page, flags=re.DOTALL)
+        assert not [path for path in made if not {path.name, path.stem} & names]
 
 
 def words_of_code(page: str) -> set[str]:
-    return set(re.findall(r"\w+", " ".join(re.findall(r"`[^`]+`", page))))
+    """Words between backticks, but for those of blocks."""
+    prose = re.sub(r"```.*?```", "", page, flags=re.DOTALL)
+    return set(re.findall(r"\w+", " ".join(re.findall(r"`[^`]+`", prose))))
+
+
+def test_every_name_for_engines_stands_on_its_page() -> None:
+    assert not set(engine.__all__) - words_of_code(ENGINES)
+
+
+def test_every_name_of_the_face_stands_on_the_page_and_its_examples_show_what_they_print() -> None:
+    page = PAGES["python"]
+    examples = re.findall(r"\w+", " ".join(blocks(page, "python")))
+    assert not {*crankcheck.__all__, *testing.__all__} - words_of_code(page) - set(examples)
+    assert len(scripts(page)) >= 10
+    assert all(shown is not None for _, shown in scripts(page))
