@@ -16,7 +16,7 @@ from tests.analytic.chain import Chain, coordinates
 from tests.analytic.change_points.jets import Jet
 from tests.analytic.oracle import Place
 from tests.analytic.wide_chain import HAS_DIGITS, PI, Rows, Solved, Wide, WideChain
-from tests.worlds.tiers import few, slow, slowly
+from tests.worlds.tiers import few, slowly
 from tests.worlds.wide_angles import made, times
 
 pytestmark = pytest.mark.skipif(not HAS_DIGITS, reason="long doubles here are floats")
@@ -45,8 +45,6 @@ class Held:
 
 
 def _beside(motion: Motion, exact: Solved) -> Iterator[Held]:
-    bound = motion.bound
-    assert bound is not None
     fastest = max(np.abs(link.omega).max() for link in motion.links.values())
     for kind, names in QUANTITIES.items():
         bodies = {body: _levels(jet) for body, jet in getattr(exact, kind).items()}
@@ -58,7 +56,7 @@ def _beside(motion: Motion, exact: Solved) -> Iterator[Held]:
         largest[2] = max(largest[2], largest[1] * fastest)
         for body, levels in bodies.items():
             found = vars(getattr(motion, kind)[body]).values()
-            limits = vars(getattr(bound, kind)[body]).values()
+            limits = vars(getattr(motion.bound, kind)[body]).values()
             for k, (array, limit) in enumerate(zip(found, limits, strict=True)):
                 apart = Wide(array.T) - levels[k]
                 if names[k] == "theta":
@@ -84,8 +82,14 @@ def held(number: int) -> list[Held]:
     return list(_beside(motion, exact))
 
 
-def _hold(numbers: range) -> None:
-    """No error above its bound, and none that is missing."""
+MANY = "three hundred thousand instants: one in ten thousand may be worse"
+PARTS = [slowly(range(k, k + 150), reason=MANY) for k in range(0, 1500, 150)]
+
+
+@pytest.mark.parametrize("numbers", [range(6), *PARTS], ids=str)
+def test_errors_stay_below_their_bounds_at_thousands_of_samples(numbers: range) -> None:
+    """Of all dyads, with angles up to a million degrees and times up to a million turns: no error
+    above its bound, and none that is missing."""
     for number in numbers:
         for row in held(number):
             over = np.flatnonzero(~(row.error <= row.bound))
@@ -93,11 +97,6 @@ def _hold(numbers: range) -> None:
                 f"mechanism {number}: {row.quantity}: error {row.error[over[0]]:.3g} above the "
                 f"bound {row.bound[over[0]]:.3g}, at {over.size} of {SAMPLES} samples"
             )
-
-
-def test_errors_stay_below_their_bounds_at_thousands_of_samples() -> None:
-    """Of all dyads, with angles up to a million degrees and times up to a million turns."""
-    _hold(range(6))
 
 
 @pytest.mark.parametrize("count", [5, slowly(10, reason="random mechanisms")])
@@ -114,19 +113,12 @@ def test_bounds_are_within_a_few_tens_of_the_errors(count: int) -> None:
         assert np.median(np.concatenate(loose[name])) < most, name
 
 
-@slow("three hundred thousand instants: one in ten thousand may be worse")
-@pytest.mark.parametrize("part", range(10))
-def test_errors_stay_below_their_bounds_at_300_000_samples(part: int) -> None:
-    _hold(range(150 * part, 150 * (part + 1)))
-
-
 @pytest.mark.parametrize("number", few(range(0, 10, 2), [0, 4], "random mechanisms"))
 def test_long_doubles_agree_with_fifty_digits(number: int) -> None:
     """To a thousandth of the bounds that are held to them."""
     turned = made(number)  # in radians, as the other oracle has them
     scene = turned.scene
     motion = solve(scene, times(scene, number, 6))
-    assert motion.bound is not None
     wide, chain = WideChain(scene, turned.given).solve(motion), Chain(scene)
     for i, t in enumerate(motion.time_s):
         fastest = max(abs(float(link.omega[i])) for link in motion.links.values())

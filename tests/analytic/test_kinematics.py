@@ -1,9 +1,11 @@
-"""How the reference treats samples, chunks, memory, and positions that are singular."""
+"""How the reference treats samples, chunks, memory and nearly singular positions; and a mechanism
+that is turned, moved, mirrored, scaled or sped up moves as it did before."""
 
 from __future__ import annotations
 
 import math
 import tracemalloc
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,10 +13,18 @@ import pytest
 from hypothesis import given
 
 from analytic import prepared
+from analytic.check import moved_scene as transform
+from analytic.check.moved_scene import mirrored
+from analytic.dyads.plane import EPS
 from analytic.kinematics import reach, solve, solve_driven
+from analytic.nearness import nearness
+from models.array import Array
 from models.errors import CrankcheckError, ReachError
-from models.files import load_scene, parse_scene
-from tests.worlds.strategies import FORMS, Designed, examples, mechanisms
+from models.files import load_scene, parse_scene, shipped
+from models.motion import Motion
+from models.scene import Scene
+from tests.worlds.other_way import sped_up
+from tests.worlds.strategies import FORMS, Designed, examples, mechanisms, swing_times
 from tests.worlds.tiers import slowly
 
 
@@ -39,12 +49,8 @@ def test_motion_does_not_depend_on_chunks(name: str, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(prepared, "CHUNK", 97)
     parts = solve(scene, time_s)
     for link, m in whole.links.items():
-        for a, b, bound in zip(
-            vars(m).values(),
-            vars(parts.links[link]).values(),
-            vars(whole.bound.links[link]).values(),
-            strict=True,
-        ):
+        twins = (m, parts.links[link], whole.bound.links[link])
+        for a, b, bound in zip(*(vars(one).values() for one in twins), strict=True):
             assert np.all(np.abs(a - b) <= bound)
     for key, sine in whole.conditioning.items():
         assert np.allclose(sine, parts.conditioning[key], rtol=0, atol=1e-14)
@@ -61,17 +67,10 @@ def test_memory_stays_below_twice_the_arrays_returned(bound: bool) -> None:
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    arrays = [
-        a
-        for k in (motion.links, motion.points, motion.sliders)
-        for m in k.values()
-        for a in vars(m).values()
-    ]
-    arrays += motion.conditioning.values()
-    if motion.bound is not None:
-        tracks = [*motion.bound.links.values(), *motion.bound.points.values()]
-        arrays += [a for m in tracks for a in vars(m).values()]
-    assert peak < 2.0 * sum(a.nbytes for a in arrays)
+    kept = [motion.links, motion.points, motion.sliders]
+    kept += [motion.bound.links, motion.bound.points] if bound else []
+    arrays = [a for kind in kept for track in kind.values() for a in vars(track).values()]
+    assert peak < 2.0 * sum(a.nbytes for a in (*arrays, *motion.conditioning.values()))
 
 
 def test_only_what_is_asked_for_is_returned() -> None:
@@ -79,9 +78,8 @@ def test_only_what_is_asked_for_is_returned() -> None:
     motion = solve(scene, time_s, links=("rod",), points=("F",), sliders=())
     assert (set(motion.links), set(motion.points), set(motion.sliders)) == ({"rod"}, {"F"}, set())
     assert np.array_equal(motion.links["rod"].alpha, solve(scene, time_s).links["rod"].alpha)
-    with pytest.raises(
-        CrankcheckError, match=r"link 'ram' is not in the scene; it has crank, lever, rod"
-    ):
+    said = r"link 'ram' is not in the scene; it has crank, lever, rod"
+    with pytest.raises(CrankcheckError, match=said):
         solve(scene, time_s, links=("ram",))
 
 
@@ -108,6 +106,8 @@ def test_rates_in_toggle_are_uncertain_and_silent() -> None:
     scene = load_scene("fourbar-double-rocker")
     ends = np.array(reach(scene)[-1])
     motion = solve_driven(scene, ends, np.ones(2), np.zeros(2))
+    with pytest.raises(ReachError, match="fourbar-double-rocker: driver at 90 deg"):
+        solve_driven(scene, np.array([math.pi / 2]), np.ones(1), np.zeros(1))
     for name in ("coupler", "rocker"):
         assert (motion.bound.links[name].theta < 1e-6).all()
         assert np.isinf(motion.bound.links[name].omega).all()
@@ -138,13 +138,6 @@ def test_what_hangs_on_a_link_in_toggle_is_uncertain_and_silent() -> None:
         assert np.isinf(motion.bound.links[name].omega).tolist() == [True, False, True]
 
 
-def test_angle_out_of_reach_raises() -> None:
-    with pytest.raises(ReachError, match="fourbar-double-rocker: driver at 90 deg"):
-        solve_driven(
-            load_scene("fourbar-double-rocker"), np.array([math.pi / 2]), np.ones(1), np.zeros(1)
-        )
-
-
 @pytest.mark.parametrize("count", [5, slowly(15, reason="random mechanisms")])
 @pytest.mark.parametrize("form", [form for form in FORMS if form[:3] in ("RRP", "RPR")])
 def test_branch_of_a_slider_is_the_way_along_its_line(form: str, count: int) -> None:
@@ -154,13 +147,9 @@ def test_branch_of_a_slider_is_the_way_along_its_line(form: str, count: int) -> 
     @given(mechanisms([form]))
     def hold(designed: Designed) -> None:
         (name,) = designed.scene.sliders
-        ahead, behind = (
-            solve(replace(designed.scene, branch={name: side}), np.zeros(1))
-            .sliders[name]
-            .displacement[0]
-            for side in (1, -1)
-        )
-        assert ahead > behind
+        sides = [replace(designed.scene, branch={name: side}) for side in (1, -1)]
+        ahead, behind = (solve(side, np.zeros(1)).sliders[name].displacement for side in sides)
+        assert ahead[0] > behind[0]
 
     hold()
 
@@ -170,6 +159,106 @@ def test_branch_of_a_pin_is_its_side_of_the_outer_pins(name: str) -> None:
     """+1: to the left of the line from the first outer pin to the second, links as in the file."""
     scene = load_scene(name)
     motion = solve(scene, np.linspace(0.0, 1.0, 50))
-    b, c, d = (motion.points[p].position for p in "BCD")
-    left = (d - b)[:, 0] * (c - b)[:, 1] - (d - b)[:, 1] * (c - b)[:, 0]
-    assert np.all(np.sign(left) == scene.branch["C"])
+    b, c, d = (motion.points[p].position @ (1.0, 1j) for p in "BCD")
+    assert np.all(np.sign(((c - b) / (d - b)).imag) == scene.branch["C"])
+
+
+TURN = np.linspace(0.0, math.tau, 721)
+
+
+def turned(scene: Scene, theta: Array = TURN) -> Motion:
+    return solve_driven(scene, theta, np.ones(1), np.zeros(1), bound=False)
+
+
+@pytest.mark.parametrize("short", [2.0, 0.1, 1e-3, 1e-6, 0.0])
+def test_a_block_that_comes_near_to_the_pivot_of_its_lever_is_near(short: float) -> None:
+    """As near as ``short`` times the crank; the least distance of the two over the largest, at the
+    crank's lower end."""
+    ground = {"A": (0.0, 0.1 * (1.0 + short)), "C": (0.0, 0.0)}
+    scene = replace(load_scene("slotted-lever"), ground=ground)
+    theta = np.sort(np.append(TURN, -0.5 * math.pi))
+    motion = turned(scene, theta)
+    found = nearness(scene, motion)["B"]
+    assert (motion.conditioning["B"] == 1.0).all()
+    assert found.min() == pytest.approx(short / (2.0 + short), abs=1e-15)
+    assert math.sin(theta[np.argmin(found)]) == pytest.approx(-1.0, abs=1e-9)
+    assert found.max() == 1.0
+
+
+@pytest.mark.parametrize("name", ["slotted-lever", "shaper"])
+def test_ordinary_levers_are_as_far_as_their_blocks_stay(name: str) -> None:
+    scene = load_scene(name)
+    assert nearness(scene, turned(scene))["B"].min() == pytest.approx(0.5, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", [n for n in shipped() if n.startswith(("slider", "fourbar-lec"))])
+def test_of_other_dyads_it_is_the_sine(name: str) -> None:
+    scene = load_scene(name)
+    motion = turned(scene)
+    found = nearness(scene, motion)
+    assert found.keys() == motion.conditioning.keys()
+    assert all((found[key] == motion.conditioning[key]).all() for key in found)
+
+
+def _assert_same(
+    old: Motion, new: Motion, turn: float, grow: float, fast: float, flip: bool
+) -> None:
+    """Motion ``new`` is ``old`` turned, grown, sped up, and mirrored in the x-axis."""
+    side, way = (-1.0 if flip else 1.0), np.exp(1j * turn)
+    for kind in ("links", "sliders", "points"):
+        for name in getattr(old, kind):
+            motions = (old, new, old.bound, new.bound)
+            tracks = (vars(getattr(one, kind)[name]).values() for one in motions)
+            for level, (was, now, b0, b1) in enumerate(zip(*tracks, strict=True)):
+                factor = fast**level * (1.0 if kind == "links" else grow)
+                limit = 2.0 * (factor * b0 + b1)  # the changed scene has other roundings
+                if kind == "points":
+                    limit += 8 * EPS * grow * np.hypot(*was.T)
+                    apart = now @ (1.0, 1j) - factor * way * (was @ (1.0, side * 1j))
+                else:
+                    apart = now - factor * was * (side if kind == "links" else 1.0)
+                if (kind, level) == ("links", 0):
+                    apart -= turn + math.tau * np.round((apart - turn) / math.tau)
+                assert np.all(np.abs(apart) <= limit)
+
+
+CHANGES: dict[str, tuple[Callable[[Scene], Scene], tuple[float, float, float, bool]]] = {
+    "turned": (lambda s: transform.rotated(s, 0.7), (0.7, 1.0, 1.0, False)),
+    "mirrored": (mirrored, (0.0, 1.0, 1.0, True)),
+    "larger": (lambda s: transform.scaled(s, 10.0), (0.0, 10.0, 1.0, False)),
+    "smaller": (lambda s: transform.scaled(s, 0.1), (0.0, 0.1, 1.0, False)),
+    "faster": (lambda s: sped_up(s, 50.0), (0.0, 1.0, 50.0, False)),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize("name", shipped())
+def test_motion_does_not_depend_on_place_size_speed_or_hand(name: str, change: str) -> None:
+    scene, time_s = load_scene(name), swing_times(load_scene(name), 50)
+    changed, (turn, grow, fast, flip) = CHANGES[change][0](scene), CHANGES[change][1]
+    _assert_same(solve(scene, time_s), solve(changed, time_s / fast), turn, grow, fast, flip)
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_motion_moves_with_the_scene(name: str) -> None:
+    scene, time_s = load_scene(name), swing_times(load_scene(name), 50)
+    old, new = solve(scene, time_s), solve(transform.moved(scene, (3.0, -2.0)), time_s)
+    for point, was in old.points.items():
+        apart = new.points[point].position - was.position - np.array([3.0, -2.0])
+        bounds = old.bound.points[point].position + new.bound.points[point].position
+        assert np.all(np.hypot(*apart.T) <= 2.0 * bounds + 8 * EPS * 3.0)
+    for link, m in old.links.items():
+        limit = 2.0 * (old.bound.links[link].alpha + new.bound.links[link].alpha)
+        assert np.all(np.abs(new.links[link].alpha - m.alpha) <= limit + 8 * EPS * 3.0 * 1e4)
+
+
+def test_backwards_drive_runs_through_the_same_positions() -> None:
+    scene = load_scene("shaper")
+    law = scene.driver.law
+    reverse = replace(law, speed_rad_s=-law.speed_rad_s)
+    back = replace(scene, driver=replace(scene.driver, law=reverse))
+    time_s = np.linspace(0.0, 1.0, 77)
+    ahead, behind = solve(scene, -time_s[::-1]), solve(back, time_s)
+    for name, m in behind.links.items():
+        assert np.allclose(m.omega, -ahead.links[name].omega[::-1], rtol=0, atol=1e-11)
+        assert np.allclose(m.alpha, ahead.links[name].alpha[::-1], rtol=0, atol=1e-9)
