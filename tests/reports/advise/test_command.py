@@ -103,16 +103,9 @@ def test_its_promises_are_held_by_runs_of_both_engines(frame: str, told: Told) -
         assert found == pytest.approx(promised, rel=1e-3)  # the last part of a turn is cut off
         if n > 1:  # and no fewer would do
             assert max(place_error(scene, one, dt / (n - 1), turns) for scene in scenes) > TARGET
-
-
-@pytest.mark.parametrize("frame", ONE_AND_ALL)
-def test_the_best_keep_them_for_long_and_at_finer_steps(frame: str, told: Told) -> None:
-    _, content = told(frame)
-    dt, speed, turns, _ = FRAMES[frame]
-    for one in best(content):
+    for one in best(content):  # for long, and at finer steps
         n = one["promise"]["substeps"]
-        for name in content["asked"]["scenes"]:
-            scene = at_speed(load_scene(name), speed)
+        for scene in scenes:
             assert place_error(scene, one, dt / n, 5 * turns) <= TARGET
             for finer in (n + 1, 2 * n):
                 assert place_error(scene, one, dt / finer, turns) <= TARGET
