@@ -26,7 +26,6 @@ DONE = mpf(10) ** -42
 
 
 def law_at(law: Law, time_s: float) -> Jet:
-    """The driver's angle with its derivatives, from the formula of the law."""
     t = Jet(time_s, 1)
     if isinstance(law, ConstantSpeed):
         return t * mpf(law.speed_rad_s) + mpf(law.start_rad)

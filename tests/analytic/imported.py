@@ -9,7 +9,6 @@ import analytic
 
 
 def reached(module: str) -> set[str]:
-    """The modules of `analytic` that a module imports, directly or through others."""
     root, found, todo = Path(str(analytic.__file__)).parents[1], set(), [module]
     while todo:
         name = todo.pop()

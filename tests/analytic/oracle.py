@@ -123,7 +123,6 @@ def rpp(p1: Place, line: Line, inner: Number) -> tuple[Jet, Jet]:
 
 
 def sine_rrr(p1: Place, p2: Place, l1: Number, l2: Number) -> Number:
-    """The sine of the transmission angle, from the sides."""
     d2 = (p2 - p1).dot(p2 - p1).value
     l1, l2 = mp.mpf(l1), mp.mpf(l2)
     cosine = (l1 * l1 + l2 * l2 - d2) / (2 * l1 * l2)

@@ -149,7 +149,6 @@ def test_error_stays_below_the_bound_of_frames_that_lie_far_off(form: str, data:
 @examples(60)
 @given(data=st.data())
 def test_error_stays_below_the_bound_in_many_of_every_form(form: str, data: Data) -> None:
-    """And where their frames lie far off."""
     scene = data.draw(mechanisms([form])).scene
     hold(scene)
     hold(with_far_frames(scene, (700.0, -3000.0)))
@@ -170,7 +169,6 @@ def test_error_stays_below_the_bound_of_many_turns(form: str, data: Data, turns:
 
 
 def with_far_frames(scene: Scene, by: Point) -> Scene:
-    """The same mechanism, the origin of each link's frame moved far away from the link."""
 
     def shift(p: Point) -> Point:
         return (p[0] + by[0], p[1] + by[1])

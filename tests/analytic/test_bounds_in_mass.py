@@ -75,7 +75,6 @@ def _levels(exact: Jet | Place) -> list[Rows]:
 
 
 def held(number: int) -> list[Held]:
-    """Everything that moves in the mechanism of a number."""
     turned = made(number)
     motion = solve(turned.scene, times(turned.scene, number, SAMPLES))
     exact = WideChain(turned.scene, turned.given).solve(motion)

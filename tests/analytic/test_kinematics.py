@@ -128,7 +128,6 @@ driver = { link = "crank", speed_rad_s = 1.0 }
 
 
 def test_what_hangs_on_a_link_in_toggle_is_uncertain_and_silent() -> None:
-    """What hangs on a link that is not certain is not certain either; never NaN."""
     scene = parse_scene(HANGING, "test")
     low, high = reach(scene)[-1]
     motion = solve(scene, np.array([low, 0.5 * (low + high), high]))

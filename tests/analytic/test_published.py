@@ -31,7 +31,6 @@ def assert_near(found: Array, bound: Array, wanted: Array, scale: Array | float)
 
 
 def test_lecture_example_1_at_90_deg() -> None:
-    """The lecture's figures, to their last digit."""
     motion = solve(load_scene("fourbar-lecture-1"), np.zeros(1))
     coupler, rocker, c = motion.links["coupler"], motion.links["rocker"], motion.points["C"]
     assert motion.links["crank"].theta[0] == pytest.approx(math.pi / 2, abs=1e-15)

@@ -40,7 +40,6 @@ class Angle:
 
     @property
     def wide(self) -> Rows:
-        """In radians."""
         return Wide(self.number) * (PI / 180) if self.in_degrees else Wide(self.number)
 
     @property
@@ -70,7 +69,6 @@ class Given:
 
 
 def law_at(law: Law, given: Mapping[str, Angle], time_s: Array) -> Jet:
-    """The driver's angle with its derivatives."""
     t, rest = Wide(time_s), np.zeros(time_s.shape, dtype=Wide)
     if isinstance(law, ConstantSpeed):
         speed = Wide(law.speed_rad_s)
@@ -83,7 +81,6 @@ def law_at(law: Law, given: Mapping[str, Angle], time_s: Array) -> Jet:
 
 
 def toward(angle: Jet) -> Place:
-    """The unit vector at an angle."""
     c, s = np.cos(angle.value), np.sin(angle.value)
     square = angle.rate * angle.rate
     return Place(
@@ -94,8 +91,6 @@ def toward(angle: Jet) -> Place:
 
 @dataclass(frozen=True)
 class Frame:
-    """The frame of a body: origin, angle, and direction."""
-
     origin: Place
     angle: Jet
     along: Place
@@ -137,7 +132,6 @@ class WideChain:
         return self._solved(self._frames(levels))
 
     def _coordinates(self, motion: Motion, drive: Jet) -> Rows:
-        """The frames of all bodies, (T, coordinates)."""
         angles: dict[str, Rows] = {GROUND: Wide(0)}
         columns: list[Rows] = []
         for link in self.scene.links.values():

@@ -120,7 +120,6 @@ def _left(equations: Sequence[Equation], at: Array) -> tuple[Array, Array]:
 
 
 def system(rows: LegRows) -> list[Equation]:
-    """The four equations."""
     equations = [equation for row in rows for equation in equations_of(row)]
     return equations if len(equations) == 4 else [*equations, UNIT]  # of an angle there are two
 

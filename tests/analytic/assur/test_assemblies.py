@@ -94,7 +94,6 @@ def away(one: Assembly, angle: float, x: float, y: float) -> float:
 
 
 def residual(row: LegRow, one: Assembly) -> float:
-    """What an assembly leaves of a row."""
     z, turn = complex(*one.place), complex(math.cos(one.angle_rad), math.sin(one.angle_rad))
     if isinstance(row, CircleRow):
         return abs(z + turn * complex(*row.a) - complex(*row.pin)) - row.length

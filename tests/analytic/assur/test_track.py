@@ -31,7 +31,6 @@ few_kinds = pytest.mark.parametrize(
 
 
 def step_of(scene: Scene) -> AssurStep:
-    """The step of the triad of a scene."""
     step = prepare(scene, analyse(scene))[-1]
     assert isinstance(step, AssurStep)
     return step

@@ -21,8 +21,6 @@ KINDS = tuple(
 
 @dataclass
 class Drawn:
-    """A scene as it is drawn, at its start."""
-
     rng: np.random.Generator
     kinds: tuple[str, str, str]
     crank_m: float = 0.3
@@ -50,7 +48,6 @@ class Drawn:
         return ("ground", 0.0, 0j) if i else ("crank", self.start, self.pivot)
 
     def _pin(self, i: int) -> tuple[str, complex]:
-        """A pin of that body."""
         if not i:
             return "B", self.pivot + self.crank_m * np.exp(1j * self.start)
         self.ground[f"K{i}"] = at = 2.0 * self._point()
@@ -138,5 +135,4 @@ def triad(kinds: tuple[str, str, str], seed: int, crank_m: float = 0.3) -> tuple
 
 
 def on_branch(scene: Scene, number: int) -> Scene:
-    """The scene on another of its assemblies."""
     return replace(scene, branch={"platform": number})

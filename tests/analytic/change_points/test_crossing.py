@@ -100,7 +100,6 @@ def _share(error: float, bound: float) -> float:
 
 
 def assert_below(motion: Motion, most: float) -> None:
-    """All bounds are finite and small, and nothing is NaN or infinite."""
     for one, limit in ((motion, math.inf), (motion.bound, most)):
         tracks = [*one.links.values(), *one.points.values(), *one.sliders.values()]
         arrays = [array for track in tracks for array in vars(track).values()]
@@ -108,7 +107,6 @@ def assert_below(motion: Motion, most: float) -> None:
 
 
 def held(motion: Motion, exact: Callable[[int], Exact], most: float) -> None:
-    """No error is above its bound, and no bound above ``most``."""
     assert shares(motion, exact).max() <= 1.0
     assert_below(motion, most)
 
@@ -296,7 +294,6 @@ def test_a_law_that_rests_in_a_change_point_starts_on_the_branch_that_it_goes_to
 
 
 def test_a_chain_of_windows_is_followed_through_flat_up_to_six() -> None:
-    """As `models.window_chain` says; one more is not."""
     theta = np.array([1.5, 0.5, 0.0, -0.5])
     motion = driven(Chain(6).scene(), theta)
     assert np.allclose(motion.links["rocker6"].theta, theta, rtol=0, atol=1e-9)

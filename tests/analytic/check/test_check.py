@@ -116,7 +116,6 @@ def test_closed_form_and_newton_agree_over_a_period(name: str, samples: int) -> 
 
 
 def _numbers(motion: Motion) -> list[Array]:
-    """Every array of a motion."""
     tracks = [*motion.links.values(), *motion.points.values(), *motion.sliders.values()]
     return [array for track in tracks for array in vars(track).values()]
 

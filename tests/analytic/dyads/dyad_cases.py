@@ -39,8 +39,6 @@ CLOSE = 1e-12
 
 
 class Exact:
-    """The inputs as they are."""
-
     def vector(self, size: float) -> tuple[Number, Number]:
         return 0, 0
 
@@ -170,7 +168,6 @@ class Bunch:
     rate: float
 
     def truth(self, i: int, shift: Exact | Moved) -> tuple[Jet, Jet]:
-        """Both unknowns of a sample."""
         formula, one, other, *more = self.exact
         return formula(one.place(i, shift), other.place(i, shift), *more)
 

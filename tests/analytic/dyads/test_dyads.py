@@ -122,7 +122,6 @@ def _assert_certain_off_toggle(found: Found, kind: str) -> None:
 
 
 def many(quick: int) -> pytest.MarkDecorator:
-    """So many dyads of each kind, and more."""
     more = slowly(10_000, reason="one in a thousand is nearer to toggle than to rounding")
     most = at_length(100_000, reason="one in ten thousand, half a minute of each kind")
     return pytest.mark.parametrize("count", [quick, more, most])

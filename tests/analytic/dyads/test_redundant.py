@@ -73,7 +73,6 @@ def test_shipped_scenes_have_no_redundant_links() -> None:
 
 
 def assert_within(found: LinkMotion, bound: LinkMotion, *exact: Array | float) -> None:
-    """Angle, rate and acceleration are off by no more than their bounds."""
     for got, wanted, most in zip(vars(found).values(), exact, vars(bound).values(), strict=True):
         assert (np.abs(got - wanted) <= most).all()
 

@@ -76,7 +76,6 @@ def test_the_block_of_a_slider_crank_is_fastest_where_a_cubic_has_its_root() -> 
 
 
 def test_what_keeps_its_speed_has_no_extremes() -> None:
-    """A crank, and a yoke that does not turn."""
     found = extreme_speeds(load_scene("scotch-yoke"), ["crank", "yoke", "Y"])
     assert (found["crank"], found["yoke"], len(found["Y"])) == ((), (), 2)
 

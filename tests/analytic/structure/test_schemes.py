@@ -35,7 +35,6 @@ IDLE = {"cam-roller": 1, "rssr": 1, "rssp": 1, "stewart-platform": 6, "delta-rob
 
 @cache
 def known(name: str) -> SchemeMobility:
-    """A shipped scheme, looked at once for all tests."""
     return scheme_mobility(load_scheme(name))
 
 
@@ -124,7 +123,6 @@ def test_mobility_is_that_of_any_frame_and_order(name: str) -> None:
 
 
 def renamed(scheme: Scheme, links: Mapping[str, str]) -> tuple[SchemeJoint, ...]:
-    """The joints, between links by other names."""
     return tuple(
         replace(each, between=tuple(links.get(end, end) for end in each.between))
         for each in scheme.joints

@@ -74,7 +74,6 @@ SIX |= {"leg4": "HL"}
 
 
 def test_a_platform_on_three_legs_is_a_triad() -> None:
-    """One leg is on the crank."""
     found = analyse(build(TRIAD, "ADG"))
     assert [(triad.central, triad.kind) for triad in found.triads] == [("platform", "RR-RR-RR")]
     assert not found.groups

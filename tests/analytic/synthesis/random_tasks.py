@@ -22,7 +22,6 @@ HEAD = {"name": "random", "source": "a test"}
 
 
 def _two(draw: Draw) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Two points."""
     return tuple(map(tuple, draw.uniform(-1.0, 1.0, (2, 2)).tolist()))
 
 
@@ -127,7 +126,6 @@ TASKS: Mapping[str, Callable[[Draw], TaskTable]] = {each.__name__: each for each
 
 
 def random_task(kind: str, number: int) -> TaskTable:
-    """The task of a number."""
     return TASKS[kind](np.random.default_rng([19, list(TASKS).index(kind), number]))
 
 

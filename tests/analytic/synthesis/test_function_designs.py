@@ -46,7 +46,6 @@ def power_task(
 
 @functools.cache
 def designs(task: FunctionTask) -> list[tuple[FunctionProposal, Examined]]:
-    """What is proposed for a task, and what the reference says of it."""
     return [(proposal, examine(proposal)) for proposal in function_designs(task)]
 
 
@@ -104,7 +103,6 @@ def test_a_power_has_these_structural_errors(
     refined: float,
     starts: tuple[float | None, float | None],
 ) -> None:
-    """From the starts of the best of all, or from a grid of them."""
     plain = best(power_task(kind, count, start=starts[0]))[2]
     even = best(power_task(kind, count, equal_ripple=True, start=starts[1]))[2]
     assert plain.largest == pytest.approx(largest, rel=1e-3)

@@ -324,7 +324,6 @@ def test_the_bound_covers_the_count_after_a_million_turns(name: str) -> None:
 def test_samples_that_follow_from_one_another_are_not_looked_up(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The same numbers either way, to the bit."""
     scene = load_scene("fourbar-double-crank")
     time_s = np.linspace(0.0, 2.0 * scene.driver.law.period_s, 2000)
     quick = sampled(scene, time_s)
