@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
 from analytic.kinematics import solve
 from models.files import load_scene, parse_scene, shipped
-from models.laws import Accelerating, FromRest, Law, Oscillating
-from models.scene import GROUND, Point, Scene
-from sim.engine import Drive, Run, SettingValue
+from models.laws import Accelerating, FromRest, Oscillating
+from models.scene import GROUND, Link, Point, Scene
+from sim.engine import Run, SettingValue
 from sim.registry import ENGINES
 from sim.registry import engine as engine_of
-from sim.run import run
-from sim.settings import resolved
+from tests.worlds import runs
+from tests.worlds.runs import driven_by, tuned
 from tests.worlds.tiers import few, slowly
 
 FOURBAR = "fourbar-lecture-1"
@@ -73,33 +73,8 @@ LAWS = {
 }
 
 
-def ran(
-    scene: Scene,
-    engine: str,
-    profile: str = "tuned",
-    *,
-    per_turn: float = 200 * np.pi,
-    turns: float = 1.6,
-    every: int = 1,
-    drive: Drive = "prescribed",
-    settings: Mapping[str, SettingValue] | None = None,
-) -> Run:
-    """A run with the step given as steps per turn; 200 pi per turn is 1e-3 s at 10 rad/s."""
-    dt_s = scene.driver.law.period_s / per_turn
-    start = solve(scene, np.array([0.0])).state(0)
-    result = run(
-        scene,
-        start,
-        engine,
-        profile,
-        dt_s=dt_s,
-        steps=round(turns * per_turn),
-        every=every,
-        drive=drive,
-        settings=settings,
-    )
-    assert result.status == "ok", result.reason
-    return result
+ran = partial(runs.ran, per_turn=200 * np.pi, turns=1.6)
+"""A run with the step given as steps per turn; 200 pi per turn is 1e-3 s at 10 rad/s."""
 
 
 def position_errors(scene: Scene, result: Run) -> dict[str, float]:
@@ -122,22 +97,15 @@ def worst(scene: Scene, result: Run) -> float:
 
 
 def drive_error(scene: Scene, result: Run) -> float:
-    """Largest error of the crank's angle [rad]."""
     return position_errors(scene, result)[scene.driver.link]
 
 
 def falls(engine_name: str, coarse: float, fine: float, order: float = 1.8) -> bool:
     """Whether errors of place fall with the step; where joints are solved for in each step, they
     are at rounding at any."""
-    adapter = engine_of(engine_name)
-    if adapter.placing(resolved(adapter.profiles["tuned"], None)) == "solved":
+    if engine_of(engine_name).placing(tuned(engine_name)) == "solved":
         return max(coarse, fine) < SOLVED
     return fine < coarse / 4**order
-
-
-def driven_by(law: Law) -> Scene:
-    scene = load_scene(FOURBAR)
-    return replace(scene, driver=replace(scene.driver, law=law))
 
 
 @pytest.mark.parametrize(
@@ -206,19 +174,15 @@ def with_frames_moved(scene: Scene, x: float, y: float) -> Scene:
     def moved(place: Point) -> Point:
         return place[0] + x, place[1] + y
 
-    links = {
-        name: replace(
-            link,
-            points={point: moved(place) for point, place in link.points.items()},
-            centre_m=moved(link.centre_m),
-        )
-        for name, link in scene.links.items()
-    }
+    def link(old: Link) -> Link:
+        points = {point: moved(place) for point, place in old.points.items()}
+        return replace(old, points=points, centre_m=moved(old.centre_m))
+
     sliders = {
         name: slider if slider.on == GROUND else replace(slider, through_m=moved(slider.through_m))
         for name, slider in scene.sliders.items()
     }
-    return replace(scene, links=links, sliders=sliders)
+    return replace(scene, links={n: link(k) for n, k in scene.links.items()}, sliders=sliders)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -233,10 +197,7 @@ def with_frames_moved(scene: Scene, x: float, y: float) -> Scene:
 def test_where_the_frame_of_a_link_lies_makes_no_difference(name: str, engine: str) -> None:
     scene = load_scene(name)
     moved = with_frames_moved(scene, 0.07, -0.03)
-    plain, other = (
-        position_errors(scene, ran(scene, engine)),
-        position_errors(moved, ran(moved, engine)),
-    )
+    plain, other = (position_errors(one, ran(one, engine)) for one in (scene, moved))
     assert other == pytest.approx(plain, rel=1e-3, abs=1e-11)
 
 
@@ -336,11 +297,10 @@ def test_any_pin_of_the_loop_may_be_the_closed_one(close: str) -> None:
 
 def test_a_groove_of_pymunk_leaks_where_the_body_turns_and_a_rail_does_not() -> None:
     scene = load_scene("slider-crank-excel-350")
-    groove = [
-        worst(scene, ran(scene, "pymunk", per_turn=n, settings={"lines": "groove"}))
-        for n in (200, 800)
-    ]
-    exact = [worst(scene, ran(scene, "pymunk", per_turn=n)) for n in (200, 800)]
+    groove, exact = (
+        [worst(scene, ran(scene, "pymunk", per_turn=n, settings=own)) for n in (200, 800)]
+        for own in ({"lines": "groove"}, None)
+    )
     assert groove[1] > groove[0] / 4**1.3
     assert exact[1] < exact[0] / 4**1.8
     assert exact[1] < 0.02 * groove[1]

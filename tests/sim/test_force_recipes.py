@@ -6,14 +6,12 @@ import contextlib
 import io
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from analytic.forces import kinetostatics
-from analytic.kinematics import solve
 from models.characteristics import Constant, Sine
 from models.errors import EngineError
 from models.files import load_scene
@@ -22,8 +20,8 @@ from models.hard import double_parallelogram
 from models.loads import Load
 from models.scene import Scene
 from sim.force_recipes import force_recipe
-from sim.registry import engine, offering
-from sim.settings import resolved
+from sim.registry import offering
+from tests.worlds.runs import acted_on, start_of, tuned
 from tests.worlds.tiers import few
 
 FOURBAR = load_scene("fourbar-lecture-1")
@@ -34,22 +32,15 @@ SETTLED = 36
 
 
 def recipe(name: str, scene: Scene, steps: float = 720.0) -> str:
-    settings = resolved(engine(name).profiles["tuned"], None)
-    return force_recipe(name, scene, solve(scene, np.zeros(1)).state(), settings, steps)
+    return force_recipe(name, scene, start_of(scene), tuned(name), steps)
 
 
 def elsewhere(text: str, folder: Path) -> str:
     """What a program prints in a Python to which nothing of ours is shown."""
     program = folder / "recipe.py"
     program.write_text(text, encoding="utf-8")
-    done = subprocess.run(
-        [sys.executable, "-I", "-W", "error", program.name],
-        check=False,
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=600,
-    )
+    command = [sys.executable, "-I", "-W", "error", program.name]
+    done = subprocess.run(command, check=False, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -105,15 +96,14 @@ def test_a_recipe_runs_without_us_and_has_the_forces_of_the_reference(
 
 def test_that_of_mujoco_reads_past_loads_friction_and_sliders() -> None:
     weight = Load("weight", "coupler", "C", Constant(5.0), direction_rad=-0.5 * np.pi)
-    rubbing = {"A": ConstantFriction("A", 0.05)}
-    loaded = replace(FOURBAR, loads={"weight": weight}, friction=rubbing)
+    loaded = acted_on(FOURBAR, weight, ConstantFriction("A", 0.05))
     assert off(loaded, columns_of(printed(recipe("mujoco", loaded)))) < 1e-4
     engine_like = load_scene("slider-crank-excel-210")
     assert off(engine_like, columns_of(printed(recipe("mujoco", engine_like)))) < 1e-4
 
 
 def test_that_of_mujoco_is_refused_where_a_file_does_not_hold_what_drives_or_loads() -> None:
-    pulse = replace(FOURBAR, loads={"pulse": Load("pulse", "rocker", None, Sine(1.0, 1.0))})
+    pulse = acted_on(FOURBAR, Load("pulse", "rocker", None, Sine(1.0, 1.0)))
     with pytest.raises(EngineError, match=r"loads.pulse comes as a control of each step"):
         recipe("mujoco", pulse)
     with pytest.raises(EngineError, match=r"tangent: driver comes as a control"):
@@ -138,8 +128,7 @@ def test_that_of_pymunk_holds_every_kind_of_line_from_the_first_step_on(
 
 
 def test_what_that_of_pymunk_would_leave_out_is_refused() -> None:
-    scene = load_scene("fourbar-lecture-1")
-    loaded = replace(scene, loads={"push": Load("push", "rocker", None, Constant(1.0))})
+    loaded = acted_on(FOURBAR, Load("push", "rocker", None, Constant(1.0)))
     with pytest.raises(EngineError, match=r"leaves out loads\.push; take them out"):
         recipe("pymunk", loaded)
     with pytest.raises(EngineError, match="leaves out a driver whose speed is not constant"):

@@ -25,20 +25,24 @@ from models.tree import plan
 from sim.engine import Facts, Run
 from sim.pymunk.space import build
 from sim.registry import ENGINES, available, declaration, engine
-from sim.run import run
 from sim.timing import time_run
+from tests.worlds import runs
+from tests.worlds.runs import acted_on, start_of
 from tests.worlds.tiers import slowly
 
 FOURBAR = load_scene("fourbar-lecture-1")
-TANGENT = load_scene("tangent")
+
+
+def massless_blocks(scene: Scene) -> Scene:
+    blocks = {n: replace(s, mass_kg=0.0, inertia_kg_m2=0.0) for n, s in scene.sliders.items()}
+    return replace(scene, sliders=blocks)
 
 
 def ran(
     scene: Scene = FOURBAR, engine: Any = "mujoco", profile: str = "tuned", **given: Any
 ) -> Run:
-    """A run of a second of 1 ms steps unless told otherwise."""
-    start = solve(scene, np.array([0.0])).state(0)
-    return run(scene, start, engine, profile, **{"dt_s": 1e-3, "steps": 1000, **given})
+    """A run of a second of 1 ms steps unless told otherwise, however it ends."""
+    return runs.ran(scene, engine, profile, well=False, **{"dt_s": 1e-3, "steps": 1000, **given})
 
 
 @pytest.mark.parametrize("samples", [800, slowly(3000, reason="roundings that add up")])
@@ -56,8 +60,7 @@ def test_sample_times_are_multiples_of_the_step(name: str, samples: int) -> None
 @pytest.mark.parametrize("name", ENGINES)
 def test_a_run_may_start_at_any_time_of_the_law(name: str) -> None:
     scene = load_scene("fourbar-double-rocker")
-    start = solve(scene, np.array([0.3])).state(0)
-    result = run(scene, start, name, dt_s=1e-3, steps=300)
+    result = ran(scene, name, start=start_of(scene, 0.3), steps=300)
     exact = solve(scene, result.motion.time_s)
     assert result.motion.time_s[0] == 0.3
     off = result.motion.links["rocker"].theta - exact.links["rocker"].theta
@@ -67,14 +70,13 @@ def test_a_run_may_start_at_any_time_of_the_law(name: str) -> None:
 @pytest.mark.parametrize("name", ENGINES)
 def test_a_scene_with_loads_is_not_run_as_if_it_had_none(name: str) -> None:
     lacking = replace(engine(name), applies_loads=False, forces_of="nothing")
-    pushed = replace(FOURBAR, loads={"push": Load("push", "rocker", None, Constant(1.0))})
-    state = solve(pushed, np.zeros(1)).state()
-    done = run(pushed, state, lacking, dt_s=1e-3, steps=10)
+    pushed = acted_on(FOURBAR, Load("push", "rocker", None, Constant(1.0)))
+    done = ran(pushed, lacking, steps=10)
     assert done.status == "unsupported"
     assert f"{name} is given no loads (loads.push); take them out" in done.reason
     with pytest.raises(EngineError, match=f"{name} is given no loads"):
-        time_run(pushed, state, lacking, dt_s=1e-3, steps=10)
-    silent = run(FOURBAR, state, lacking, dt_s=1e-3, steps=10, with_forces=True)
+        time_run(pushed, start_of(pushed), lacking, dt_s=1e-3, steps=10)
+    silent = ran(FOURBAR, lacking, steps=10, with_forces=True)
     assert silent.status == "unsupported"
     assert silent.reason == f"{name} reports no forces; run it without, or another engine"
 
@@ -126,10 +128,10 @@ def test_a_pymunk_run_that_comes_apart_is_diverged_too(
     name: str, rough: dict[str, Any], capfd: pytest.CaptureFixture[str]
 ) -> None:
     scene = load_scene(name)
-    per_turn = scene.driver.law.period_s
-    result = ran(scene, "pymunk", settings=rough, dt_s=per_turn / 600, steps=60_000)
+    period_s = scene.driver.law.period_s
+    result = ran(scene, "pymunk", settings=rough, dt_s=period_s / 600, steps=60_000)
     assert result.status == "diverged"
-    assert result.stopped_at_s < 2 * per_turn
+    assert result.stopped_at_s < 2 * period_s
     shown = capfd.readouterr()
     assert shown.out + shown.err == ""
 
@@ -161,19 +163,17 @@ def test_a_run_that_ends_too_early_says_when_and_why(
     assert result.reason == reason if apart_s is None else result.reason.startswith(reason)
 
 
-def test_an_engine_that_raises_is_a_row_with_a_reason(fake_engine: ModuleType) -> None:
+def test_an_engine_that_raises_or_refuses_is_a_row_with_a_reason(
+    fake_engine: ModuleType,
+) -> None:
     result = ran(engine=fake_engine.FakeEngine(solve, fails_after=5000), steps=9000)
     assert result.status == "crashed"
     assert "RuntimeError: the fake engine fails" in result.reason
     assert result.motion is not None
     assert result.stopped_at_s == pytest.approx(4.0)
-
-
-def test_a_scene_that_an_engine_cannot_hold_is_unsupported(fake_engine: ModuleType) -> None:
-    refusing = fake_engine.FakeEngine(solve, refuses="no such joint here")
-    result = ran(engine=refusing)
-    assert (result.status, result.reason) == ("unsupported", "no such joint here")
-    assert result.motion is None
+    refused = ran(engine=fake_engine.FakeEngine(solve, refuses="no such joint here"))
+    assert (refused.status, refused.reason) == ("unsupported", "no such joint here")
+    assert refused.motion is None
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -186,9 +186,7 @@ def test_a_free_link_without_mass_is_unsupported_and_named(name: str) -> None:
 
 
 def test_a_massless_block_that_would_close_a_loop_in_mujoco_is_named() -> None:
-    scene = load_scene("scotch-yoke")
-    bare = replace(scene.sliders["B"], mass_kg=0.0, inertia_kg_m2=0.0)
-    scene = replace(scene, sliders={**scene.sliders, "B": bare})
+    scene = massless_blocks(load_scene("scotch-yoke"))
     refused = ran(scene, "mujoco")
     assert refused.status == "unsupported"
     assert "sliders.B a mass_kg" in refused.reason
@@ -197,8 +195,7 @@ def test_a_massless_block_that_would_close_a_loop_in_mujoco_is_named() -> None:
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_a_point_that_only_massless_blocks_share_is_named(name: str) -> None:
-    bare = {n: replace(s, mass_kg=0.0, inertia_kg_m2=0.0) for n, s in TANGENT.sliders.items()}
-    result = ran(replace(TANGENT, sliders=bare), name)
+    result = ran(massless_blocks(load_scene("tangent")), name)
     assert result.status == "unsupported"
     assert "mass_kg" in result.reason
 
@@ -289,7 +286,7 @@ def test_importing_sim_loads_no_engine() -> None:
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_timing_repeats_and_says_whether_it_logged(name: str) -> None:
-    start = solve(FOURBAR, np.array([0.0])).state(0)
+    start = start_of(FOURBAR)
     bare = time_run(FOURBAR, start, name, dt_s=1e-3, steps=200, repeats=3)
     logged = time_run(FOURBAR, start, name, dt_s=1e-3, steps=200, repeats=3, every=1)
     assert (len(bare.walls_s), bare.logged, logged.logged) == (3, False, True)
@@ -306,10 +303,8 @@ def test_the_collector_is_off_while_timing_and_as_before_afterwards(
         seen.append(gc.isenabled())
         return solve(scene, time_s)
 
-    start = solve(FOURBAR, np.array([0.0])).state(0)
-    timing = time_run(
-        FOURBAR, start, fake_engine.FakeEngine(exact), dt_s=1e-3, steps=9, repeats=2, every=1
-    )
+    own, given = fake_engine.FakeEngine(exact), {"dt_s": 1e-3, "steps": 9, "repeats": 2}
+    timing = time_run(FOURBAR, start_of(FOURBAR), own, every=1, **given)
     assert timing.logged
     assert seen
     assert not any(seen)
@@ -317,21 +312,18 @@ def test_the_collector_is_off_while_timing_and_as_before_afterwards(
 
 
 SCENE = double_parallelogram("double-parallelogram", source="test")
-START = solve(SCENE, np.array([0.0])).state(0)
 
 
 def test_every_loop_of_a_redundant_link_is_closed() -> None:
     """Six pins on four bodies: the tree keeps four, and closes two; pymunk has no pin at A."""
-    assert [closure.point for closure in plan(SCENE, START).closures] == ["C", "F"]
-    space = build(SCENE, START).space
-    assert len(space.constraints) == 5
+    assert [closure.point for closure in plan(SCENE, start_of(SCENE)).closures] == ["C", "F"]
+    assert len(build(SCENE, start_of(SCENE)).space.constraints) == 5
 
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_engines_carry_a_redundant_link_along(name: str) -> None:
     """From 31 to 146 deg of the crank, between the flat positions."""
-    result = run(SCENE, START, name, dt_s=1e-3, steps=200)
-    assert (result.status, result.reason) == ("ok", "")
+    result = runs.ran(SCENE, name, dt_s=1e-3, steps=200)
     exact = solve(SCENE, result.motion.time_s)
     assert result.motion.links["crank"].theta[-1] < np.pi
     for link in ("rocker", "third", "coupler"):

@@ -14,18 +14,17 @@ import numpy as np
 import pymunk
 import pytest
 
-from analytic.kinematics import solve
 from models.files import load_scene
-from sim.engine import Facts, Session, Settings, SettingValue
+from sim.engine import Facts, Settings, SettingValue
 from sim.exudyn.engine import ENGINE
 from sim.exudyn.solver import simulation
 from sim.registry import ENGINES, engine, offering
 from sim.remedies import remedies
-from sim.run import run
-from sim.settings import SettingError, profile_of, resolved
+from sim.settings import SettingError, resolved
+from tests.worlds import runs
+from tests.worlds.runs import driven_by, ran, start_of, tuned
 
 SCENE = load_scene("fourbar-lecture-1")
-START = solve(SCENE, np.zeros(1)).state()
 OF_A_RUN = {
     "solution.file.write",
     "solution.sensors.writePeriod",
@@ -44,10 +43,8 @@ BARE = """
 """
 
 
-def opened(name: str, profile: str, settings: Mapping[str, SettingValue] | None = None) -> Session:
-    chosen = engine(name)
-    held = resolved(chosen.profiles[profile], settings)
-    return chosen.open(SCENE, START, held, 1e-3, "prescribed")
+def opened(name: str, profile: str, settings: Mapping[str, SettingValue] | None = None) -> Any:
+    return runs.opened(SCENE, name, settings, profile=profile, dt_s=1e-3)
 
 
 def facts(name: str, settings: Mapping[str, SettingValue]) -> Facts:
@@ -71,13 +68,8 @@ def test_pymunk_as_shipped_is_a_bare_space() -> None:
     bare, body = pymunk.Space(), pymunk.Body(1.0, 1.0)
     joint = pymunk.PivotJoint(bare.static_body, body, (0.0, 0.0))
     session = opened("pymunk", "as-shipped")
-    for name in (
-        "iterations",
-        "damping",
-        "collision_bias",
-        "collision_slop",
-        "idle_speed_threshold",
-    ):
+    of_space = ("iterations", "damping", "collision_bias", "collision_slop", "idle_speed_threshold")
+    for name in of_space:
         assert getattr(session._space, name) == getattr(bare, name), name
     for held in session._space.constraints:
         for name in ("error_bias", "max_bias", "max_force"):
@@ -137,9 +129,9 @@ def test_a_setting_reaches_the_engine(name: str, setting: str, value: SettingVal
     assert opened(name, "tuned").facts().settings[setting] != value
 
 
-@pytest.mark.parametrize("name", ["EXUdense", "EigenDense", "EigenSparse"])
-def test_so_does_a_linear_solver_of_exudyn(name: str) -> None:
-    assert facts("exudyn", {"linear_solver": name}).settings["linear_solver_used"] == name
+def test_so_does_a_linear_solver_of_exudyn() -> None:
+    for name in ("EXUdense", "EigenDense", "EigenSparse"):
+        assert facts("exudyn", {"linear_solver": name}).settings["linear_solver_used"] == name
 
 
 @pytest.mark.parametrize(("name", "setting", "value"), [
@@ -178,24 +170,15 @@ IN_SECONDS = {
 
 def angles_at(name: str, engine_name: str, settings: Settings, speed: float) -> np.ndarray:
     """The angles of all links over a turn at a speed of the driver."""
-    scene = load_scene(name)
-    law = scene.driver.law
-    scene = replace(scene, driver=replace(scene.driver, law=replace(law, speed_rad_s=speed)))
-    done = run(
-        scene,
-        solve(scene, np.zeros(1)).state(),
-        engine_name,
-        dt_s=scene.driver.law.period_s / PER_TURN,
-        steps=PER_TURN,
-        settings=settings,
-    )
+    law = replace(load_scene(name).driver.law, speed_rad_s=speed)
+    done = ran(driven_by(law, name), engine_name, per_turn=PER_TURN, settings=settings, well=False)
     return np.stack([link.theta for link in done.motion.links.values()])
 
 
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("name", ENGINES)
 def test_without_them_a_speed_changes_no_angle(name: str, scene: str) -> None:
-    settings = resolved(engine(name).profiles["tuned"], None)
+    settings = tuned(name)
     assert engine(name).in_seconds(settings) == ()
     slow, fast = (angles_at(scene, name, settings, speed) for speed in (0.37, 211.0))
     error = np.abs(slow - angles_at(scene, name, settings, 10.0)).max()
@@ -206,8 +189,7 @@ def test_without_them_a_speed_changes_no_angle(name: str, scene: str) -> None:
     ("name", "setting"), [(name, each) for name, values in IN_SECONDS.items() for each in values]
 )
 def test_each_that_is_named_does(name: str, setting: str) -> None:
-    tuned = resolved(engine(name).profiles["tuned"], None)
-    settings = tuned | {setting: IN_SECONDS[name][setting]}
+    settings = tuned(name) | {setting: IN_SECONDS[name][setting]}
     if setting == "solref_timeconst_s":
         assert engine(name).in_seconds(settings) == ()  # it is not in force
         settings |= {"solref_timeconst_steps": 0.0}
@@ -231,33 +213,25 @@ def test_an_engine_that_has_such_has_them_as_shipped() -> None:
 @pytest.mark.parametrize("scene_name", ["fourbar-lecture-1", "sixbar-watt", "shaper"])
 def test_every_remedy_opens_and_none_is_what_tuned_has(name: str, scene_name: str) -> None:
     scene = load_scene(scene_name)
-    start = solve(scene, np.zeros(1)).state()
-    chosen = engine(name)
-    tuned = resolved(profile_of(chosen, "tuned"), {})
-    held = [chosen.open(scene, start, tuned, 1e-3, "prescribed").facts().settings]
-    for remedy in remedies(name, scene, start, tuned):
-        settings = resolved(profile_of(chosen, "tuned"), remedy)
-        facts = chosen.open(scene, start, settings, 1e-3, "prescribed").facts()
-        assert facts.settings not in held
-        held.append(facts.settings)
+    held = []
+    for remedy in ({}, *remedies(name, scene, start_of(scene), tuned(name))):
+        settings = runs.opened(scene, name, remedy, dt_s=1e-3).facts().settings
+        assert settings not in held
+        held.append(settings)
     assert len(held) > 2
 
 
 @pytest.mark.parametrize("name", offering("remedies"))
 def test_no_remedy_is_what_there_is_or_less(name: str) -> None:
     scene = load_scene("sixbar-watt")
-    start = solve(scene, np.zeros(1)).state()
-    tuned = resolved(profile_of(engine(name), "tuned"), {})
-    for remedy in remedies(name, scene, start, tuned):
-        left = remedies(name, scene, start, {**tuned, **remedy})
+    offered = remedies(name, scene, start_of(scene), tuned(name))
+    for remedy in offered:
+        left = remedies(name, scene, start_of(scene), tuned(name, remedy))
         assert remedy not in left
-        assert len(left) < len(remedies(name, scene, start, tuned))
+        assert len(left) < len(offered)
 
 
 def test_several_pins_are_named_with_plus_or_comma_between() -> None:
-    scene = load_scene("sixbar-watt")
-    start = solve(scene, np.zeros(1)).state()
     for text in ("B+G", "B,G", " B , G "):
-        settings = resolved(profile_of(engine("mujoco"), "tuned"), {"close": text})
-        session = engine("mujoco").open(scene, start, settings, 1e-3, "prescribed")
+        session = runs.opened(load_scene("sixbar-watt"), "mujoco", {"close": text}, dt_s=1e-3)
         assert set(str(session.facts().settings["close"]).split(", ")) == {"B", "G"}

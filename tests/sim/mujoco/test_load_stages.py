@@ -4,7 +4,6 @@ slider of a stroke turns back has its share.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
@@ -13,12 +12,10 @@ import pytest
 
 from analytic.free.release import release
 from analytic.free.window_chain import ChainMotion
-from analytic.kinematics import solve
 from models.array import Array
 from models.characteristics import Characteristic, Polynomial, Sine
 from models.files import load_scene, parse_scene
 from models.loads import Load
-from models.scene import Scene
 from models.staircase import Staircase
 from models.tabulated import Tabulated
 from models.waves import Pulse
@@ -26,9 +23,8 @@ from models.window_chain import Chain
 from sim.mujoco.load_stages import LoadStages, stage_sizes
 from sim.mujoco.session import MujocoSession
 from sim.mujoco.stroke_shares import forward_parts
-from sim.registry import engine
 from sim.run import run
-from sim.settings import resolved
+from tests.worlds.runs import acted_on, opened
 from tests.worlds.tiers import slowly
 
 DT_S = 0.01
@@ -38,17 +34,12 @@ SAW = Tabulated((0.0, 0.013), (0.0, 1.0), period=0.0271)
 FOURBAR = load_scene("fourbar-lecture-1")
 
 
-def with_torque(scene: Scene, link: str, course: Characteristic) -> Scene:
-    return replace(scene, loads={"torque": Load("torque", link, None, course)})
-
-
 def rod(course: Characteristic, integrator: str = "RK4") -> MujocoSession:
     """A rod without weight, under a torque, from 1 rad/s on."""
     chain = Chain(0, gravity_m_s2=0.0)
-    settings = resolved(engine("mujoco").profiles["tuned"], {"integrator": integrator})
-    state = ChainMotion(chain).motion(np.zeros(1)).state(0)
-    scene = with_torque(chain.scene(), "rocker0", course)
-    return MujocoSession(scene, state, settings, DT_S, "free")
+    given = {"start": ChainMotion(chain).motion(np.zeros(1)).state(), "dt_s": DT_S, "drive": "free"}
+    scene = acted_on(chain.scene(), Load("torque", "rocker0", None, course))
+    return opened(scene, "mujoco", {"integrator": integrator}, **given)
 
 
 def of_torque(course: Characteristic, time_s: Array) -> tuple[Array, Array]:
@@ -125,10 +116,9 @@ def test_other_integrators_are_given_the_load_of_each_step() -> None:
 def ends(steps: int, stages: str) -> Array:
     """The angles of a four-bar after 0.6 s, with loops whose stiffness is not the step's."""
     own = {"free_timeconst_steps": 0, "solref_timeconst_steps": 0, "solref_timeconst_s": 0.005}
-    settings = resolved(engine("mujoco").profiles["tuned"], own)
-    scene = with_torque(FOURBAR, "rocker", Sine(0.5, 0.3, 0.7))
-    dt_s, state = 0.6 / steps, solve(scene, np.zeros(1)).state()
-    session = MujocoSession(scene, state, settings, dt_s, "free")
+    scene = acted_on(FOURBAR, Load("torque", "rocker", None, Sine(0.5, 0.3, 0.7)))
+    dt_s = 0.6 / steps
+    session = opened(scene, "mujoco", own, dt_s=dt_s, drive="free")
     if stages != "own":
         session._loading._of_time = []
     if stages == "at the start":

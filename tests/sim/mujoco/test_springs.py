@@ -15,7 +15,6 @@ from scipy.integrate import solve_ivp  # type: ignore[import-untyped]  # ships n
 
 from analytic.free.machine import Machine
 from analytic.free.release import release
-from analytic.kinematics import solve
 from analytic.multibody.release_multibody import start_state
 from models.array import Array
 from models.characteristics import Polynomial
@@ -30,13 +29,12 @@ from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from models.waves import Pulse
 from sim.check import refuse_other_model
 from sim.mujoco.session import MujocoSession
-from sim.registry import engine
 from sim.run import run
-from sim.settings import resolved
+from tests.worlds import runs
 from tests.worlds.equilibrium import left_over
 from tests.worlds.let_go import released
+from tests.worlds.runs import acted_on
 
-TUNED = resolved(engine("mujoco").profiles["tuned"], None)
 DT_S = 1e-4
 START_RAD, SPEED_RAD_S = 0.7, 3.0
 
@@ -45,14 +43,12 @@ def let_go(name: str, *springs: Spring, speed_rad_s: float = SPEED_RAD_S) -> Sce
     """A shipped scene, let go in some position of its own."""
     scene = load_scene(name)
     driver = Driver(scene.driver.link, Released(START_RAD, speed_rad_s, 1.0))
-    return replace(scene, driver=driver, springs={one.name: one for one in springs})
+    return acted_on(replace(scene, driver=driver), *springs)
 
 
 def massless(scene: Scene) -> Scene:
-    sliders = {
-        name: replace(one, mass_kg=0.0, inertia_kg_m2=0.0) for name, one in scene.sliders.items()
-    }
-    return replace(scene, sliders=sliders)
+    blocks = {n: replace(s, mass_kg=0.0, inertia_kg_m2=0.0) for n, s in scene.sliders.items()}
+    return replace(scene, sliders=blocks)
 
 
 FOURBAR, CRANK = "fourbar-lecture-1", "slider-crank-excel-210"
@@ -81,7 +77,7 @@ SCENES = {
 
 
 def opened(scene: Scene) -> MujocoSession:
-    return MujocoSession(scene, released(scene)[0], TUNED, DT_S, "free")
+    return runs.opened(scene, "mujoco", start=released(scene)[0], dt_s=DT_S, drive="free")
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -117,11 +113,10 @@ def test_springs_are_no_reactions_and_nothing_drives_the_crank(name: str) -> Non
 
 def test_springs_of_a_driven_mechanism_are_borne_by_its_drive() -> None:
     spring = LineSpring("l", 300.0, 4.0, 0.1, ("B", "D"))
-    scene = replace(load_scene(FOURBAR), springs={"l": spring})
-    state, law = solve(scene, np.zeros(1)).state(), scene.driver.law
-    session = MujocoSession(scene, state, TUNED, law.period_s / 720, "prescribed")
+    scene = acted_on(load_scene(FOURBAR), spring)
+    session = runs.opened(scene, "mujoco")
     forces = session.record_forces(100, 1).forces.stretch(slice(5, None))
-    theta, omega, _ = law.at(forces.time_s)
+    theta, omega, _ = scene.driver.law.at(forces.time_s)
     machine = Machine(scene)
     _, slope = machine.inertia(theta)
     torque = 0.5 * slope * omega**2 - machine.push(forces.time_s, theta, omega)
@@ -131,11 +126,10 @@ def test_springs_of_a_driven_mechanism_are_borne_by_its_drive() -> None:
 def test_springs_under_the_servo_s_integrator_have_the_iterations_that_they_need() -> None:
     """With two of them `discrete` gives the run up at its first step."""
     scene = replace(load_scene(FOURBAR), springs=SCENES["where a loop closes"].springs)
-    state, dt_s = solve(scene, np.zeros(1)).state(), scene.driver.law.period_s / 720
-    done = run(scene, state, "mujoco", dt_s=dt_s, steps=20, drive="servo")
-    assert (done.status, done.warnings) == ("ok", ())
+    done = runs.ran(scene, "mujoco", steps=20, drive="servo")
+    assert done.warnings == ()
     assert (done.settings["iterations"], done.settings["iterations_of_springs"]) == (2, 20)
-    driven = run(scene, state, "mujoco", dt_s=dt_s, steps=20)
+    driven = runs.ran(scene, "mujoco", steps=20)
     assert "iterations_of_springs" not in driven.settings
 
 
@@ -170,7 +164,7 @@ def test_springs_dampers_and_motors_are_followed_to_fourth_order() -> None:
     """That of the steps; with inverse weights as compiled the give of the loop makes it second."""
     scene = let_go(FOURBAR, LineSpring("l", 30.0, 0.4, 0.1, ("B", "D")))
     motor = Load("motor", "crank", None, Polynomial((0.3, -0.05)), "omega")
-    scene = replace(scene, loads={"motor": motor})
+    scene = acted_on(scene, motor, *scene.springs.values())
     true, state = release(scene, 0.3), released(scene)[0]
     errors = []
     for steps in (300, 600):
@@ -207,7 +201,7 @@ def test_a_spring_between_bodies_that_never_turn_against_each_other_moves_nothin
     scene = parse_scene(TABLES, "here")
     idle = PinSpring("idle", 2.0, 0.1, 0.2, "R", ("table", "second"))
     state = start_state(scene)
-    model = mujoco.MjModel.from_xml_string(build(replace(scene, springs={"idle": idle}), state))
+    model = mujoco.MjModel.from_xml_string(build(acted_on(scene, idle), state))
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     assert np.all(data.qfrc_passive == 0.0)
@@ -286,8 +280,8 @@ def test_it_moves_as_lagrange_s_equations_say_to_fourth_order() -> None:
         state = done.y[:, -1]
     errors = []
     for dt_s in (4e-3, 2e-3):
-        ran = run(SCENE, start(), "mujoco", dt_s=dt_s, steps=round(END_S / dt_s), drive="free")
-        assert (ran.status, ran.reason) == ("ok", "")
+        given = {"dt_s": dt_s, "steps": round(END_S / dt_s), "drive": "free"}
+        ran = runs.ran(SCENE, "mujoco", start=start(), **given)
         ends = np.array([ran.motion.links[rod].theta[-1] for rod in SCENE.links])
         errors.append(np.abs(ends - state[:2]).max())
     assert errors[1] < 5e-9
