@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pandas as pd
 import pytest
-from rich.console import Console
 
 from models.files import shipped
 from models.scene import Scene
@@ -135,21 +133,3 @@ def made_cell() -> Callable[..., StoredCell]:
 @pytest.fixture(scope="session", name="run")
 def made_run() -> Callable[..., StoredRun]:
     return run
-
-
-@pytest.fixture
-def planted() -> Callable[..., Plant]:
-    """Plant the growth of one error of the first cell: MuJoCo, tuned."""
-
-    def make(growth: float, column: str = "position_pure") -> Plant:
-        def plant(frame: pd.DataFrame) -> None:
-            frame.loc[0, column] *= growth
-
-        return plant
-
-    return make
-
-
-@pytest.fixture
-def paper() -> Console:
-    return Console(width=100, record=True, file=io.StringIO())

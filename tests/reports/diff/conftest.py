@@ -2,15 +2,6 @@
 
 from __future__ import annotations
 
-from tests.worlds.stored_runs import (
-    made_cell,
-    made_run,
-    paper,
-    planted,
-    store,
-    stored,
-    swept,
-    verified,
-)
+from tests.worlds.stored_runs import made_cell, made_run, store, stored, swept, verified
 
-__all__ = ["made_cell", "made_run", "paper", "planted", "store", "stored", "swept", "verified"]
+__all__ = ["made_cell", "made_run", "store", "stored", "swept", "verified"]

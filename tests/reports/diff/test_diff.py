@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -25,11 +26,25 @@ from reports.results.changes.runs import CellCost, StoredCell, StoredRun
 from tests.worlds.tiers import few
 
 Copy = Callable[..., Path]
-Planted = Callable[..., Callable[[pd.DataFrame], None]]
 Run = Callable[..., tuple[int, str]]
 Make = Callable[..., StoredCell]
 Group = Callable[..., StoredRun]
 STEPS = (90.0, 180.0, 360.0, 720.0)
+
+
+def planted(growth: float, column: str = "position_pure") -> Callable[[pd.DataFrame], None]:
+    """Plants the growth of one error of the first cell: MuJoCo, tuned."""
+
+    def plant(frame: pd.DataFrame) -> None:
+        frame.loc[0, column] *= growth
+
+    return plant
+
+
+@pytest.fixture
+def paper() -> Console:
+    """A console that records what a pipe would get."""
+    return Console(width=100, record=True, file=io.StringIO())
 
 
 @pytest.fixture
@@ -56,9 +71,7 @@ def test_a_run_against_itself_or_with_another_comment_in_its_scene_ends_with_0(
         assert "NOT WORSE: 0 worse, 0 better, 4 equal, 0 new, 0 missing" in shown
 
 
-def test_a_planted_growth_ends_with_1_and_is_named(
-    stored: Copy, planted: Planted, diff: Run
-) -> None:
+def test_a_planted_growth_ends_with_1_and_is_named(stored: Copy, diff: Run) -> None:
     old, new = stored("old"), stored("new", planted(1.2))
     code, shown = diff(old, new)
     assert code == 1
@@ -70,7 +83,7 @@ def test_a_planted_growth_ends_with_1_and_is_named(
 
 
 def test_a_growth_below_the_factor_or_at_the_size_of_rounding_ends_with_0(
-    stored: Copy, planted: Planted, diff: Run
+    stored: Copy, diff: Run
 ) -> None:
     old, new = stored("old"), stored("new", planted(1.05))
     assert diff(old, new)[0] == 0
@@ -113,9 +126,7 @@ def test_costs_are_advice_and_only_told_of_one_processor(
     assert told is None or told in shown
 
 
-def test_a_scene_that_changed_is_told_and_not_compared(
-    stored: Copy, planted: Planted, diff: Run
-) -> None:
+def test_a_scene_that_changed_is_told_and_not_compared(stored: Copy, diff: Run) -> None:
     def renamed(frame: pd.DataFrame) -> None:
         frame.loc[1:, "scene"] = "another"
 
@@ -147,9 +158,7 @@ def test_versions_of_one_store_are_compared(store: Copy, diff: Run) -> None:
     assert "mujoco 3.6.0 -> 3.7.0" in shown
 
 
-def test_junit_has_a_case_for_every_cell(
-    stored: Copy, planted: Planted, diff: Run, tmp_path: Path
-) -> None:
+def test_junit_has_a_case_for_every_cell(stored: Copy, diff: Run, tmp_path: Path) -> None:
     path = tmp_path / "j.xml"
     old, new = stored("old", drop=(2,)), stored("new", planted(1.5), drop=(3,))
     assert diff(old, new, junit=path)[0] == 1
@@ -164,7 +173,7 @@ def test_junit_has_a_case_for_every_cell(
 
 
 def test_markdown_goes_to_the_terminal_or_to_a_file(
-    stored: Copy, planted: Planted, diff: Run, tmp_path: Path
+    stored: Copy, diff: Run, tmp_path: Path
 ) -> None:
     old, new, path = stored("old"), stored("new", planted(1.2)), tmp_path / "diff.md"
     code, printed = diff(old, new, format="md")
