@@ -284,16 +284,6 @@ def test_a_run_that_never_started_has_no_errors(fourbar: Scene, healthy: Run) ->
     assert compared(fourbar, replace(healthy, motion=None)) is None
 
 
-def test_the_pure_numbers_do_not_depend_on_the_size_of_the_scene(
-    fourbar: Scene, errors_of: Find, fake_engine: ModuleType
-) -> None:
-    disturb = fake_engine.turned_link("coupler", lambda t: 1e-4 * np.sin(7.0 * t))
-    small, large = (errors_of(scene, disturb) for scene in (fourbar, scaled(fourbar, 10.0)))
-    for quantity in ("angle", "position", "gap", "velocity"):
-        expected = pytest.approx(pure(small, quantity), rel=1e-6, abs=1e-12)
-        assert pure(large, quantity) == expected
-
-
 CHANGES: dict[str, Callable[[Scene], Scene]] = {
     "none": lambda scene: scene,
     "rotated by 0.7 rad": lambda scene: rotated(scene, 0.7),

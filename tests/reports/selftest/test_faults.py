@@ -184,19 +184,6 @@ def test_faults_of_dynamics_are_seen_in_every_engine_that_can_have_them() -> Non
     assert set(names) - everywhere == {"semi-implicit", "bias-left-on"}
 
 
-GRAVITY = places_of("gravity-left-on")
-
-
-@pytest.mark.parametrize(
-    "place",
-    few(GRAVITY, [at for at in GRAVITY if at[0] == FOURBAR], "the model of a block as well"),
-)
-def test_the_model_check_refuses_gravity_by_name(place: tuple[str, str]) -> None:
-    finding = planted("gravity-left-on", *place).finding
-    assert "does not hold" in finding.text
-    assert "gravity is (0.0, -9.81), not (0.0, 0.0) m/s^2" in finding.text
-
-
 @pytest.mark.parametrize(
     "place",
     few(
