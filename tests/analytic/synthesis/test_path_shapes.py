@@ -1,4 +1,4 @@
-"""Coupler curves: derivatives, limits, cognates, orders of angles, what an atlas tells apart."""
+"""Random four-bars with a crank, their coupler curves, and what an atlas of these tells apart."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import pytest
 from analytic.kinematics import solve_driven
 from analytic.synthesis.path.arc_length import at_shares, shares, smooth
 from analytic.synthesis.path.atlas import atlas, closed_starts, curves, similar
-from analytic.synthesis.path.candidate import in_order
+from analytic.synthesis.path.candidate import Candidate, in_order
 from analytic.synthesis.path.coupler_curve import CouplerCurve, assembled, cognates
 from analytic.synthesis.path.descriptors import descriptors, match
 from analytic.synthesis.path.fit import _Problem, placed
 from analytic.synthesis.path.path_draft import drafted
 from analytic.synthesis.path.pieces import open_starts, pieces
 from analytic.synthesis.path.spread import spread
-from analytic.synthesis.path.task import UnitPath
+from analytic.synthesis.path.task import PathTask, UnitPath
 from analytic.synthesis.path.timed_starts import _costs, timed_starts
 from analytic.synthesis.path.unit_four_bar import (
     BOUNDS,
@@ -33,7 +33,47 @@ from analytic.synthesis.path.unit_four_bar import (
 )
 from models.array import Array
 from models.errors import CrankcheckError
-from tests.analytic.synthesis.random_paths import random_curve, random_path
+
+LEAST_TRANSMISSION = math.radians(15.0)
+LARGEST = 10.0
+"""Of a link, over the radius of the coupler curve, and of the points on it."""
+
+
+def random_curve(rng: np.random.Generator) -> CouplerCurve:
+    """A four-bar whose crank turns fully, with a transmission angle of 15 degrees or more and links
+    that are no more than ten times as long as its curve is wide."""
+    while True:
+        a, b, c = np.exp(rng.uniform(math.log(0.1), math.log(5.0), 3)).tolist()
+        angle, radius = rng.uniform(0.0, math.tau), 1.8 * math.sqrt(rng.random())
+        arm = b * (0.5 + radius * complex(math.cos(angle), math.sin(angle)))
+        one = CouplerCurve(0j, 1.0 + 0j, a, b, c, arm, 1 if rng.random() < 0.5 else -1)
+        if one.family == "limited":
+            continue
+        turn = np.linspace(0.0, math.tau, 100)
+        good = Candidate(one, turn, np.zeros(100)).least_sine > math.sin(LEAST_TRANSMISSION)
+        if good and one.size < LARGEST * float(np.std(one.at(turn))):
+            return one.moved(complex(*rng.normal(size=2)), complex(*rng.normal(size=2)))
+
+
+def random_path(
+    seed: int, count: int, *, timed: bool, closed: bool, noise: float = 0.0
+) -> tuple[CouplerCurve, Array, PathTask]:
+    """A four-bar, its crank's angles [rad], and the points it goes through there, each moved by a
+    share of their spread; of links no longer than ten times the radius of these points."""
+    rng = np.random.default_rng(seed)
+    while True:
+        one = random_curve(rng)
+        span = math.tau * (1.0 - 1.0 / count) if closed else rng.uniform(1.0, 5.0)
+        angles = rng.uniform(0.0, math.tau) + np.linspace(0.0, span, count)
+        angles *= 1.0 if rng.random() < 0.5 else -1.0
+        if one.size < LARGEST * float(np.std(one.at(angles))):
+            break
+    points = one.at(angles)
+    off = rng.normal(size=count) + 1j * rng.normal(size=count)
+    points += noise * np.std(points) * off
+    crank = tuple((angles - 3.0).tolist()) if timed else None
+    return one, angles, PathTask(tuple(points.tolist()), crank, closed)
+
 
 FAMILIES: tuple[Family, ...] = (*FULL, "limited")
 
