@@ -19,13 +19,10 @@ from tests.reports.drawing.test_moving import unpacked
 HOSTILE = "</script><script>alert(1)</script><!--\u2028\u2029&'\""
 
 
-def test_a_hostile_text_stays_in_its_script() -> None:
+def test_hostile_text_stays_in_its_script_and_what_is_no_number_is_null() -> None:
     text = str(embedded({HOSTILE: [HOSTILE, {"deep": HOSTILE}]}))
     assert not re.search("[<>&\u2028\u2029]", text)
     assert json.loads(text) == {HOSTILE: [HOSTILE, {"deep": HOSTILE}]}
-
-
-def test_numbers_are_thinned_and_what_is_no_number_is_null() -> None:
     text = str(embedded({"a": np.array([1 / 3, math.nan, math.inf, 2.0]), "b": True, "c": None}))
     assert text == '{"a":[0.333333,null,null,2],"b":true,"c":null}'
     assert finite(np.float64(-1.23456789e-9), DIGITS) == -1.23457e-9
@@ -52,13 +49,10 @@ def test_single_samples_come_back_to_seven_digits() -> None:
     assert np.isnan(found[4])
 
 
-def test_packed_samples_that_are_missing_are_told_from_zero() -> None:
+def test_missing_samples_are_told_from_zero_and_the_size_of_rows_is_known_beforehand() -> None:
     found = packed(np.array([[math.nan, 0.0, math.inf, 1.0], [0.0, 0.0, 0.0, math.nan]]))
     whole = np.frombuffer(base64.b64decode(str(found["base64"])), "<i2").reshape(2, 4)
     assert whole.tolist() == [[-32768, 0, -32768, LEVELS], [0, 0, 0, -32768]]
-
-
-def test_the_size_of_packed_rows_is_known_beforehand() -> None:
     rows = np.random.default_rng(1).normal(size=(17, 91))
     assert size_of(17, 91) == pytest.approx(len(str(embedded(packed(rows)))), rel=0.05)
 

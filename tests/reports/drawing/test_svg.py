@@ -65,10 +65,9 @@ def test_a_mechanism_without_a_whole_turn_is_told_by_its_error(fourbar: Scene) -
         svg(replace(fourbar, links={**fourbar.links, "crank": long}))
 
 
-@pytest.mark.parametrize("colour", COLOURS)
 @pytest.mark.parametrize("paper", ["#ffffff", "#111111", "#1e1e1e"])
-def test_links_are_seen_on_white_and_on_black(colour: str, paper: str) -> None:
-    assert contrast(colour, paper) >= 3.0
+def test_links_are_seen_on_white_and_on_black(paper: str) -> None:
+    assert [colour for colour in COLOURS if contrast(colour, paper) < 3.0] == []
 
 
 def test_an_arrow_goes_from_its_pin_along_its_force(fourbar: Scene) -> None:
@@ -108,11 +107,9 @@ def test_beside_a_dead_point_an_arrow_is_cut_off_and_has_no_head() -> None:
     assert cut == pytest.approx([CUT * LONGEST * arrows.size] * len(cut))
 
 
-@pytest.mark.parametrize(
-    ("value", "bar"), [(0.7, 0.5), (1.0, 1.0), (199.0, 100.0), (4e-3, 2e-3), (5.0, 5.0)]
-)
-def test_the_bar_is_a_round_number(value: float, bar: float) -> None:
-    assert rounded(value) == pytest.approx(bar, rel=1e-12)
+def test_the_bar_is_a_round_number() -> None:
+    bars = {0.7: 0.5, 1.0: 1.0, 199.0: 100.0, 4e-3: 2e-3, 5.0: 5.0}
+    assert {value: rounded(value) for value in bars} == pytest.approx(bars, rel=1e-12)
 
 
 def test_with_forces_a_picture_has_arrows_and_a_bar_where_some_act(

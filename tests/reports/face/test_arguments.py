@@ -162,7 +162,7 @@ def test_numbers_of_numpy_and_paths_are_taken(tmp_path: Path) -> None:
     assert crankcheck.compare(crankcheck.load_scene(path), done).worst("angle") is not None
 
 
-def test_what_is_of_another_scene_is_refused(
+def test_what_is_of_another_scene_and_of_a_run_what_only_a_log_has_to_be_told_is_refused(
     ran: crankcheck.Simulation, lagging: crankcheck.Simulation
 ) -> None:
     for call in (crankcheck.compare, crankcheck.judge, assert_within):
@@ -174,9 +174,6 @@ def test_what_is_of_another_scene_is_refused(
         crankcheck.judge(other, ran)
     with pytest.raises(crankcheck.CrankcheckError, match=f"motion is of {SCENE}, not of"):
         crankcheck.judge("shaper", crankcheck.solve(SCENE), target=1)
-
-
-def test_a_run_says_itself_what_a_log_has_to_be_told(ran: crankcheck.Simulation) -> None:
     for option, value in {"step_s": 1e-3, "drive": "fitted", "map": {}, "require": "angle"}.items():
         with pytest.raises(crankcheck.CrankcheckError, match=f"^{option}: it is of logs, and this"):
             crankcheck.judge(SCENE, ran, **{option: value})

@@ -101,7 +101,9 @@ def test_an_engine_is_switched_as_a_whole(page: Page, section: str) -> None:
     assert engine.evaluate("each => each.indeterminate")
 
 
-def test_a_marker_tells_its_settings(page: Page) -> None:
+def test_a_marker_tells_its_settings_and_another_scene_and_cost_are_shown(page: Page) -> None:
+    x = "() => document.getElementById('precision-chart').data[1].x"
+    over_all = page.evaluate(x)
     page.select_option("#precision-scene", "fourbar-lecture-1")
     page.evaluate(HOVER, 3)
     label = page.locator("#precision-chart .hovertext")
@@ -109,11 +111,6 @@ def test_a_marker_tells_its_settings(page: Page) -> None:
     told = label.text_content() or ""
     for words in ("pymunk no bias", "180 steps a turn", "error_bias 0", "tolerance"):
         assert words in told
-
-
-def test_the_diagram_shows_another_scene_and_another_cost(page: Page) -> None:
-    x = "() => document.getElementById('precision-chart').data[1].x"
-    over_all = page.evaluate(x)
     page.select_option("#precision-scene", "shaper")
     assert page.evaluate(x) != over_all
     page.select_option("#precision-cost", "steps")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -11,43 +12,34 @@ import numpy as np
 import pytest
 from playwright.sync_api import Locator, Page
 
+from models.array import Array
 from reports.drawing.packed import packed
 from reports.page.build import stability_page
 from reports.stability.matrix import Matrix
 from tests.reports.page.tab import OUT, Tab
 from tests.reports.page.test_hard import evil, one_case
+from tests.reports.page.test_style import contrast
 from tests.worlds.tiers import slow
 
 TRUTH, RUN = "#hard-picture .reference .link", "#hard-picture .overlays .link"
 WIDTHS = "each => [each.scrollWidth, each.clientWidth]"
 Write = Callable[[str], Path]
 STEPPED = """() => {
-  const ids = ['hard-failures', 'hard-row', 'hard-after'];
-  const [choice, row, after] = ids.map((id) => document.getElementById(id));
-  const now = () => [choice.value, row.getBoundingClientRect().top];
-  const seen = [now()];
-  while (!after.disabled) {
-    after.click();
-    seen.push(now());
-  }
-  return [seen.map((each) => each[0]), seen.map((each) => each[1])];
+  const [choice, row, after] = ['failures', 'row', 'after'].map(
+    each => document.getElementById(`hard-${each}`));
+  const seen = [];
+  const note = () => seen.push([choice.value, row.getBoundingClientRect().top]);
+  for (note(); !after.disabled; note()) after.click();
+  return seen;
 }"""
-CONTRASTS = """() => {
-  const parts = (text) => {
-    const numbers = text.match(/[\\d.]+/g).map(Number);
-    return text.startsWith('rgb') ? numbers.slice(0, 3).map((n) => n / 255) : numbers.slice(0, 3);
-  };
-  const bright = (colour) => {
-    const linear = (c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
-    const [r, g, b] = parts(colour).map(linear);
-    return 0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05;
-  };
-  return [...document.querySelectorAll('button.cell :is(b, .at)')].map((each) => {
-    const cell = bright(getComputedStyle(each.closest('.cell')).backgroundColor);
-    const ink = bright(getComputedStyle(each).color);
-    return Math.max(cell, ink) / Math.min(cell, ink);
-  });
-}"""
+COLOURS = """all => all.map(each => [getComputedStyle(each).color,
+  getComputedStyle(each.closest('.cell')).backgroundColor])"""
+
+
+def parts(colour: str) -> Array:
+    """Red, green and blue of a colour as a browser tells it."""
+    numbers = np.array([float(each) for each in re.findall(r"[\d.]+", colour)[:3]])
+    return numbers / 255 if colour.startswith("rgb") else numbers
 
 
 def cell(page: Page, number: int) -> Locator:
@@ -164,8 +156,8 @@ def test_the_failures_are_gone_through_one_by_one(opened: Tab, hard_matrix: Matr
     before, after = opened.page.locator("#hard-before"), opened.page.locator("#hard-after")
     assert before.is_disabled()
     after.scroll_into_view_if_needed()
-    seen, tops = opened.page.evaluate(STEPPED)
-    assert seen == failed
+    seen, tops = zip(*opened.page.evaluate(STEPPED), strict=True)
+    assert list(seen) == failed
     assert after.is_disabled()
     assert max(tops) - min(tops) <= 2  # the map moves, and what is looked at stays
     before.click()
@@ -235,9 +227,9 @@ def test_all_can_be_read_in_both_themes_without_scrolling_aside(opened: Tab, pag
     assert inner <= outer
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
-        ratios = page.evaluate(CONTRASTS)
-        assert len(ratios) > 90
-        assert min(ratios) >= 4.5
+        found = page.locator("button.cell :is(b, .at)").evaluate_all(COLOURS)
+        assert len(found) > 90
+        assert min(contrast(parts(ink), parts(ground)) for ink, ground in found) >= 4.5
 
 
 def test_hostile_text_does_nothing(wide: Tab, hard_matrix: Matrix, written: Write) -> None:

@@ -41,13 +41,15 @@ LIGHT, SYSTEM_DARK, DARK = themes()
 THEMES = pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
 
 
-def linear(colour: str) -> Array:
-    """Linear red, green and blue."""
-    parts = np.array([int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
+def linear(colour: str | Array) -> Array:
+    """Linear red, green and blue of a colour as in a style sheet, or of its parts."""
+    parts = colour
+    if isinstance(colour, str):
+        parts = np.array([int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
     return np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
 
 
-def contrast(a: str, b: str) -> float:
+def contrast(a: str | Array, b: str | Array) -> float:
     """The contrast ratio of WCAG 2."""
     dark, light = sorted(float(TO_XYZ[1] @ linear(colour)) for colour in (a, b))
     return (light + 0.05) / (dark + 0.05)
