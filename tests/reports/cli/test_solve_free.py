@@ -1,5 +1,5 @@
-"""`crankcheck solve` and `view` of a scene that is let go: tables, files, figures, a page.
-More of what it tells is in `test_told.py`."""
+"""`crankcheck solve` and `view` of a scene that is let go, or has elastic links: tables, files,
+figures, a page. More of what they tell is in `test_told.py`."""
 
 from __future__ import annotations
 
@@ -11,17 +11,21 @@ import pandas as pd
 import pytest
 from PIL import Image
 
+from analytic.elastic.discretisation import REFERENCE
+from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.free.release import release
+from analytic.kinematics import solve
 from models.files import load_scene
 from tests.worlds.command_line import crank, flat, refused, told
 from tests.worlds.let_go import EVERYTHING
+from tests.worlds.tiers import slow
 from tests.worlds.without_pdf import without_pdf
 
-SHORT = "solve fourbar-swing --duration 0.5"
+SWING = "solve fourbar-swing --duration 0.5"
 
 
 def test_the_free_motion_is_told_with_its_energy_and_how_sure_it_is() -> None:
-    output = told(f"{SHORT} --steps 4")
+    output = told(f"{SWING} --steps 4")
     said = flat(output)
     assert "mobility 1; driver crank, let go at rest at 0 deg, for 10 s; groups" in said
     assert re.search(r"the angle of crank is off by at most \d.\de-\d\d rad at 0.5 s\.", said)
@@ -44,7 +48,7 @@ def test_instants_on_the_way_are_told(tmp_path: Path) -> None:
 
 def test_a_file_has_the_motion_the_energies_and_the_sensitivity(tmp_path: Path) -> None:
     path = tmp_path / "swing.csv"
-    told(SHORT, "-o", path)
+    told(SWING, "-o", path)
     frame = pd.read_csv(path)
     assert len(frame) == 1001
     free = release(load_scene("fourbar-swing"), 0.5)
@@ -64,7 +68,7 @@ def test_a_file_has_the_motion_the_energies_and_the_sensitivity(tmp_path: Path) 
 def test_figures_and_a_page_are_written(tmp_path: Path) -> None:
     page, folder = tmp_path / "page.html", tmp_path / "figures"
     with without_pdf():
-        told(SHORT, "--figures", folder, "-o", page)
+        told(SWING, "--figures", folder, "-o", page)
     names = {each.name for each in folder.iterdir()}
     assert names == {f"{n}.{k}" for n in ("over-time", "energy", "phase") for k in ("svg", "pdf")}
     text = page.read_text(encoding="utf-8")
@@ -95,3 +99,114 @@ def test_what_shows_on_the_way_is_one_message(fault: str, tmp_path: Path) -> Non
     result = crank("solve", path, "--duration", "0.3")
     refused(result, said)
     assert result.stderr.startswith("crankcheck: ")
+
+
+NAME = "fourbar-elastic"
+BENDS = f"solve {NAME}"
+
+
+@pytest.fixture(scope="module")
+def motion() -> DrivenElasticMotion:
+    """The motion of the shipped scene over a turn."""
+    scene = load_scene(NAME)
+    return DrivenElasticMotion(
+        scene, scene.driver.law.period_s, REFERENCE, "periodic", stiffened=True
+    )
+
+
+def test_it_tells_how_links_bend_and_how_far_that_is_to_be_trusted(
+    motion: DrivenElasticMotion,
+) -> None:
+    output = told(f"{BENDS} --steps-per-turn 4")
+    assert max(len(line.rstrip()) for line in output.splitlines()) <= 100
+    said = flat(output)
+    assert "bends with EI = 4.725 N m^2, from 77.3704 rad/s on (10.5 times the speed" in said
+    assert "elastic links by 8 polynomials across each, with the shortening of bent links" in said
+    assert "Starts on the periodic motion: it comes back after a period" in said
+    assert re.search(r"deflections are off by about \d.\de-\d\d of the largest", said)
+    assert "Near resonance" not in said
+    quarter = motion.at(np.array([0.25 * motion.until_s]))
+    middle = float(quarter.elastic["coupler"].middle[0])
+    row, *_ = re.findall(r"^ *0\.2131743 +180 +(\S+)", output, flags=re.MULTILINE)
+    assert float(row) == pytest.approx(middle, rel=1e-5)
+    (largest,) = re.findall(r"deflection of its middle +(\S+) +m +\S+ deg", output)
+    fine = motion.at(np.linspace(0.0, motion.until_s, 721)).elastic["coupler"].middle
+    assert float(largest) == pytest.approx(float(np.max(np.abs(fine))), rel=1e-4)
+
+
+def test_the_linear_theory_says_what_it_leaves_out() -> None:
+    """ELASTIC: 1.28 % of the largest deflection at a frequency ratio of 10.5."""
+    said = flat(told(f"{BENDS} --linear --modes 3 --steps-per-turn 2"))
+    assert "by 3 sines across each, without the shortening of bent links (linear" in said
+    (percent,) = re.findall(r"changes deflections by (\S+) % of the largest", said)
+    assert float(percent) == pytest.approx(1.28, abs=0.05)
+
+
+def test_a_file_has_both_motions_to_the_last_bit(
+    motion: DrivenElasticMotion, tmp_path: Path
+) -> None:
+    path = tmp_path / "out.csv"
+    told(f"{BENDS} --steps-per-turn 9 --forces -o", path)
+    frame = pd.read_csv(path)
+    time_s = frame["time_s"].to_numpy()
+    whole, rigid = motion.at(time_s), solve(motion.scene, time_s, bound=False)
+    coupler, links = whole.elastic["coupler"], whole.links
+    for column, values, atol in (
+        ("coupler_deflection_m", coupler.middle, 1e-15),
+        ("coupler_extension_m", coupler.extension, 1e-15),
+        ("rocker_theta_rad", links["rocker"].theta, 1e-13),
+        ("rocker_theta_rigid_rad", rigid.links["rocker"].theta, 0.0),
+        ("torque_n_m", whole.forces.torque, 1e-11),
+    ):
+        np.testing.assert_allclose(frame[column], values, rtol=0, atol=atol, err_msg=column)
+    assert "torque_rigid_n_m" in frame
+
+
+def test_figures_are_written(tmp_path: Path) -> None:
+    folder = tmp_path / "figures"
+    with without_pdf():
+        told(BENDS, "--figures", folder)
+    names = {each.name for each in folder.iterdir()}
+    every = ("deflection", "extension", "torque", "angles", "positions")
+    assert names == {f"{n}.{k}" for n in every for k in ("svg", "pdf")}
+    assert "magnified 50 times" in (folder / "positions.svg").read_text(encoding="utf-8")
+
+
+@slow("a second, for the figures of above in one page; tests/reports/page looks at such a page")
+def test_a_page_is_written(tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    told(BENDS, "-o", page)
+    text = page.read_text(encoding="utf-8")
+    assert text.count("data:image/svg+xml;base64,") == 5
+    assert "Starts on the periodic motion" in text
+
+
+PULSE = "solve fourbar-elastic-pulse --modes 1 --duration 0.1"
+"""A tenth of the pulse, on one sine."""
+
+
+def test_what_is_let_go_keeps_its_energy(tmp_path: Path) -> None:
+    path = tmp_path / "out.csv"
+    told(PULSE, "-o", path)
+    frame = pd.read_csv(path)
+    assert len(frame) == 1001
+    energy = frame["kinetic_j"] + frame["potential_j"] - frame["work_j"]
+    assert np.max(np.abs(energy - energy[0])) < 1e-9 * frame["kinetic_j"].max()
+    apart = frame["crank_theta_rad"] - frame["crank_theta_rigid_rad"]
+    assert 0.0 < np.max(np.abs(apart)) < 1e-2
+    said = flat(told(PULSE.replace("0.1", "0.02"), "--steps", 2))
+    assert "driver crank, let go at rest at 90 deg, for 5 s" in said
+    assert "As the next finer description has it, deflections are off by about " in said
+
+
+@slow("figures and a page: two seconds, as those of what is driven, whose drawing they share")
+def test_what_is_let_go_has_the_figures_of_the_thesis(tmp_path: Path) -> None:
+    """Crank and rocker, rigid beside elastic, deflection of the middle, displacement of the end."""
+    folder, page = tmp_path / "figures", tmp_path / "page.html"
+    told(PULSE, "--figures", folder)
+    names = {"deflection", "extension", "angles", "positions"}
+    assert {each.stem for each in folder.iterdir()} == names
+    angles = (folder / "angles.svg").read_text(encoding="utf-8")
+    assert all(f"{name} [deg]" in angles for name in ("crank", "rocker"))
+    told(PULSE, "-o", page)
+    assert "the lines between the pins; coloured: the links" in flat(page.read_text("utf-8"))
