@@ -1,9 +1,12 @@
 """Logs and maps that can not be judged: each is refused with exit code 2 and one message, which
 names the place, what was found and what would work; nothing is written, and it takes no more calls,
-and hardly more memory, than a log of the same size that is right."""
+and hardly more memory, than a log of the same size that is right. And a right one of a million rows
+is judged in 1 GB, and in as many calls as a short one: a user records as much in a quarter of an
+hour at 1 kHz."""
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Iterator
@@ -11,6 +14,9 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv as pc
 import pytest
 
 from reports.workers.isolated import Isolated, Limits, Lost
@@ -26,9 +32,13 @@ from tests.worlds.bad_logs import (
     text,
 )
 from tests.worlds.fuzzing import Ended, attempt
-from tests.worlds.tiers import few
+from tests.worlds.stranger import FOURBAR
+from tests.worlds.stranger_faults import COLUMNS
+from tests.worlds.stranger_log import even, logged
+from tests.worlds.tiers import few, slow
 
 PLAIN = "judge fourbar-lecture-1 FILE --target 1e-3 -o OUT.html --json OUT.json"
+ALONE = "judge fourbar-lecture-1 FILE --target 1e-3 --json OUT.json"
 CALLS, LESS = 2_000_000, 300_000_000
 """Calls of functions and memory [byte], those of imports counted: what looks at each byte of 9 MB
 takes more."""
@@ -182,3 +192,38 @@ def test_a_log_that_may_not_be_read_is_refused(apart: Isolated[Ended]) -> None:
     assert isinstance(ended, Ended)
     assert ended.code == 2
     assert "ermission" in ended.errors
+
+
+TURNS, PER_TURN = 1000, 1000
+
+
+def many_turns(path: Path, turns: int) -> None:
+    """One turn of the four-bar over and over, of which the crank's angle and the time go on."""
+    turn = logged(FOURBAR, even(FOURBAR, 1.0, PER_TURN)[:-1], COLUMNS["fourbar-lecture-1"][:8])
+    number = np.repeat(np.arange(turns), PER_TURN)
+    on = {"time_s": FOURBAR.period_s, "crank_deg": math.degrees(math.tau)}
+    columns = {c: np.tile(series, turns) + on.get(c, 0.0) * number for c, series in turn.items()}
+    pc.write_csv(pa.table(columns), path)
+
+
+@slow("only here is a log so long that a copy too many of it would not fit")
+def test_a_million_rows_are_judged_in_a_gigabyte_and_as_many_calls_as_a_thousand(
+    tmp_path: Path,
+) -> None:
+    apart: Isolated[Ended] = Isolated(Limits(time_s=600.0, memory_gb=4.0))
+    judged = partial(attempt, name="log.csv", counted=True)
+    ended = []
+    try:
+        for turns in (1, 1, TURNS):  # the first imports what it needs
+            path = tmp_path / f"{turns}.csv"
+            many_turns(path, turns)
+            ended.append(apart.call(judged, partial(os.symlink, path), *ALONE.split()))
+    finally:
+        apart.close()
+    for one in ended:
+        assert isinstance(one, Ended), one
+        assert one.faults == []
+        assert one.code == 0, one.output + one.errors
+    _, short, long = ended
+    assert long.calls < 2 * short.calls
+    assert long.peak < 1_000_000_000

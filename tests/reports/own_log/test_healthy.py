@@ -1,11 +1,14 @@
 """A stranger's log of a linkage that is right is within, in whatever dress it comes.
 
-The limit is 1e-3 rad, or of a length; what a dress takes away is less.
+The limit is 1e-3 rad, or of a length; what a dress takes away is less. The stranger's integration
+is a second opinion: it shares no line with ours, and agrees.
 """
 
 from __future__ import annotations
 
+import ast
 import json
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -16,13 +19,15 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from analytic.kinematics import solve
+from models.array import Array
+from models.files import load_scene
 from tests.reports.own_log.conftest import Judge
+from tests.worlds import stranger
 from tests.worlds.fuzzing import ACTING
-from tests.worlds.stranger import FOURBAR, LINKAGES, Linkage
-from tests.worlds.stranger_faults import COLUMNS
-from tests.worlds.stranger_guises import GERMAN, GUISES, PER_TURN, SHORT, disguised
-from tests.worlds.stranger_log import DEG, Dress, Log, even, logged, single, uneven
-from tests.worlds.stranger_map import map_text
+from tests.worlds.stranger import FOURBAR, LINKAGES, Linkage, course
+from tests.worlds.stranger_faults import COLUMNS, GERMAN, GUISES, PER_TURN, SHORT, disguised
+from tests.worlds.stranger_log import DEG, Dress, Log, even, logged, map_text, single, uneven
 
 PLAIN = "fourbar-lecture-1"
 TURN = logged(FOURBAR, even(FOURBAR, 1.0, PER_TURN), SHORT)
@@ -172,3 +177,61 @@ def test_nor_does_that_of_a_column_that_is_out(name: str, judge: Judge) -> None:
 def harmless(output: str) -> None:
     assert not ACTING.search(output)
     assert len(output) < 6000
+
+
+CLOSE = 1e-8
+"""Of an angle, a length or a velocity [SI]; accelerations are ten times those."""
+
+
+def near(found: Array, ours: Array, off: float = CLOSE) -> None:
+    np.testing.assert_allclose(found, ours, rtol=0.0, atol=off)
+
+
+def test_it_imports_nothing_of_ours() -> None:
+    tree = ast.parse(Path(stranger.__file__).read_text(encoding="utf-8"))
+    each = list(ast.walk(tree))
+    modules = [str(one.module) for one in each if isinstance(one, ast.ImportFrom)]
+    modules += [name.name for one in each if isinstance(one, ast.Import) for name in one.names]
+    ours = {"models", "analytic", "sim", "reports", "crankcheck", "tests"}
+    assert "numpy.typing" in modules
+    assert not ours & {name.split(".")[0] for name in modules}
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_it_moves_as_the_reference_does(name: str) -> None:
+    linkage = LINKAGES[name]
+    motion = course(linkage, uneven(linkage, samples_per_turn=90))
+    reference = solve(load_scene(name), motion.time_s, bound=False)
+    assert set(linkage.bars) == set(reference.links)
+    for bar, link in reference.links.items():
+        theta, omega, alpha = motion.angle(bar)
+        off = theta - link.theta
+        assert np.ptp(off) < CLOSE
+        assert abs(math.remainder(off[0], math.tau)) < CLOSE
+        near(omega, link.omega)
+        near(alpha, link.alpha, 10.0 * CLOSE)
+    for pin in set(reference.points) - set(linkage.ground):
+        ours = reference.points[pin]
+        position, velocity, acceleration = motion.point(pin)
+        near(position, ours.position)
+        near(velocity, ours.velocity)
+        near(acceleration, ours.acceleration, 10.0 * CLOSE)
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_put_together_the_other_way_it_is_elsewhere_and_as_long(name: str) -> None:
+    linkage = LINKAGES[name]
+    time_s = np.linspace(0.0, linkage.period_s, 61)
+    one, other = course(linkage, time_s), course(linkage.otherwise(), time_s)
+    bar, points = list(linkage.bars.items())[-1]
+    for motion in (one, other):
+        (first, *_), (last, *_) = (motion.point(end, on=bar) for end in list(points)[:2])
+        length = math.dist(*list(points.values())[:2])
+        np.testing.assert_allclose(np.hypot(*(last - first).T), length, atol=1e-15, rtol=1e-12)
+    assert np.min(np.abs(one.angle(bar)[0] - other.angle(bar)[0])) > 0.1
+
+
+def test_copies_of_a_pin_come_together() -> None:
+    motion = course(stranger.SIXBAR, np.linspace(0.0, 1.0, 101))
+    for pin, bars in {"C": ("coupler", "rocker"), "F": ("rod", "lever")}.items():
+        near(*(motion.point(pin, on=bar)[0] for bar in bars))

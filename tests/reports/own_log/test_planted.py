@@ -17,10 +17,16 @@ import pytest
 
 from tests.reports.own_log.conftest import Judge
 from tests.worlds.stranger import LINKAGES
-from tests.worlds.stranger_faults import COLUMNS, CULPRITS, Planted, averaged, planted, stuck
-from tests.worlds.stranger_guises import disguised
-from tests.worlds.stranger_log import Dress, Log, even, logged, uneven
-from tests.worlds.stranger_map import map_text
+from tests.worlds.stranger_faults import (
+    COLUMNS,
+    CULPRITS,
+    Planted,
+    averaged,
+    disguised,
+    planted,
+    stuck,
+)
+from tests.worlds.stranger_log import Dress, Log, even, logged, map_text, uneven
 from tests.worlds.tiers import few, slow
 
 PER_TURN = 60
