@@ -6,7 +6,6 @@ import csv
 import io
 import os
 import shutil
-import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -31,6 +30,7 @@ from tests.worlds.tiers import slow, slowly
 posix = pytest.mark.skipif(sys.platform == "win32", reason="the installer is a POSIX script")
 
 SCENE = "fourbar-lecture-1"
+OTHERS = ({"turns": 2.0}, {"profiles": ["tuned"]}, {"scenes": ["shaper"]}, {"again": True})
 
 
 @pytest.fixture(scope="module")
@@ -43,16 +43,11 @@ def path_with(installer: Path) -> dict[str, str]:
     return {"PATH": f"{installer}{os.pathsep}{os.environ['PATH']}"}
 
 
-@pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("cache")
-
-
 History = Callable[..., tuple[int, str, str]]
 
 
 @pytest.fixture
-def history(installer: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> History:
+def history(installer: Path, monkeypatch: pytest.MonkeyPatch) -> History:
     """Run the command; exit code, output with single spaces, complaint."""
     monkeypatch.setenv("PATH", path_with(installer)["PATH"])
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, sys.path)))
@@ -60,9 +55,11 @@ def history(installer: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> Hi
     monkeypatch.setattr(verification, "code_key", lambda: code)
 
     def run(*versions: str, **options: object) -> tuple[int, str, str]:
-        given = {"scenes": [SCENE], "turns": 1.0, "steps_per_turn": 360.0, "cache": cache} | options
+        usual = {"scenes": [SCENE], "turns": 1.0, "steps_per_turn": 360.0}
         streams = io.StringIO(), io.StringIO()
-        request = HistoryRequest("mujoco", versions, **given)  # type: ignore[arg-type]
+        request = HistoryRequest(
+            "mujoco", versions, **{**usual, "cache": installer / "cache"} | options
+        )
         code = run_history(request, *[Console(file=stream, width=100) for stream in streams])
         return code, flat(streams[0].getvalue()), streams[1].getvalue()
 
@@ -71,18 +68,13 @@ def history(installer: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> Hi
 
 @posix
 @pytest.mark.parametrize(
-    "versions",
-    [["3.7.0"], slowly(["3.7.0", "3.6.0"], reason="a second more: below, two are compared")],
+    "names", ["3.7.0", slowly("3.7.0 3.6.0", reason="a second more: below, two are compared")]
 )
 def test_versions_are_installed_run_compared_and_kept(
-    versions: list[str],
-    history: History,
-    installer: Path,
-    cache: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    names: str, history: History, installer: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """In a folder whose packages have our names, which change nothing."""
+    versions, cache = names.split(), installer / "cache"
     monkeypatch.chdir(shadows(tmp_path / "mine"))
     shutil.rmtree(cache / "history", ignore_errors=True)
     (installer / "log").unlink(missing_ok=True)
@@ -171,16 +163,7 @@ def test_two_versions_are_compared(history: History, measured: list[Path], tmp_p
     held_to_one_another(output, tmp_path / "out")
 
 
-@pytest.mark.parametrize(
-    "other",
-    [
-        {"turns": 2.0},
-        {"profiles": ["tuned"]},
-        {"dt_s": 2e-3, "steps_per_turn": None},
-        {"scenes": ["shaper"]},
-        {"again": True},
-    ],
-)
+@pytest.mark.parametrize("other", [*OTHERS, {"dt_s": 2e-3, "steps_per_turn": None}])
 def test_another_request_is_not_answered_from_the_cache(
     history: History, measured: list[Path], tmp_path: Path, other: dict[str, object]
 ) -> None:
@@ -206,19 +189,14 @@ def test_another_text_of_a_scene_is_not_answered_from_the_cache(
 
 @posix
 @slow("a start of the command, and what it finds there as well; in this process it is above")
-def test_packages_of_our_names_in_the_working_folder_change_nothing(
-    installer: Path, cache: Path, tmp_path: Path
+def test_packages_of_our_names_in_the_folder_change_nothing(
+    programs: Start, installer: Path, tmp_path: Path
 ) -> None:
-    options = ("--turns", "1", "--steps-per-turn", "360", "--cache", str(cache), "-o", "out")
-    done = subprocess.run(
-        [COMMAND, "history", "mujoco", "3.7.0", "--scene", SCENE, *options],
-        capture_output=True,
-        text=True,
-        check=False,
-        cwd=shadows(tmp_path / "mine"),
-        env=os.environ | path_with(installer),
-    )
-    assert done.returncode == 0, done.stderr
+    options = ("--turns", 1, "--steps-per-turn", 360, "--cache", installer / "cache", "-o", "out")
+    command = (COMMAND, "history", "mujoco", "3.7.0", "--scene", SCENE, *options)
+    done = programs(*command, cwd=shadows(tmp_path / "mine"), more=path_with(installer))
+    _, complaint = done.communicate()
+    assert done.returncode == 0, complaint
     assert (tmp_path / "mine" / "out" / "mujoco-3.7.0" / "verify.csv").is_file()
 
 
@@ -318,9 +296,9 @@ TWICE = "two seconds: signals are in tests/reports/workers/test_programs.py as w
     ],
 )
 def test_a_signal_ends_the_other_program_too(
-    programs: Start, installer: Path, cache: Path, version: str, kill: str, end: tuple[int, str]
+    programs: Start, installer: Path, version: str, kill: str, end: tuple[int, str]
 ) -> None:
-    sign, program = installer / "running", installer / "run.py"
+    sign, program, cache = (installer / name for name in ("running", "run.py", "cache"))
     sign.unlink(missing_ok=True)  # of an earlier test
     filled = SCRIPT.format(kill=kill, sign=str(sign), version=version, cache=str(cache))
     program.write_text(script(filled), encoding="utf-8")

@@ -65,8 +65,6 @@ from sim.registry import Declaration
 DECLARATION = Declaration("mujoco", "mujoco")
 """
 KNOWN = "from sim import registry\nregistry.ENGINES['bad'] = 'bad_engine'\n"
-
-
 EXPECTED = {
     "none": ("ok", ""),
     "abort": ("crashed", "the engine ended its process (signal SIGABRT)"),
@@ -75,7 +73,6 @@ EXPECTED = {
     "leave": ("crashed", "the engine ended its process (exit code 5)"),
     "throw": ("crashed", "RuntimeError: no luck"),
 }
-LIMIT_S = 600.0
 Answer = TypeVar("Answer")
 
 
@@ -97,9 +94,8 @@ def swept(folder: Path, *faults: str, engine: str = "bad", **more: Any) -> str:
     output = StringIO()
     named = {"engines": [engine], "settings": [f"bad.fault={','.join(faults)}"] * bool(faults)}
     usual = {"profiles": ["tuned"], "steps_per_turn": "90", "jobs": 1, "timing": False}
-    request = SweepRequest(
-        folder, ["fourbar-lecture-1"], **named, **{**usual, "limit_s": LIMIT_S, **more}
-    )
+    more = {"limit_s": 600.0, **usual, **more}
+    request = SweepRequest(folder, ["fourbar-lecture-1"], **named, **more)
     assert sweep(request, Console(file=output, width=100), Console(file=StringIO())) == 0
     return output.getvalue()
 
@@ -149,7 +145,7 @@ def test_a_wider_limit_runs_what_was_ended(tmp_path: Path, monkeypatch: pytest.M
         return swept(folder, *faults, limit_s=limit_s, again=again).splitlines()[0]
 
     assert ran(3.0).startswith("2 cells: 2 run now, 0 were there")
-    assert set(read_store(folder).cells.status) == {"ok", "timeout"}
+    assert {*read_store(folder).cells.status} == {"ok", "timeout"}
     for limit_s in (3.0, 2.0):
         assert ran(limit_s).startswith("2 cells: 0 run now, 2 were there")
     assert ran(2.0, again=True).startswith("2 cells: 1 run now, 1 were there")

@@ -115,13 +115,9 @@ def test_a_killed_sweep_goes_on(programs: Start, whole: Stored, tmp_path: Path, 
     same(read_store(folder), whole, "run_on")
     assert not list(folder.glob("cells/.*.tmp"))
     children_end(tmp_path)
-
-
-def test_a_third_run_finds_everything_there(whole: Stored) -> None:
-    parts = {path: path.stat().st_mtime_ns for path in whole.folder.glob("*/*.parquet")}
-    assert counted(whole.folder, "--no-timing") == (NUMBER, 0, NUMBER, 0)
-    assert parts
-    assert {path: path.stat().st_mtime_ns for path in whole.folder.glob("*/*.parquet")} == parts
+    parts = {path: path.stat().st_mtime_ns for path in folder.glob("*/*.parquet")}
+    assert counted(folder, "--no-timing") == (NUMBER, 0, NUMBER, 0), "all is there"
+    assert {path: path.stat().st_mtime_ns for path in folder.glob("*/*.parquet")} == parts
 
 
 @slow("a signal to a process with children: `make test` stops a sweep in its own")
