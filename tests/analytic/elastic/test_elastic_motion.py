@@ -82,7 +82,7 @@ def test_the_reference_is_good_to_1e_8_of_the_deflection(name: str) -> None:
         slowly(Elements(2), "periodic", BEST, reason=SECONDS),
     ],
 )
-def test_the_estimated_error_is_not_under_the_true_one(
+def test_the_doubt_is_not_under_the_error(
     by: Discretisation, start: Shape, fine: Polynomials
 ) -> None:
     scene = fourbar(axial_n=3e5)
@@ -113,13 +113,11 @@ def test_of_a_chain_the_windows_alone_are_in_doubt(count: int) -> None:
     ("bends", "stiffer"),
     [
         (True, (5.0, 10.0)),
-        *(
-            slowly(bends, (5.0, 10.0, 20.0), reason="a link that stretches; that the ratio stays")
-            for bends in (True, False)
-        ),
+        slowly(True, (5.0, 10.0, 20.0), reason="that the ratio stays"),
+        slowly(False, (5.0, 10.0, 20.0), reason="a link that stretches; that the ratio stays"),
     ],
 )
-def test_a_stiff_link_comes_to_the_rigid_one_as_one_over_its_modulus(
+def test_a_stiff_link_is_rigid_but_for_one_over_its_modulus(
     bends: bool, stiffer: tuple[float, ...]
 ) -> None:
     """A link that bends turns the others in the second order only, by its shortening."""
@@ -184,7 +182,7 @@ def motion() -> DrivenElasticMotion:
     return driven(load_scene("fourbar-elastic"), Modes(1), until_s=1.0)
 
 
-def test_some_at_a_time_and_in_any_order_it_is_the_same(
+def test_some_at_a_time_it_is_the_same(
     motion: DrivenElasticMotion, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("analytic.elastic.sampled.TOGETHER", 3)

@@ -102,7 +102,7 @@ def test_a_named_point_in_the_middle_is_where_the_deflection_has_it() -> None:
     ("counts", "most"),
     [((4, 8), 0.12), slowly((8, 24), 0.03, reason="a fourth of the limit: two seconds")],
 )
-def test_loads_and_springs_act_on_a_chain_as_they_do_on_the_beam(
+def test_loads_and_springs_act_on_a_chain_as_on_the_beam(
     counts: tuple[int, int], most: float
 ) -> None:
     """With moments on it a chain comes to the beam with order 1."""

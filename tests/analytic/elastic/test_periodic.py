@@ -130,9 +130,7 @@ def test_sensitivity_is_the_change_with_the_stiffness() -> None:
         (1.1, 1.0, r"bend too far for a beam.*take a lower speed"),
     ],
 )
-def test_another_branch_and_too_soft_links_are_refused(
-    ratio: float, rocker: float, words: str
-) -> None:
+def test_other_branches_and_soft_links_are_refused(ratio: float, rocker: float, words: str) -> None:
     with pytest.raises(CrankcheckError, match=words):
         periodic_motion(form_of(turning(ratio, rocker)))
 
@@ -156,9 +154,7 @@ def test_a_load_over_time_has_to_repeat(orders: float, repeats: bool) -> None:
 
 
 @pytest.mark.parametrize("most", [65, slowly(129, reason="a longer series leaves out less")])
-def test_what_kinks_leave_out_of_the_series_is_in_the_doubt(
-    most: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_kinks_leave_out_is_in_the_doubt(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """A load with kinks has a series without end: two motions that stop at as many of its terms
     leave the same out."""
     hat = Tabulated((0.0, 0.5 * math.pi, math.pi), (0.0, 0.5, 0.0), "linear", math.tau)

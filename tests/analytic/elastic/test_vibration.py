@@ -61,7 +61,7 @@ def by_a_library(form: ReducedForm, until_s: float) -> np.ndarray:
         slowly(fourbar(), Segments(3), 0.03, reason=STEPS),
     ],
 )
-def test_a_straight_start_rings_as_a_library_integrates_it(
+def test_a_straight_start_rings_as_by_a_library(
     scene: Scene, by: Discretisation, until: float
 ) -> None:
     form = form_of(scene, by)

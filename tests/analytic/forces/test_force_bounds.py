@@ -22,9 +22,14 @@ from models.scene import Scene
 from tests.analytic.chain import Chain, coordinates
 from tests.analytic.forces.beside import series
 from tests.analytic.forces.exact_forces import ExactForces, exact_forces, exact_rubbed, value_of
-from tests.worlds.loading import OVER, characteristic, loaded, loaded_mechanism
-from tests.worlds.rubbing import rubbed_mechanism
-from tests.worlds.sprung import sprung
+from tests.worlds.loading import (
+    OVER,
+    characteristic,
+    loaded,
+    loaded_mechanism,
+    rubbed_mechanism,
+    sprung,
+)
 from tests.worlds.tiers import few, slow, slowly
 from tests.worlds.wide_angles import made, times
 

@@ -21,9 +21,8 @@ from models.friction import ConstantFriction, CoulombFriction
 from models.scene import Scene
 from models.tabulated import Tabulated
 from tests.analytic.forces.beside import apart, turn, unlocked
-from tests.worlds.loading import loaded
+from tests.worlds.loading import loaded, sprung
 from tests.worlds.other_way import MOVES, Change, faster, sped_up
-from tests.worlds.sprung import sprung
 from tests.worlds.tiers import slowly
 
 CLOSE = 1e-11

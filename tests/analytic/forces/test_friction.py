@@ -21,8 +21,7 @@ from models.motion import Motion
 from models.scene import Scene
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.analytic.forces.beside import AGREED, apart, out_of_balance, series, turn
-from tests.worlds.loading import loaded, massless
-from tests.worlds.rubbing import rubbed, rubbed_mechanism
+from tests.worlds.loading import loaded, massless, rubbed, rubbed_mechanism
 from tests.worlds.tiers import slowly
 
 PRESS = """

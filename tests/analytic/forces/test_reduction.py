@@ -22,8 +22,7 @@ from models.files import load_scene, parse_scene, shipped
 from models.laws import Accelerating, ConstantSpeed
 from models.loads import Load
 from models.scene import Driver
-from tests.worlds.loading import loaded
-from tests.worlds.sprung import sprung
+from tests.worlds.loading import loaded, sprung
 
 Pair = tuple[float, float]
 

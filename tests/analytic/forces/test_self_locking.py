@@ -30,7 +30,7 @@ from models.files import parse_scene
 from models.friction import ConstantFriction, CoulombFriction
 from models.laws import Accelerating, Oscillating
 from models.scene import Driver, Scene
-from tests.worlds.rubbing import rubbed_mechanism
+from tests.worlds.loading import rubbed_mechanism
 from tests.worlds.tiers import slowly
 
 STEEP = """
@@ -104,13 +104,12 @@ def test_a_slider_crank_locks_where_the_rod_leans_by_the_complement(mu: float) -
     ("at_b", "at_c", "looks"),
     [
         (0.02, 0.01, 72),
-        *(
-            slowly(*radii, 180, reason="one of the two pins, and looks nearer to the limit")
-            for radii in ((0.0, 0.01), (0.01, 0.0), (0.02, 0.01))
-        ),
+        slowly(0.0, 0.01, 180, reason="one of the two pins, and looks nearer to the limit"),
+        slowly(0.01, 0.0, 180, reason="the other pin, and looks nearer to the limit"),
+        slowly(0.02, 0.01, 180, reason="looks nearer to the limit"),
     ],
 )
-def test_pins_that_rub_move_the_limit_by_the_lean_of_the_tangent(
+def test_pins_that_rub_move_the_limit_by_a_tangents_lean(
     at_b: float, at_c: float, looks: int
 ) -> None:
     """The rod's force runs along a tangent of both friction circles, which leans from the rod by

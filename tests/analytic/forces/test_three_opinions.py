@@ -24,8 +24,7 @@ from models.scene import Driver, Scene
 from tests.analytic.assur.triad_scenes import KINDS, triad
 from tests.analytic.forces.beside import AGREED, apart, out_of_balance, series, turn, unlocked
 from tests.analytic.imported import reached
-from tests.worlds.loading import loaded, loaded_mechanism
-from tests.worlds.sprung import sprung
+from tests.worlds.loading import loaded, loaded_mechanism, sprung
 from tests.worlds.tiers import few, slowly
 
 CYLINDER = """

@@ -65,24 +65,22 @@ def test_past_limits_the_motion_is_that_of_all_bodies(until_s: float) -> None:
     assert np.abs(found - bodies_after(scene, until_s)).max() < 1e-10
 
 
-PASSING = "smaller steps, of a faster one and of a slider"
+FAST = {"start_deg": 20.0, "speed_rad_s": 15.0}
+SLID = {"start_deg": 20.0, "speed_rad_s": 8.0}
 
 
 @pytest.mark.parametrize(
     ("scene", "until_s", "samples"),
     [
         (past_limits(), 0.9, 601),
-        *(
-            slowly(each, 1.0, 1501, reason=PASSING)
-            for each in (
-                past_limits(),
-                past_limits(start_deg=20.0, speed_rad_s=15.0),
-                slider_crank(0.3, 0.2, 0.05, start_deg=20.0, speed_rad_s=8.0),
-            )
+        slowly(past_limits(), 1.0, 1501, reason="smaller steps"),
+        slowly(past_limits(**FAST), 1.0, 1501, reason="smaller ones of a faster one"),
+        slowly(
+            slider_crank(0.3, 0.2, 0.05, **SLID), 1.0, 1501, reason="smaller steps, of a slider"
         ),
     ],
 )
-def test_past_limits_everything_goes_on_smoothly_in_the_right_assembly(
+def test_past_limits_all_goes_on_in_the_right_assembly(
     scene: Scene, until_s: float, samples: int
 ) -> None:
     free = released(scene, until_s)
@@ -192,18 +190,14 @@ def test_the_toggle_is_level_and_higher_than_both_sides(barrier: ToggleBarrier) 
 
 
 @pytest.mark.parametrize("margin", [1e-3, -1e-3])
-def test_a_throw_gets_over_the_hill_as_the_energy_says(
-    barrier: ToggleBarrier, margin: float
-) -> None:
+def test_a_throw_gets_over_as_its_energy_says(barrier: ToggleBarrier, margin: float) -> None:
     motion = release(barrier.thrown(margin), 0.5 * barrier.lasts_s(margin))
     energy = motion.energy(np.zeros(1))
     assert float(energy.kinetic[0]) == pytest.approx((1.0 + margin) * barrier.barrier_j, rel=1e-12)
     assert any(barrier.is_toggle(one) for one in motion.passages) == (margin > 0.0)
 
 
-def test_the_start_of_a_throw_has_its_accelerations(
-    barrier: ToggleBarrier,
-) -> None:
+def test_a_throw_starts_with_free_accelerations(barrier: ToggleBarrier) -> None:
     state = barrier.start(1e-2)
     true = release(barrier.thrown(1e-2), 1e-3).at(np.zeros(1), bound=False).state()
     assert state.theta == pytest.approx(true.theta, rel=1e-12)

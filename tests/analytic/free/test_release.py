@@ -114,9 +114,7 @@ def test_energy_balances(scene: Scene, until_s: float) -> None:
         slowly(0.0, {"friction": RUBBING}, reason="the jump is the spring's"),
     ],
 )
-def test_a_spring_whose_points_pass_one_another_turns_over(
-    damping: float, more: dict[str, Any]
-) -> None:
+def test_a_spring_whose_ends_meet_turns_over(damping: float, more: dict[str, Any]) -> None:
     """The slider comes through the other end of its spring twice a turn; the pull jumps there."""
     across = LineSpring("across", 40.0, damping, 0.05, ("E", "C"))
     scene = slider_crank(offset=0.0, start_deg=30.0, speed_rad_s=12.0)
@@ -248,12 +246,12 @@ def test_random_slider_cranks_and_fourbars_keep_their_energy(seed: int) -> None:
 ALLOWED = 1e-9
 """Times the sensitivity, of a turn, of the longest link, and of their rates: each scene is
 integrated by itself, with roundings of its own."""
-SCENES: dict[str, tuple[Scene, float, float]] = {
-    "everything that acts": (parse_scene(EVERYTHING, "everything"), 0.3, 0.8),
-    "swing": (load_scene("fourbar-swing"), 0.5, 1.0),
-    "limits": (load_scene("fourbar-double-rocker-swing"), 0.45, 1.0),
+SCENES = {
+    "everything that acts": parse_scene(EVERYTHING, "everything"),
+    "swing": load_scene("fourbar-swing"),
+    "limits": load_scene("fourbar-double-rocker-swing"),
 }
-"""Let go for a short and for a longer time [s]."""
+LONG_S = {"everything that acts": 0.8, "swing": 1.0, "limits": 1.0}
 
 
 CHANGES = MOVES | {"faster": faster(5.0)}
@@ -262,28 +260,23 @@ CHANGES = MOVES | {"faster": faster(5.0)}
 @cache
 def unmoved(name: str, until_s: float) -> FreeMotion:
     """The motion that every change of a scene is held to."""
-    return release(SCENES[name][0], until_s)
+    return release(SCENES[name], until_s)
 
 
 @pytest.mark.parametrize(
     ("name", "change", "until_s"),
     [
+        *(("everything that acts", change, 0.3) for change in CHANGES),
+        *(("swing", "mirrored", 0.5), ("limits", "mirrored", 0.45)),
         *(
-            (name, change, short_s)
-            for name, (_, short_s, _) in SCENES.items()
-            for change in (CHANGES if name == "everything that acts" else ["mirrored"])
-        ),
-        *(
-            slowly(name, change, long_s, reason="roundings that grow with time")
-            for name, (_, _, long_s) in SCENES.items()
+            slowly(name, change, LONG_S[name], reason="roundings that grow with time")
+            for name in SCENES
             for change in CHANGES
         ),
     ],
 )
-def test_the_free_motion_of_the_moved_scene_is_the_moved_motion(
-    name: str, change: str, until_s: float
-) -> None:
-    scene, by = SCENES[name][0], CHANGES[change]
+def test_the_moved_scene_has_the_moved_motion(name: str, change: str, until_s: float) -> None:
+    scene, by = SCENES[name], CHANGES[change]
     own, other = unmoved(name, until_s), release(by.of(scene), until_s / by.fast)
     time_s = np.linspace(0.0, until_s, 25)
     old, new = own.at(time_s, bound=False), other.at(time_s / by.fast, bound=False)
@@ -341,9 +334,7 @@ def test_beside_a_run_with_nothing_there_is_nothing(pendulum: FreeMotion) -> Non
     assert np.isfinite(found[[0, 2]]).all()
 
 
-def test_what_leads_to_the_start_of_several_freedoms_goes_on(
-    pendulum: FreeMotion,
-) -> None:
+def test_what_leads_to_their_start_goes_on_through_it(pendulum: FreeMotion) -> None:
     h = 1e-3
     before = pendulum.outside(np.array([-h])).links
     after = pendulum.at(np.array([0.0, h])).links
@@ -355,9 +346,7 @@ def test_what_leads_to_the_start_of_several_freedoms_goes_on(
         assert steady == pytest.approx(link.alpha[0], abs=1e-2)
 
 
-def test_the_error_of_several_freedoms_covers_a_coarser_motion(
-    pendulum: FreeMotion,
-) -> None:
+def test_their_error_covers_a_coarser_motion(pendulum: FreeMotion) -> None:
     assert isinstance(pendulum, BodiesMotion)
     rough = BodiesMotion(replace(pendulum.bodies, method=Projection(1e-10)))
     time_s = np.linspace(0.0, pendulum.until_s, 31)
@@ -369,7 +358,7 @@ def test_the_error_of_several_freedoms_covers_a_coarser_motion(
     assert float(pendulum.error_rad(time_s).max()) < 1e-10
 
 
-def test_several_freedoms_that_can_not_be_let_go_are_told_both_ways() -> None:
+def test_several_freedoms_without_a_start_are_told_both_ways() -> None:
     unnamed = DOUBLE_PENDULUM.split("[start]")[0]
     with pytest.raises(StructureError, match=r"mobility W = .* lower start is not named"):
         release(parsed(unnamed.replace("speed_rad_s = 1.0", "")), 0.1)

@@ -46,25 +46,20 @@ SEVERAL_FREEDOMS = ("double-pendulum",)
 NAMES = [name for name in shipped("free") if name not in SEVERAL_FREEDOMS]
 STEADY = 100.0
 """The sensitivity up to which the digits of the issue are asked for."""
-TOO_LONG = {"engine-flywheel": 1.0, "squeezer": 1.0}
+AT_MOST = {"engine-flywheel": 1.0, "squeezer": 1.0}
 """A second of the engine has 1320 kinks of its table, and costs a minute; its own time is 0.12 s.
 The squeezer's is 1 s: in ten its motor spins it up, which takes minutes to integrate."""
 
 
 def brief_and_long(*quick: str) -> list[object]:
     """Each scene for a short time, of which some are ``quick``, and for as long as it may last."""
-    brief = [(name, SHORT_S.get(name, 0.12)) for name in NAMES]
+    often, late = "the others show each kind of force", "errors that grow over many swings"
+    brief = {name: SHORT_S.get(name, 0.12) for name in NAMES}
+    long = {name: sorted({1.0, AT_MOST.get(name, 10.0)}) for name in NAMES}
     return [
-        *(
-            case if case[0] in quick else slowly(*case, reason="the others show each kind of force")
-            for case in brief
-        ),
-        *(
-            slowly(name, until_s, reason="errors that grow over many swings")
-            for name in NAMES
-            for until_s in (1.0, 10.0)
-            if until_s <= TOO_LONG.get(name, until_s)
-        ),
+        *((name, brief[name]) for name in quick),
+        *(slowly(name, brief[name], reason=often) for name in NAMES if name not in quick),
+        *(slowly(name, until_s, reason=late) for name in NAMES for until_s in long[name]),
     ]
 
 
@@ -140,9 +135,7 @@ def test_the_swing_is_back_at_rest_after_its_periods(until_s: float) -> None:
     assert np.abs(np.diff(late_s, prepend=0.0)).max() < 1e-12
 
 
-def test_a_kink_over_the_angle_asks_for_the_mechanism_about_twice(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_kink_asks_for_the_mechanism_about_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two rounds of Newton's method; where the kinks are is asked of the driver alone."""
     asked: list[int] = []
     windows: list[int] = []

@@ -281,7 +281,7 @@ def test_a_parallelogram_goes_through_its_flat_positions(
         slowly(-1e-9, 80.0, 0.3, reason="nearer, to the other side, and from farther off"),
     ],
 )
-def test_one_that_just_misses_a_change_point_turns_off_beside_it(
+def test_beside_a_change_point_it_turns_off(
     beside: float, start_deg: float, until_s: float
 ) -> None:
     """To what rounding leaves of its lengths; and its steps do not shrink to nothing either."""

@@ -122,7 +122,7 @@ few_ways = pytest.mark.parametrize(
 
 @few_ways
 @pytest.mark.parametrize("share", few([1.0, 0.9], {0.9}, "while it stands, not just before"))
-def test_one_that_has_turned_back_does_not_run_away(
+def test_what_has_turned_back_does_not_run_away(
     let_go: LetGo, share: float, reversal_s: float
 ) -> None:
     """Many rows of a table make many windows, and what turns back is slow for a while."""
