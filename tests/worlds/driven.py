@@ -36,7 +36,7 @@ from hypothesis import strategies as st
 from analytic.check.moved_scene import moved, scaled
 from analytic.kinematics import solve
 from models.array import Array
-from models.errors import EngineError, ReachError
+from models.errors import EngineError
 from models.files import parse_scene
 from models.laws import ConstantSpeed
 from models.motion import State
@@ -47,7 +47,16 @@ from reports.compare.curvature import curvature
 from reports.judge.tolerance import DEFAULTS
 from sim.pymunk.settings import TUNED
 from sim.pymunk.space import build
-from tests.worlds.strategies import FORMS, MARGIN, Designed, Layout, swinging, with_dyads
+from tests.worlds.strategies import (
+    FORMS,
+    MARGIN,
+    Designed,
+    Layout,
+    least_sine,
+    swing_times,
+    swinging,
+    with_dyads,
+)
 
 POSITIONS = 16
 
@@ -181,7 +190,7 @@ def made(forms: Sequence[str], seed: int, within: Range = TUNED_RANGE) -> Driven
         turns_round = stuck < TRIES
         if not turns_round:
             designed = swinging(designed, abs(speed), within.margin)
-        elif _least_sine(designed.scene) < within.margin:
+        elif least_sine(designed.scene, LOOKS) < within.margin:
             stuck += 1
             continue
         scene = _weighed(chance, _with_arms(chance, designed.scene, within.arm), within.density)
@@ -201,31 +210,13 @@ def made(forms: Sequence[str], seed: int, within: Range = TUNED_RANGE) -> Driven
 def _laid_out(chance: random.Random, forms: Sequence[str], speed: float) -> Designed:
     """A crank with the dyads of the forms, anywhere."""
     at = Layout(chance.uniform, chance.choice)
-    pivot = at.arm(0.0, 1.0)
-    crank = at.link(pivot)
-    at.frames[crank] = (pivot, at.frames[crank][1])  # about its pivot: it has to come round
-    at.reach[crank] = chance.uniform(0.2, 1.0)
-    at.pin(pivot, GROUND, crank)
-    at.pin(pivot + at.arm(0.1, 0.8), crank)
+    crank = at.crank(comes_round=True)
     return with_dyads(at, forms, crank, ConstantSpeed(at.frames[crank][1], speed))
-
-
-def _period(scene: Scene) -> np.ndarray:
-    return np.linspace(0.0, scene.driver.law.period_s, LOOKS)
-
-
-def _least_sine(scene: Scene) -> float:
-    """The worst conditioning over a turn; 0 where it does not close."""
-    try:
-        motion = solve(scene, _period(scene), links=(), points=(), sliders=(), bound=False)
-    except ReachError:
-        return 0.0
-    return min(float(sine.min()) for sine in motion.conditioning.values())
 
 
 def _fewest_steps(scene: Scene) -> float:
     """Steps a turn from which on no cap of a tolerance is in force, `LEAST_STEPS` at least."""
-    motion = solve(scene, _period(scene), bound=False)
+    motion = solve(scene, swing_times(scene, LOOKS), bound=False)
     sine = min(float(sine.min()) for sine in motion.conditioning.values())
     bend, law = curvature(scene, motion), scene.driver.law
     longest = min(
@@ -276,7 +267,7 @@ def _weighed(chance: random.Random, scene: Scene, most: float) -> Scene:
 
 def _carried(scene: Scene) -> Mapping[str, list[Point]]:
     """What each link has to reach, in its frame [m]: its pins, and where others slide on it."""
-    motion = solve(scene, _period(scene), links=(), points=(), bound=False)
+    motion = solve(scene, swing_times(scene, LOOKS), links=(), points=(), bound=False)
     found = {
         name: [place for point, place in link.points.items() if not point.startswith(TRACED)]
         for name, link in scene.links.items()

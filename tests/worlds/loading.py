@@ -1,4 +1,6 @@
-"""Random mechanisms of all dyads with random masses and loads, half of them near a dead point."""
+"""Random mechanisms of all dyads with random masses and loads, half of them near a dead point; with
+friction in random joints, or with springs and dampers.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +11,25 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.kinematics import reach
+from analytic.structure.mobility import analyse
 from models.characteristics import Characteristic, Constant, Polynomial, Sine
+from models.friction import ConstantFriction, CoulombFriction, Friction
 from models.joints import block_name
 from models.laws import Accelerating, Oscillating
 from models.loads import Load, Over
 from models.scene import GROUND, Driver, Point, Scene
+from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from models.tabulated import Interpolation, Tabulated
-from tests.worlds.strategies import FORMS, SWINGS, Designed, Layout, swinging, with_dyads
+from tests.worlds.strategies import (
+    KINDS,
+    SWINGS,
+    Designed,
+    Layout,
+    some_forms,
+    swinging,
+    with_dyads,
+)
 
-KINDS = ("RRR", "RRP", "RPR", "PRP", "RPP")
 TRIES = 8
 OVER: tuple[Over, ...] = ("time", "angle", "displacement")
 
@@ -28,9 +40,7 @@ def loaded_mechanism(number: int) -> tuple[Scene, bool]:
     chance = random.Random(number)
     kind = KINDS[number // 2 % len(KINDS)]
     for _ in range(TRIES):
-        forms = [chance.choice([form for form in FORMS if form.startswith(kind)])]
-        if chance.random() < 0.4:
-            forms.append(chance.choice(FORMS))
+        forms = some_forms(kind, chance)
         designed = _laid_out(chance, forms)
         if number % 2 == 0:
             return loaded(swinging(designed, chance.uniform(0.5, 20.0)).scene, chance), False
@@ -42,10 +52,7 @@ def loaded_mechanism(number: int) -> tuple[Scene, bool]:
 
 def _laid_out(chance: random.Random, forms: list[str]) -> Designed:
     at = Layout(chance.uniform, chance.choice)
-    pivot = at.arm(0.0, 1.0)
-    crank = at.link(pivot)
-    at.pin(pivot, GROUND, crank)
-    at.pin(pivot + at.arm(0.3, 0.8), crank)
+    crank = at.crank()
     return with_dyads(at, forms, crank, Oscillating(at.frames[crank][1], SWINGS[0], 1.0))
 
 
@@ -147,3 +154,74 @@ def characteristic(over: Over, chance: random.Random) -> Characteristic:
         values = tuple(chance.uniform(-size, size) for _ in rows)
         return Tabulated(tuple(rows), values, interpolation)
     return Constant(size)
+
+
+def rubbed(scene: Scene, chance: random.Random, mu: float = 0.3) -> Scene:
+    names = [p for p, held in analyse(scene).pins.items() if len(held) == 2]
+    joints = [*(name for name in names if name not in scene.sliders), *scene.sliders]
+    chosen = chance.sample(joints, chance.randint(1, min(4, len(joints))))
+    friction: dict[str, Friction] = {}
+    for joint in chosen:
+        if chance.random() < 0.25:
+            friction[joint] = ConstantFriction(joint, chance.uniform(0.1, 3.0))
+        else:
+            radius = 0.0 if joint in scene.sliders else chance.uniform(0.005, 0.1)
+            friction[joint] = CoulombFriction(joint, chance.uniform(0.0, mu), radius)
+    return replace(scene, friction=friction)
+
+
+def with_names_for_sliders(scene: Scene) -> Scene:
+    """The scene with sliders that are not named as their points, which leaves those names to the
+    pins of their blocks."""
+    names = {name: f"line {name}" for name in scene.sliders}
+    bodies = {f"block {name}": f"block {new}" for name, new in names.items()}
+
+    def load(old: Load) -> Load:
+        slider = None if old.slider is None else names[old.slider]
+        return replace(old, body=bodies.get(old.body, old.body), slider=slider)
+
+    return replace(
+        scene,
+        sliders={names[n]: replace(one, name=names[n]) for n, one in scene.sliders.items()},
+        branch={names.get(key, key): sign for key, sign in scene.branch.items()},
+        loads={name: load(one) for name, one in scene.loads.items()},
+    )
+
+
+def rubbed_mechanism(number: int) -> tuple[Scene, bool]:
+    """The loaded mechanism of a number with friction, and whether it is near a dead point."""
+    scene, near = loaded_mechanism(number)
+    return rubbed(with_names_for_sliders(scene), random.Random(number)), near
+
+
+def sprung(scene: Scene, chance: random.Random) -> Scene:
+    """The scene with a spring of each kind that it has room for, one of them without a rate or
+    without a damper now and then; between points it may be slack at length 0."""
+    springs: dict[str, Spring] = {}
+    points = list(analyse(scene).pins)
+    a, b = chance.sample(points, 2)
+    if not {a, b} <= set(scene.ground):
+        springs["line"] = LineSpring(
+            "line", *_sizes(chance, 300.0), chance.choice((0.0, 0.3)), (a, b)
+        )
+    pins = {
+        point: [one for one in held if one == GROUND or one in scene.links]
+        for point, held in analyse(scene).pins.items()
+    }
+    meeting = [point for point, held in pins.items() if len(held) > 1]
+    point = chance.choice(meeting)
+    first, second = chance.sample(pins[point], 2)
+    springs["pin"] = PinSpring(
+        "pin", *_sizes(chance, 30.0), chance.uniform(-2.0, 2.0), point, (first, second)
+    )
+    if scene.sliders:
+        slider = chance.choice(list(scene.sliders))
+        springs["slide"] = SlideSpring(
+            "slide", *_sizes(chance, 300.0), chance.uniform(-0.5, 0.5), slider
+        )
+    return replace(scene, springs=springs)
+
+
+def _sizes(chance: random.Random, size: float) -> tuple[float, float]:
+    rate, damping = chance.uniform(0.1, 1.0) * size, chance.uniform(0.01, 0.1) * size
+    return chance.choice(((rate, damping), (rate, 0.0), (0.0, damping)))

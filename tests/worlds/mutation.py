@@ -12,19 +12,8 @@ from models.files import every_shipped
 Rng = random.Random
 NUMBER = re.compile(r"(?<![\w.-])-?\d+\.\d*(?:e[+-]?\d+)?(?![\w.])")
 TIED = re.compile(r'\b[A-G]\b|"\w+"')
-ENDS = (
-    "0.0",
-    "-1.0",
-    "1e-15",
-    "-1e-15",
-    "1e-9",
-    "1e-4",
-    "1e4",
-    "1e9",
-    "1e15",
-    "-1e15",
-    "123456.789",
-)
+ENDS = ("0.0", "-1.0", "1e-15", "-1e-15", "1e-9", "1e-4", "1e4", "1e9", "1e15", "-1e15",
+        "123456.789")  # fmt: skip
 WORD = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 GENTLE = (0.9, 0.95, 0.99, 0.999, 1.0 + 1e-12, 1.01, 1.05, 1.1)
 FACTORS = (-1.0, 0.0, 0.5, 2.0, 10.0, 1e-3, 1e3, 1e-6, 1e6, 1e-9, 1e9, 1e-14, 1e14, 1e30)

@@ -1,7 +1,7 @@
-"""The logs of a stranger with a fault in each: ten faults on three linkages.
+"""The logs of a stranger: in the guises that a right one may come in, and with a fault in each.
 
-They are planted in a log that is right, whatever its columns are called, but for two: a linkage put
-together the other way, and one whose coupler is 1 % longer than the drawing says.
+Faults are planted in a log that is right, whatever its columns are called, but for two: a linkage
+put together the other way, and one whose coupler is 1 % longer than the drawing says.
 """
 
 from __future__ import annotations
@@ -11,8 +11,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tests.worlds.stranger import LINKAGES, Array, Linkage
-from tests.worlds.stranger_log import DEG, MM, Column, Log, logged
+from tests.worlds.stranger import FOURBAR, LINKAGES, Array, Linkage
+from tests.worlds.stranger_log import (
+    DEG,
+    MM,
+    RPM,
+    Column,
+    Dress,
+    Log,
+    even,
+    logged,
+    map_text,
+    uneven,
+)
 
 AT = 0.37
 """Where in a log the fault of a moment is, as a part of its rows."""
@@ -63,39 +74,18 @@ class Culprits:
 
 CULPRITS = {
     "fourbar-lecture-1": Culprits(
-        swapped=("coupler_deg", "rocker_deg"),
-        unit=("rocker_deg", 1.0 / DEG),  # radians
-        sign="coupler_omega_rad_s",
-        late="rocker_omega_rad_s",
-        branch="C",
-        longer="coupler",
-        stuck="C_x_mm",
-        turn="crank_deg",
-        filtered="rocker_omega_rad_s",
-    ),
+        swapped=("coupler_deg", "rocker_deg"), unit=("rocker_deg", 1.0 / DEG),  # radians
+        sign="coupler_omega_rad_s", late="rocker_omega_rad_s", branch="C", longer="coupler",
+        stuck="C_x_mm", turn="crank_deg", filtered="rocker_omega_rad_s"),
     "slider-crank-central": Culprits(
-        swapped=("B_x_mm", "B_y_mm"),
-        unit=("C_slider_displacement_mm", 1e-3),  # metres
-        sign="rod_deg",
-        late="C_slider_speed_m_s",
-        branch="C",
-        longer="rod",
-        stuck="rod_deg",
-        turn="crank_deg",
-        filtered="C_slider_speed_m_s",
-    ),
+        swapped=("B_x_mm", "B_y_mm"), unit=("C_slider_displacement_mm", 1e-3),  # metres
+        sign="rod_deg", late="C_slider_speed_m_s", branch="C", longer="rod",
+        stuck="rod_deg", turn="crank_deg", filtered="C_slider_speed_m_s"),
     "sixbar-watt": Culprits(
-        swapped=("rod_omega_rad_s", "lever_omega_rad_s"),
-        unit=("F_vx_m_s", 1e3),  # millimetres per second
-        sign="F_y_mm",
-        late="lever_deg",
-        branch="F",
-        longer="rod",
-        stuck="lever_omega_rad_s",
-        turn="coupler_deg",
-        filtered="F_vx_m_s",
-    ),
-}
+        swapped=("rod_omega_rad_s", "lever_omega_rad_s"), unit=("F_vx_m_s", 1e3),  # mm/s
+        sign="F_y_mm", late="lever_deg", branch="F", longer="rod",
+        stuck="lever_omega_rad_s", turn="coupler_deg", filtered="F_vx_m_s"),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -202,3 +192,142 @@ def planted(
         "lost turn": column(lost_turn, culprits.turn),
         "filtered signal": column(smoothed, culprits.filtered, 20.0),
     }
+
+
+PER_TURN = 60
+PLAIN_DRESS = Dress()
+STEP_S = FOURBAR.period_s / PER_TURN
+
+
+@dataclass(frozen=True)
+class Guise:
+    """The columns of a log, its clock and times, its dress, and what the map says of the file; a
+    log whose names say it all has no map."""
+
+    columns: Sequence[Column]
+    clock: tuple[str, str] = ("time_s", "s")
+    times: Callable[..., Array] = even
+    dress: Dress = PLAIN_DRESS
+    mapped: bool = False
+    file: str = ""
+    name: str = "log.csv"
+
+    def log(self, linkage: Linkage, turns: float = 2.0) -> Log:
+        per_second = {"s": 1.0, "ms": 1e3, "us": 1e6}[self.clock[1]]
+        time_s = self.times(linkage, turns, PER_TURN)
+        return logged(linkage, time_s, self.columns, self.clock[0], per_second)
+
+    def map(self, linkage: Linkage) -> str:
+        if self.mapped:
+            return map_text(linkage, self.columns, self.clock, self.file)
+        return f"[file]\n{self.file}\n" if self.file else ""
+
+
+def named(*columns: tuple[str, str, str, float]) -> list[Column]:
+    return [Column(*column) for column in columns]
+
+
+OUR_OWN = named(
+    ("crank_theta_rad", "crank", "angle", 1.0),
+    ("crank_omega_rad_s", "crank", "omega", 1.0),
+    ("rocker_theta_rad", "rocker", "angle", 1.0),
+    ("rocker_omega_rad_s", "rocker", "omega", 1.0),
+    ("rocker_alpha_rad_s2", "rocker", "alpha", 1.0),
+    ("C_x_m", "C", "x", 1.0),
+    ("C_vx_m_s", "C", "vx", 1.0),
+    ("C_ay_m_s2", "C", "ay", 1.0),
+)
+DOTTED = named(
+    ("crank.theta_rad", "crank", "angle", 1.0),
+    ("rocker.theta_rad", "rocker", "angle", 1.0),
+    ("rocker.omega_rad_s", "rocker", "omega", 1.0),
+    ("C.x_mm", "C", "x", MM),
+    ("C.vx_m_s", "C", "vx", 1.0),
+)
+BRACKETS = named(
+    ("crank angle [deg]", "crank", "angle", DEG),
+    ("rocker angle [deg]", "rocker", "angle", DEG),
+    ("Rocker angular velocity [deg/s]", "rocker", "omega", DEG),
+    ("rocker angular acceleration [rad/s^2]", "rocker", "alpha", 1.0),
+    ("C x [mm]", "C", "x", MM),
+    ("C y [mm]", "C", "y", MM),
+    ("crank speed (rpm)", "crank", "omega", RPM),
+)
+SHORT = named(
+    ("crank_deg", "crank", "angle", DEG),
+    ("rocker_deg", "rocker", "angle", DEG),
+    ("C.x_mm", "C", "x", MM),
+)
+UNITLESS = named(
+    ("crank angle", "crank", "angle", DEG),
+    ("rocker angle", "rocker", "angle", DEG),
+    ("C x", "C", "x", MM),
+    ("C vy", "C", "vy", 1.0),
+)
+SENSORS = [
+    Column("ch 1", "crank", "angle", -DEG, offset=90.0),  # clockwise, from the vertical
+    Column("ch 2", "rocker", "angle", DEG, parent="coupler", turn_from=-180.0),
+    Column("ch 3", "rocker", "omega", DEG, parent="coupler", later_s=-STEP_S / 2.0),
+    Column("Weg, x", "C", "x", MM, on="rocker", offset=-300.0),
+]
+WRAPPED = [
+    Column("crank_deg", "crank", "angle", DEG, turn_from=-180.0),
+    Column("coupler_deg", "coupler", "angle", DEG, turn_from=0.0),
+    Column("rocker_deg", "rocker", "angle", DEG, turn_from=0.0),
+    Column("rocker_omega_deg_s", "rocker", "omega", DEG),
+]
+COPIES = [
+    Column("coupler.C_x_mm", "C", "x", MM, on="coupler"),
+    Column("coupler.C_y_mm", "C", "y", MM, on="coupler"),
+    Column("C x on rocker [mm]", "C", "x", MM, on="rocker"),
+    Column("C y on rocker [mm]", "C", "y", MM, on="rocker"),
+    Column("crank_deg", "crank", "angle", DEG),
+]
+RELATIVE = [
+    Column("crank_deg", "crank", "angle", DEG),
+    Column("rocker angle relative to coupler [deg]", "rocker", "angle", DEG, parent="coupler"),
+    Column("coupler_rel_crank_rad", "coupler", "angle", 1.0, parent="crank"),
+    Column("coupler_rel_crank_omega_rad_s", "coupler", "omega", 1.0, parent="crank"),
+]
+GERMAN = Dress(separator=";", point=",", newline="\r\n", mark=True, quoted=True)
+GUISES = {
+    "our own names": Guise(OUR_OWN),
+    "dots": Guise(DOTTED, ("time_ms", "ms")),
+    "units in brackets": Guise(BRACKETS, ("t [s]", "s"), uneven),
+    "tabs and remarks": Guise(
+        SHORT, dress=Dress(separator="\t", comments=("# rig 3", "# 1,2;3", "#"), newline="\r\n"),
+        name="log.tsv"),
+    "tabs in a .txt": Guise(SHORT, dress=Dress(separator="\t"), name="log.txt"),
+    "a row of units": Guise(
+        UNITLESS, ("time", "ms"),
+        dress=Dress(separator=";", units=("ms", "deg", "deg", "mm", "m/s"))),
+    "decimal commas": Guise(SHORT, dress=GERMAN, file='decimal = ","'),
+    "decimal commas between tabs": Guise(
+        SHORT, dress=Dress(separator="\t", point=","), file='decimal = ","'),
+    "names that say nothing": Guise(
+        SENSORS, ("Zeit", "us"), uneven, Dress(quoted=True), mapped=True),
+    "wrapped": Guise(WRAPPED, times=uneven),
+    "wrapped, said": Guise(WRAPPED, times=uneven, mapped=True),
+    "joints' angles": Guise(RELATIVE, times=uneven),
+    "copies of a pin": Guise(COPIES),
+    "few digits": Guise(SHORT, ("time_ms", "ms"), dress=Dress(digits=6)),
+}  # fmt: skip
+"""Of the four-bar."""
+
+
+def disguised(scene: str) -> Guise:
+    """Degrees and mm, wrapped, at uneven times, angles of joints, rates half a sample late."""
+    linkage = LINKAGES[scene]
+    delay_s = -linkage.period_s / PER_TURN / 2.0
+    bars = list(linkage.bars)
+    columns = []
+    for number, old in enumerate(COLUMNS[scene]):
+        new = replace(old, header=f"signal {number}")
+        if old.what == "angle":
+            turn_from = -180.0 if number % 4 else 0.0
+            parent = bars[bars.index(old.of) - 1] if old.of != linkage.crank else ""
+            new = replace(new, turn_from=turn_from, parent=parent)
+        elif old.what == "omega":
+            new = replace(new, per=DEG if number % 4 == 1 else -RPM, later_s=delay_s)
+        columns.append(new)
+    return Guise(columns, ("clock", "ms"), uneven, mapped=True)

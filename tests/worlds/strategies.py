@@ -11,6 +11,7 @@ from __future__ import annotations
 import cmath
 import itertools
 import math
+import random
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -65,6 +66,17 @@ class Layout:
         name = f"link{next(self.names)}"
         self.frames[name] = (near + self.arm(0.0, 1.0), self.number(-math.pi, math.pi))
         self.points[name] = {}
+        return name
+
+    def crank(self, *, comes_round: bool = False) -> str:
+        """A new link on the ground with a pin, its frame at its pivot where it is to come round."""
+        pivot = self.arm(0.0, 1.0)
+        name = self.link(pivot)
+        if comes_round:
+            self.frames[name] = (pivot, self.frames[name][1])
+            self.reach[name] = self.number(0.2, 1.0)
+        self.pin(pivot, GROUND, name)
+        self.pin(pivot + self.arm(0.1 if comes_round else 0.3, 0.8), name)
         return name
 
     def pin(self, place: complex, *bodies: str) -> str:
@@ -252,8 +264,15 @@ SWINGS = [0.6 * 0.5**k for k in range(8)]
 FORMS = tuple(LAYOUTS)
 """Kind of the dyad and how it slides: a block; a link that slides; a link that is the guide of what
 slides (for PRP the two ends, for RPP the inner pair and the outer one)."""
+KINDS = ("RRR", "RRP", "RPR", "PRP", "RPP")
 OF_EACH_KIND = list({form[:3]: form for form in FORMS}.values())
 """The last form of each kind."""
+
+
+def some_forms(kind: str, chance: random.Random) -> list[str]:
+    """A form of the kind, and at times another."""
+    forms = [chance.choice([form for form in FORMS if form.startswith(kind)])]
+    return [*forms, chance.choice(FORMS)] if chance.random() < 0.4 else forms
 
 
 @dataclass(frozen=True)
@@ -284,10 +303,7 @@ def mechanisms(draw: st.DrawFn, forms: Sequence[str] | None = None) -> Designed:
         return draw(st.floats(low, high))
 
     at = Layout(number, lambda names: draw(st.sampled_from(names)))
-    pivot = at.arm(0.0, 1.0)
-    crank = at.link(pivot)
-    at.pin(pivot, GROUND, crank)
-    at.pin(pivot + at.arm(0.3, 0.8), crank)
+    crank = at.crank()
     law = Oscillating(at.frames[crank][1], SWINGS[0], number(0.5, 20.0))
     return _with_margin(with_dyads(at, forms, crank, law))
 
@@ -382,6 +398,16 @@ def _worst(scene: Scene) -> float:
     except ReachError:
         return 0.0
     return min(float(sine.min()) for sine in nearness(scene, motion).values())
+
+
+def least_sine(scene: Scene, looks: int) -> float:
+    """The worst conditioning over a period; 0 where it does not close."""
+    time_s = swing_times(scene, looks)
+    try:
+        motion = solve(scene, time_s, links=(), points=(), sliders=(), bound=False)
+    except ReachError:
+        return 0.0
+    return min(float(sine.min()) for sine in motion.conditioning.values())
 
 
 def swing_times(scene: Scene, count: int) -> np.ndarray:

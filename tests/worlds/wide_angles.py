@@ -15,17 +15,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.kinematics import solve
 from models.array import Array
-from models.errors import ReachError
 from models.files import parse_scene
 from models.laws import ConstantSpeed
-from models.scene import GROUND, Scene
+from models.scene import Scene
 from models.scene_text import scene_text
 from tests.analytic.wide_chain import Angle, Given
-from tests.worlds.strategies import FORMS, Layout, swinging, with_dyads
+from tests.worlds.strategies import (
+    KINDS,
+    Layout,
+    least_sine,
+    some_forms,
+    swinging,
+    with_dyads,
+)
 
-KINDS = ("RRR", "RRP", "RPR", "PRP", "RPP")
 TURNS = 2775
 """Nearly a million degrees."""
 FAR = 1e6
@@ -48,10 +52,7 @@ def made(number: int) -> Turned:
     """The mechanism of a number; the kinds take turns."""
     chance = random.Random(number)
     kind = KINDS[number % len(KINDS)]
-    forms = [chance.choice([form for form in FORMS if form.startswith(kind)])]
-    if chance.random() < 0.4:
-        forms.append(chance.choice(FORMS))
-    scene = _driven(chance, forms)
+    scene = _driven(chance, some_forms(kind, chance))
     return _from_file(chance, scene, kind) if number % 2 else _in_radians(chance, scene, kind)
 
 
@@ -66,28 +67,13 @@ def _driven(chance: random.Random, forms: list[str]) -> Scene:
     """A crank with the dyads, turning round if that comes about, else swinging."""
     for _ in range(TRIES):
         at = Layout(chance.uniform, chance.choice)
-        pivot = at.arm(0.0, 1.0)
-        crank = at.link(pivot)
-        at.frames[crank] = (pivot, at.frames[crank][1])  # about its pivot, to come round
-        at.reach[crank] = chance.uniform(0.2, 1.0)
-        at.pin(pivot, GROUND, crank)
-        at.pin(pivot + at.arm(0.1, 0.8), crank)
+        crank = at.crank(comes_round=True)
         speed = chance.choice((1, -1)) * 10 ** chance.uniform(-1.0, 3.0)
         based = ["RRR", *forms] if forms[0].startswith("PRP") else forms
         designed = with_dyads(at, based, crank, ConstantSpeed(at.frames[crank][1], speed))
-        if _turns_round(designed.scene):
+        if least_sine(designed.scene, LOOKS) > DEAD:  # no dead point hides between the looks
             return designed.scene
     return swinging(designed, abs(speed)).scene
-
-
-def _turns_round(scene: Scene) -> bool:
-    """Whether no dead point can hide between the looks."""
-    time_s = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
-    try:
-        motion = solve(scene, time_s, links=(), points=(), sliders=(), bound=False)
-    except ReachError:
-        return False
-    return min(float(sine.min()) for sine in motion.conditioning.values()) > DEAD
 
 
 def _in_radians(chance: random.Random, scene: Scene, kind: str) -> Turned:
