@@ -18,20 +18,13 @@ from reports.plan.study import Variant, load_study
 from reports.results.recommend import TARGETS, Recommendation, recommendations
 from reports.store.reader import Stored, read_store
 from sim.engine import Drive
-from sim.exudyn import settings as exudyn_settings
-from sim.mujoco import settings as mujoco_settings
-from sim.pymunk import settings as pymunk_settings
+from sim.mujoco.settings import writing
 from sim.registry import engine as adapter
 from sim.settings import profile_of, resolved
 from sim.snippets import snippet
 from tests.sim.test_snippets import other
-from tests.worlds.bare import (
-    BARE,
-    measured_as_we_did,
-    mujoco_error,
-    mujoco_error_of_geometry,
-    pymunk_error,
-)
+from tests.worlds import bare
+from tests.worlds.bare import BARE
 from tests.worlds.in_process import in_this_process
 from tests.worlds.tiers import few
 from tests.worlds.workshop import DISTURBANCE
@@ -53,11 +46,7 @@ variants:
   - {name: trapezoidal, engine: exudyn, profile: tuned, settings: {integrator: TrapezoidalIndex2}}
   - {engine: exudyn, profile: tuned}
 """
-PROFILES = {
-    "mujoco": mujoco_settings.AS_SHIPPED,
-    "pymunk": pymunk_settings.AS_SHIPPED,
-    "exudyn": exudyn_settings.AS_SHIPPED,
-}
+SETTINGS = {engine: profile_of(adapter(engine), "as-shipped").settings for engine in BARE}
 Found = Mapping[tuple[str, float], Recommendation]
 ROUNDING = 1e-10
 """rad: below this two runs of the same settings need not agree."""
@@ -107,7 +96,7 @@ def test_what_is_in_force_is_enough_under_a_drive_of_another_kind(
     """Without the solver's settings that the flywheel asks for. The crank's speed varies under a
     motor of limited gain, by a third, and accelerations and errors are larger for that."""
     one = recommended["mujoco", target]
-    found = mujoco_error_of_geometry(one.snippet(), round(one.best.steps_per_turn), 10.0)
+    found = bare.mujoco_error_of_geometry(one.snippet(), round(one.best.steps_per_turn), 10.0)
     assert found < 3.0 * one.best.worst_error
 
 
@@ -130,9 +119,8 @@ def test_snippets_of_all_settings_give_the_measured_errors(store: Stored) -> Non
 
 
 def shipped_variants(engine: str) -> list[Variant]:
-    return [
-        one for each in load_study(None).variants for one in each.each() if one.engine == engine
-    ]
+    every = (one for each in load_study(None).variants for one in each.each())
+    return [one for one in every if one.engine == engine]
 
 
 @pytest.mark.parametrize("drive", ["prescribed", "servo"])
@@ -140,12 +128,11 @@ def shipped_variants(engine: str) -> list[Variant]:
 def test_mjcf_says_what_the_adapter_gives_mujoco(variant: Variant, drive: Drive) -> None:
     """Every attribute that differs from MuJoCo's default, as the text of a run has it."""
     scene = load_scene("fourbar-lecture-1")
-    profile = {p.name: p for p in (mujoco_settings.AS_SHIPPED, mujoco_settings.TUNED)}
-    settings = resolved(profile[variant.profile], variant.chosen)
+    settings = resolved(profile_of(adapter("mujoco"), variant.profile), variant.chosen)
     text = snippet("mujoco", settings, 500, scene.driver.law.period_s, drive=drive)
     dt_s = scene.driver.law.period_s / 500
-    run = mujoco_settings.writing(scene, settings, dt_s, drive)
-    whole = Xml.fromstring(f"<mujoco>{measured_as_we_did(text)}</mujoco>")
+    run = writing(scene, settings, dt_s, drive)
+    whole = Xml.fromstring(f"<mujoco>{bare.measured_as_we_did(text)}</mujoco>")
     connect = whole.find("default/default[@class='crankcheck-loop']/equality")
     held = {"integrator": "Euler", "solver": "Newton", "iterations": "100", "tolerance": "1e-8"}
     assert same(held | attributes(whole, "option"), run.option)
@@ -173,17 +160,17 @@ def same(text: dict[str, str], values: object) -> bool:
 
 
 @pytest.mark.parametrize(
-    ("engine", "name"), [(engine, name) for engine in BARE for name in PROFILES[engine].settings]
+    ("engine", "name"), [(engine, name) for engine in BARE for name in SETTINGS[engine]]
 )
 def test_no_setting_is_left_out(engine: str, name: str) -> None:
     """Another value of any setting makes another snippet, with one drive or another."""
-    default = {n: setting.value for n, setting in PROFILES[engine].settings.items()}
+    default = {n: setting.value for n, setting in SETTINGS[engine].items()}
     changed = default | {name: other(name, default[name])}
     drives: tuple[Drive, ...] = ("prescribed", "servo", "free")
-    assert any(
-        snippet(engine, default, 90, drive=drive) != snippet(engine, changed, 90, drive=drive)
-        for drive in drives
+    before, after = (
+        [snippet(engine, each, 90, drive=drive) for drive in drives] for each in (default, changed)
     )
+    assert before != after
 
 
 @pytest.mark.parametrize("target", few(TARGETS, {1e-4}, "settings differ little between targets"))
@@ -229,6 +216,9 @@ def test_bare_models_see_a_wrong_setting(recommended: Found) -> None:
     mujoco, pymunk = recommended["mujoco", 1e-4], recommended["pymunk", 1e-4]
     soft = mujoco.snippet().replace("0.9999 0.9999", "0.99 0.99")
     assert soft != mujoco.snippet()
-    assert mujoco_error(soft, round(mujoco.best.steps_per_turn), 10.0) > 2 * mujoco.best.worst_error
+    assert (
+        bare.mujoco_error(soft, round(mujoco.best.steps_per_turn), 10.0)
+        > 2 * mujoco.best.worst_error
+    )
     biased = pymunk.snippet().replace("error_bias = 0.0", "error_bias = 0.1")
-    assert pymunk_error(biased, round(pymunk.best.steps_per_turn), 10.0) > 1e-4
+    assert bare.pymunk_error(biased, round(pymunk.best.steps_per_turn), 10.0) > 1e-4
