@@ -13,7 +13,7 @@ import pytest
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene
-from models.laws import ConstantSpeed, Law, Oscillating
+from models.laws import ConstantSpeed, Oscillating
 from models.poses import mass_ratio
 from models.scene import Scene
 from reports.compare.beside import SETTLING, Beside, Truth
@@ -25,7 +25,7 @@ from reports.judge.cell import check
 from reports.judge.start_allowance import allowance
 from reports.judge.tolerance import DEFAULTS, check_names, limits, parse
 from sim.run import run
-from tests.worlds.tiers import slow, slowly
+from tests.worlds.tiers import slowly
 from tests.worlds.turns import of_turns
 
 ERRORS = Errors((), (), (), curvature=1.0, conditioning=0.8, step_rad=0.01)
@@ -197,33 +197,26 @@ def share(scene: Scene, errors: Errors) -> float:
     return errors.worst("drive").pure / limits(scene, errors, {})["drive"].number
 
 
-def drive_share(scene: Scene, engine: str, law: Law, steps_per_turn: float, steps: int) -> float:
-    """That of a run that keeps some 2000 of its samples."""
-    scene = replace(scene, driver=replace(scene.driver, law=law))
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(
+    ("steps_per_turn", "steps"),
+    [
+        *((977.3, 1000), (977.3, 10_000)),
+        slowly(90.0, 1000, reason="steps that divide a turn"),
+        slowly(90.0, 10_000, reason="steps that divide a turn"),
+        slowly(90.0, 1_000_000, reason="what grows with their square is seen in a sum that long"),
+    ],
+)
+def test_the_drive_of_a_long_run_is_within_what_rounding_explains(
+    steps_per_turn: float, steps: int, law: str, engine: str, fourbar: Scene
+) -> None:
+    scene = replace(fourbar, driver=replace(fourbar.driver, law=LAWS[law]))
     state = solve(scene, np.zeros(1)).state()
-    dt_s = law.period_s / steps_per_turn
+    dt_s = LAWS[law].period_s / steps_per_turn
     done = run(scene, state, engine, dt_s=dt_s, steps=steps, every=max(steps // 2000, 1))
     assert done.status == "ok"
-    return share(scene, compare(Beside.of(Truth(scene), done)))
-
-
-@pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("steps_per_turn", [slowly(90.0, reason="steps that divide a turn"), 977.3])
-def test_the_drive_of_a_long_run_is_within_what_rounding_explains(
-    steps_per_turn: float, law: str, engine: str, fourbar: Scene
-) -> None:
-    for steps in (1000, 10_000):
-        assert drive_share(fourbar, engine, LAWS[law], steps_per_turn, steps) < 0.7
-
-
-@slow("a million steps: what grows with their square is seen in a sum that long")
-@pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("law", LAWS)
-def test_the_drive_of_ten_thousand_turns_is_within_what_rounding_explains(
-    law: str, engine: str, fourbar: Scene
-) -> None:
-    assert drive_share(fourbar, engine, LAWS[law], 90.0, 1_000_000) < 0.7
+    assert share(scene, compare(Beside.of(Truth(scene), done))) < 0.7
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -247,7 +240,8 @@ def test_the_limit_grows_with_the_square_of_the_steps_and_again_for_a_law_that_i
 
 
 def test_every_limit_leaves_room_for_what_the_driver_passes_on(fourbar: Scene) -> None:
-    short, long = (numbers(fourbar, step_rad=1e-6, summed_rad=off) for off in (0.0, 1e-4))
+    hard = {"curvature": 2.0, "conditioning": 0.5, "step_rad": 1e-6}
+    short, long = (numbers(fourbar, **hard, summed_rad=off) for off in (0.0, 1e-4))
     for name in ("drive", "angle", "gap", "velocity", "acceleration"):
         assert long[name] - short[name] >= 1e-4
 
