@@ -14,7 +14,6 @@ from reports.cli.commands.sweep import sweep
 from reports.cli.measuring import SweepRequest
 from tests.worlds.in_process import in_this_process
 
-SCENE = "fourbar-lecture-1"
 Sweep = Callable[..., int]
 
 
@@ -24,15 +23,8 @@ def swept() -> Sweep:
     nowhere = Console(file=StringIO())
 
     def run(folder: Path, *engines: str, steps: str = "90,180", timing: bool = True) -> int:
-        asked = SweepRequest(
-            folder,
-            scenes=[SCENE],
-            engines=engines,
-            profiles=["tuned"],
-            steps_per_turn=steps,
-            jobs=1,
-            timing=timing,
-        )
+        cells = {"engines": engines, "profiles": ["tuned"], "steps_per_turn": steps}
+        asked = SweepRequest(folder, ["fourbar-lecture-1"], jobs=1, timing=timing, **cells)
         with in_this_process() as patch:
             patch.setattr("reports.sweep.measured.REPEAT_S", 1e-5)  # nobody compares these times
             patch.setattr("reports.sweep.measured.LEAST_TIMED", 5)

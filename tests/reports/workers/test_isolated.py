@@ -9,10 +9,9 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import psutil
 import pytest
@@ -46,42 +45,30 @@ def test_the_time_limit_is_for_each_job(monkeypatch: pytest.MonkeyPatch) -> None
         isolated.limits = Limits(LIMIT_S)
         for count in (1, 2):
             assert isolated.call(time.sleep, 0.0) is None
-            assert (Noted.limits_s.count(LIMIT_S), Noted.running) == (count, 0)
+            assert [timer.interval for timer in Noted.made].count(LIMIT_S) == count
+            assert all(timer.finished.is_set() for timer in Noted.made)
 
 
 class Noted(threading.Timer):
-    """A timer that notes its limit, and how many of them run."""
+    """A timer that can be looked at."""
 
-    limits_s: ClassVar[list[float]] = []
-    running: ClassVar[int] = 0
+    made: ClassVar[list[threading.Timer]] = []
 
-    def __init__(self, interval_s: float, function: Callable[[], None]) -> None:
-        super().__init__(interval_s, function)
-        Noted.limits_s.append(interval_s)
-
-    def start(self) -> None:
-        Noted.running += 1
-        super().start()
-
-    def cancel(self) -> None:
-        Noted.running -= 1
-        super().cancel()
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        Noted.made.append(self)
 
 
 class LastMoment(threading.Timer):
     """A timer that goes off when it is stopped, a little late, if it is that of a job."""
 
-    def __init__(self, interval_s: float, function: Callable[[], None]) -> None:
-        of_job = interval_s == LIMIT_S
-        super().__init__(0.1 if of_job else interval_s, function)
-        self.of_job = of_job
-
     def start(self) -> None:
-        if not self.of_job:
+        if self.interval != LIMIT_S:
             super().start()
 
     def cancel(self) -> None:
-        if self.of_job:
+        if self.interval == LIMIT_S:
+            self.interval = 0.1
             super().start()
         else:
             super().cancel()
@@ -139,7 +126,7 @@ class AtOnce(threading.Timer):
         """No thread was started."""
 
 
-MANY = list(range(FEW + 2))
+MANY = [*range(FEW + 2)]
 MUCH = Limits(3600.0)
 
 
