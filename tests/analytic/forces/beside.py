@@ -7,11 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.check import power
+from analytic.check import multipliers, power
 from analytic.forces import kinetostatics
-from analytic.kinematics import solve
+from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.forces import Forces
+from models.motion import Motion
 from models.scene import Scene
 
 AGREED = 1e-11
@@ -21,6 +22,11 @@ SAMPLES = 61
 def turn(scene: Scene) -> Array:
     """Times over a period, none of them in a position of symmetry."""
     return np.linspace(0.0, scene.driver.law.period_s, SAMPLES) + 1e-3 * scene.driver.law.period_s
+
+
+def at(scene: Scene, *angles_rad: float, speed: float = 1.0) -> Motion:
+    """A motion of one speed through angles of the driver."""
+    return solve_driven(scene, np.array(angles_rad), np.array(speed), np.array(0.0))
 
 
 def unlocked(scene: Scene, time_s: Array) -> Array:
@@ -65,3 +71,12 @@ def apart(one: Forces, other: Forces) -> float:
 def out_of_balance(scene: Scene, time_s: Array, found: Forces) -> float:
     balance = power.power_balance(scene, solve(scene, time_s), found.torque, found.friction)
     return float(np.max(np.abs(balance.put_in - balance.used)) / np.max(balance.scale))
+
+
+def agreed(scene: Scene, time_s: Array, told: object = "") -> tuple[Forces, Forces]:
+    """The forces by groups and by multipliers, which agree, and with the balance of power."""
+    found = kinetostatics.forces(scene, time_s)
+    other = multipliers.forces(scene, solve(scene, time_s))
+    assert apart(found, other) <= AGREED, told
+    assert out_of_balance(scene, time_s, found) <= AGREED, told
+    return found, other

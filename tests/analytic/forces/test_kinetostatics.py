@@ -11,7 +11,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.check import multipliers
 from analytic.forces.kinetostatics import forces
 from analytic.forces.springs import spring_lengths
 from analytic.kinematics import chunks, reach, solve, solve_driven
@@ -25,7 +24,7 @@ from models.scene import GROUND, Driver, Scene
 from models.springs import LineSpring, PinSpring, SlideSpring
 from models.tabulated import Tabulated
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
-from tests.analytic.forces.beside import AGREED, apart, out_of_balance, series, turn
+from tests.analytic.forces.beside import AGREED, agreed, apart, at, out_of_balance, series, turn
 from tests.analytic.forces.test_self_locking import STEEP
 from tests.models.test_friction import RUBBING
 from tests.models.test_loads import PRESS
@@ -37,11 +36,6 @@ CENTRAL = load_scene("slider-crank-central")
 ROCKING = load_scene("fourbar-double-rocker")
 LEVEL = replace(parallelogram(1), gravity_m_s2=(0.0, -9.81))
 """Its bars come into one line at 0 deg."""
-
-
-def at(scene: Scene, *angles_rad: float, speed: float = 1.0) -> Motion:
-    """A motion of one speed through angles of the driver."""
-    return solve_driven(scene, np.array(angles_rad), np.array(speed), np.array(0.0))
 
 
 def test_forces_of_a_motion_are_those_of_its_times() -> None:
@@ -175,8 +169,7 @@ def test_a_spring_in_a_pin_is_wound_up_turn_by_turn() -> None:
     assert q - q[0] == pytest.approx([0.0, math.tau, 3.0 * math.tau])
     assert abs(other[0] - coupler.free) <= math.pi
     assert other - other[0] == pytest.approx([0.0, -math.tau, -3.0 * math.tau])
-    found = forces(scene, instants)
-    assert apart(found, multipliers.forces(scene, solve(scene, instants))) <= AGREED
+    found, _ = agreed(scene, instants)
     given = forces(scene, solve_driven(scene, *scene.driver.law.at(instants), instants))
     assert apart(found, given) <= AGREED
 

@@ -22,7 +22,15 @@ from models.laws import Accelerating
 from models.motion import Motion
 from models.scene import Driver, Scene
 from tests.analytic.assur.triad_scenes import KINDS, triad
-from tests.analytic.forces.beside import AGREED, apart, out_of_balance, series, turn, unlocked
+from tests.analytic.forces.beside import (
+    AGREED,
+    agreed,
+    apart,
+    out_of_balance,
+    series,
+    turn,
+    unlocked,
+)
 from tests.analytic.imported import reached
 from tests.worlds.loading import loaded, loaded_mechanism, sprung
 from tests.worlds.tiers import few, slowly
@@ -55,7 +63,7 @@ def test_three_computations_agree_over_a_turn(name: str, heavy: bool) -> None:
     scene = load_scene(name)
     if heavy:
         scene = loaded(scene, random.Random(name))
-    found, other = _agreed(scene, unlocked(scene, turn(scene)))
+    found, other = agreed(scene, unlocked(scene, turn(scene)))
     assert not np.array_equal(found.torque, other.torque), "bit for bit: the same computation?"
 
 
@@ -68,7 +76,7 @@ def test_three_computations_agree_with_springs(name: str, seeds: range) -> None:
         scene = sprung(load_scene(name), random.Random(seed))
         time_s = unlocked(scene, turn(scene))
         plain = kinetostatics.forces(replace(scene, springs={}), time_s)
-        assert apart(_agreed(scene, time_s)[0], plain) > 1e3 * AGREED
+        assert apart(agreed(scene, time_s)[0], plain) > 1e3 * AGREED
 
 
 @pytest.mark.parametrize("count", [16, slowly(200, reason="random mechanisms")])
@@ -79,16 +87,7 @@ def test_random_mechanisms_agree_with_the_multipliers(springs: bool, count: int)
         scene, _ = loaded_mechanism(number)
         if springs:
             scene = sprung(scene, random.Random(number))
-        _agreed(scene, np.linspace(0.01, 1.0, 5) * scene.driver.law.period_s)
-
-
-def _agreed(scene: Scene, time_s: Array) -> tuple[Forces, Forces]:
-    """The forces by groups and by multipliers, which agree, and with the balance of power."""
-    found = kinetostatics.forces(scene, time_s)
-    other = multipliers.forces(scene, solve(scene, time_s))
-    assert apart(found, other) <= AGREED
-    assert out_of_balance(scene, time_s, found) <= AGREED
-    return found, other
+        agreed(scene, np.linspace(0.01, 1.0, 5) * scene.driver.law.period_s, number)
 
 
 def _by_power(scene: Scene, time_s: Array) -> tuple[Array, Array]:
