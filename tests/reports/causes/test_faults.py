@@ -65,9 +65,7 @@ def test_healthy_logs_of_other_mechanisms_have_no_cause(scene: str) -> None:
 
 @slow("only here are sizes of faults, lengths of logs, limits and noise at random")
 @pytest.mark.parametrize("scene", SCENES)
-def test_the_names_of_many_faults_at_random_are_not_mistaken(
-    scene: str, infected: Infected
-) -> None:
+def test_the_names_of_faults_at_random_are_not_mistaken(scene: str, infected: Infected) -> None:
     right: Counter[bool] = Counter()
     for fault, planting in PLANTINGS.items():
         for seed in range(MANY):
@@ -174,9 +172,7 @@ def judged(column: str, values: object, scene: str = FOURBAR) -> crankcheck.LogV
     ],
 )
 @pytest.mark.parametrize("value", [slowly(0.0, reason="as without power; its mean is 0"), 37.3])
-def test_a_sensor_that_stands_still_is_out_and_said_to_stand(
-    scene: str, column: str, value: float
-) -> None:
+def test_a_sensor_that_stands_still_is_said_to_stand(scene: str, column: str, value: float) -> None:
     one = judged(column, np.full(TIME_S.size, value), scene)
     assert one.verdict == "out"
     assert [cause.name for cause in one.causes] == ["stuck"]

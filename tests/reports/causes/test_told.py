@@ -281,9 +281,7 @@ def work_on(rows: int, monkeypatch: pytest.MonkeyPatch) -> tuple[int, list[int]]
 
 
 @pytest.mark.parametrize("rows", [40_000, slowly(1_000_000, reason="as long as logs may be")])
-def test_hypotheses_do_not_look_at_all_of_a_long_log(
-    rows: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_hypotheses_look_at_part_of_a_long_log(rows: int, monkeypatch: pytest.MonkeyPatch) -> None:
     work_on(2000, monkeypatch)  # imports
     few_calls, few = work_on(2000, monkeypatch)
     calls, solved = work_on(rows, monkeypatch)

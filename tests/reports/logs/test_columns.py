@@ -97,9 +97,7 @@ BETWEEN = ("", "  ", "#", "# a", "% b, c", "// d", " # e", '# "', "#1,2", "#1\t2
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_every_number_is_told_by_its_line_whatever_stands_between(
-    tmp_path: Path, seed: int
-) -> None:
+def test_a_number_is_told_by_its_line_whatever_stands_between(tmp_path: Path, seed: int) -> None:
     rng = np.random.default_rng(seed)
     separator = str(rng.choice([",", ";", "\t", " "]))
     end, last = str(rng.choice(["\n", "\r\n"])), separator if rng.random() < 0.3 else ""
@@ -207,18 +205,14 @@ def test_what_is_no_log_is_told(tmp_path: Path, text: str | bytes, words: str) -
         ("1.5D-3", "row 3, column 'a': found '1.5D-3', .*write e for"),
     ],
 )
-def test_a_cell_that_is_no_number_is_told_by_row_and_column(
-    tmp_path: Path, cell: str, words: str
-) -> None:
+def test_what_is_no_number_is_told_by_row_and_column(tmp_path: Path, cell: str, words: str) -> None:
     found = read_columns(written(tmp_path, f"t,a\n0,1\n1,{cell}\n2,1\n"))
     assert found.numbers("t").tolist() == [0, 1, 2]
     with pytest.raises(CrankcheckError, match=words):
         found.numbers("a")
 
 
-def test_more_rows_than_are_read_are_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_rows_beyond_the_most_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(extent, "MOST_ROWS", 2)
     with pytest.raises(CrankcheckError, match="3 rows; at most 2 are read"):
         read_columns(written(tmp_path, "t,a\n0,1\n1,1\n2,1\n"))

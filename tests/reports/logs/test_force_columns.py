@@ -259,9 +259,7 @@ def test_one_component_of_a_force_alone_is_judged(
 @pytest.mark.parametrize(
     "asked", [{"require": "torque"}, {"require": "crank.torque"}, {"target": {"torque": 1e-3}}]
 )
-def test_what_is_asked_of_forces_asks_for_them(
-    frame: pd.DataFrame, asked: dict[str, object]
-) -> None:
+def test_what_is_asked_of_forces_needs_them(frame: pd.DataFrame, asked: dict[str, object]) -> None:
     with pytest.raises(CrankcheckError, match=r"add (--forces|forces=True), or leave torque out"):
         crankcheck.judge(SCENE, frame, step_s=STEP_S, **asked)  # type: ignore[call-overload]
     assert _judged(frame, **asked).verdict == "within"

@@ -161,9 +161,7 @@ LONG = {"10 million rows", "a quote over 9 MB", "workbook, a cell far away", "wo
 @pytest.mark.parametrize(
     "name", few(CASES, CASES.keys() - LONG, "sizes at which work on each byte shows")
 )
-def test_it_is_refused_at_once_with_one_message(
-    name: str, apart: Isolated[Ended], tmp_path: Path
-) -> None:
+def test_it_is_refused_in_one_message(name: str, apart: Isolated[Ended], tmp_path: Path) -> None:
     case = CASES[name]
     arguments = case.command.split()
     if case.mapped:
@@ -207,9 +205,7 @@ def many_turns(path: Path, turns: int) -> None:
 
 
 @slow("only here is a log so long that a copy too many of it would not fit")
-def test_a_million_rows_are_judged_in_a_gigabyte_and_as_many_calls_as_a_thousand(
-    tmp_path: Path,
-) -> None:
+def test_a_million_rows_take_a_gigabyte_and_as_many_calls_as_a_thousand(tmp_path: Path) -> None:
     apart: Isolated[Ended] = Isolated(Limits(time_s=600.0, memory_gb=4.0))
     judged = partial(attempt, name="log.csv", counted=True)
     ended = []

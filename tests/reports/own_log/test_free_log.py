@@ -164,9 +164,7 @@ def test_rows_of_which_the_truth_is_not_known_are_left_out_and_counted() -> None
         (TIME_S, {"target": None}, "no limit for angle: no step of a log is known"),
     ],
 )
-def test_what_can_not_be_judged_is_told(
-    time_s: object, asked: dict[str, object], told: str
-) -> None:
+def test_what_is_not_judged_is_told(time_s: object, asked: dict[str, object], told: str) -> None:
     with pytest.raises(CrankcheckError, match=told):
         judged({"rocker_rad": truth().links["rocker"].theta}, time_s=time_s, **asked)
 

@@ -98,9 +98,7 @@ SEVERAL: list[dict[str, Array]] = [
 
 
 @pytest.mark.parametrize("columns", SEVERAL, ids="+".join)
-def test_of_several_readings_of_one_thing_no_right_one_hides_a_wrong_one(
-    columns: dict[str, Array],
-) -> None:
+def test_no_right_reading_hides_a_wrong_one_of_the_same_thing(columns: dict[str, Array]) -> None:
     assert judged(columns).verdict == "within"
     for wrong in columns:
         out = judged({**columns, wrong: columns[wrong] + 0.3 * np.sin(9 * TIME_S)})

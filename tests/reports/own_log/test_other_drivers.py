@@ -30,9 +30,7 @@ def judged(path: Path, scene: Scene, of: Scene, *options: str, kept: str = "") -
 @pytest.mark.parametrize(
     "kept", ["_theta_rad", slowly("", reason="a second, with the places, rates and forces of all")]
 )
-def test_a_log_of_another_assembly_of_a_triad_is_told_by_its_number(
-    kept: str, tmp_path: Path
-) -> None:
+def test_another_assembly_of_a_triad_is_told_by_its_number(kept: str, tmp_path: Path) -> None:
     scene = load_scene("triad-platform")
     told = judged(tmp_path, scene, replace(scene, branch={"plate": 2}), kept=kept)
     assert told.exit_code == 1

@@ -304,9 +304,7 @@ def test_a_line_that_hangs_is_a_row_with_its_reason(tmp_path: Path) -> None:
     assert (one.verdict, one.status, one.reason) == ("out", "timeout", "no end within 0.0001 s")
 
 
-def test_a_run_to_a_singular_position_is_refused_with_the_range_that_can_be_set(
-    tmp_path: Path,
-) -> None:
+def test_a_run_to_a_singular_position_is_refused_with_what_sets_the_range(tmp_path: Path) -> None:
     scene = load_scene("tangent")
     state = solve(scene, np.zeros(1), bound=False).state()
     with pytest.raises(CrankcheckError) as refused:

@@ -150,9 +150,7 @@ def test_the_verdict_shows_it_and_the_line_without_it_does_not(
     assert line(account, off).verdict == "within"
 
 
-def test_a_healthy_model_and_one_whose_axis_is_off_within_rounding_are_within(
-    tmp_path: Path,
-) -> None:
+def test_a_healthy_model_is_within_and_so_is_one_whose_axis_is_rounded(tmp_path: Path) -> None:
     for edits in ((), rocker('axis="0 -1 8.7e-5"')):  # 0.005 deg
         assert line(read(tmp_path, *edits), "as-written").verdict == "within"
 

@@ -152,9 +152,7 @@ def test_it_is_read_back_however_it_is_drawn(name: str, drawing: Drawing, tmp_pa
     [("fourbar-lecture-1", "coupler"), ("fourbar-lecture-1", "crank"), ("sixbar-watt", "rod")],
 )
 @pytest.mark.parametrize("askew", [None, 3])
-def test_a_link_that_a_weld_cuts_is_one(
-    name: str, cut: str, askew: int | None, tmp_path: Path
-) -> None:
+def test_a_link_a_weld_cuts_is_one(name: str, cut: str, askew: int | None, tmp_path: Path) -> None:
     scene, drawing = load_scene(name), Drawing(cut=cut, sites=False, askew=askew)
     assert_same(read_back(tmp_path, scene, drawing), scene)
 
@@ -219,9 +217,7 @@ def test_bodies_that_a_weld_has_to_pull_together_are_one_link(
     [("tilted", 2e-6), ("far away", 2e-6), ("all bodies free", 5e-6), ("balanced", 5e-6),
      ("cut", 2e-6)],
 )  # fmt: skip
-def test_it_runs_as_recommended_however_it_is_drawn(
-    kind: str, error: float, tmp_path: Path
-) -> None:
+def test_it_runs_as_advised_however_it_is_drawn(kind: str, error: float, tmp_path: Path) -> None:
     scene = load_scene("fourbar-lecture-1")
     drawing = DRAWINGS.get(kind, Drawing(cut="coupler", sites=False))
     text = drawn(scene, start_of(scene), drawing)

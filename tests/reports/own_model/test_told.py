@@ -58,9 +58,7 @@ def with_own(one: JudgedModel, status: str) -> JudgedModel:
 
 
 @pytest.mark.parametrize("width", [40, 60, 80, 100, 140])
-def test_every_line_and_its_gains_are_whole_at_every_width(
-    rubbing: JudgedModel, width: int
-) -> None:
+def test_lines_and_their_gains_are_whole_at_every_width(rubbing: JudgedModel, width: int) -> None:
     lines = printed(rubbing, width)
     start, end = place(lines, "Recommended"), place(lines, "OUT OF TOLERANCE")
     assert max(len(line) for line in (*lines[:start], *lines[end:])) <= width
@@ -131,9 +129,7 @@ def test_the_cure_of_a_model_names_its_own_settings(rubbing: JudgedModel) -> Non
 
 
 @pytest.mark.parametrize("status", ["crashed", "timeout", "unsupported"])
-def test_a_line_that_did_not_end_is_a_row_with_its_reason(
-    rubbing: JudgedModel, status: str
-) -> None:
+def test_a_line_that_did_not_end_has_its_reason(rubbing: JudgedModel, status: str) -> None:
     one = with_own(rubbing, status)
     for width in (60, 100):
         text = " ".join(" ".join(printed(one, width)).split())

@@ -83,9 +83,7 @@ def test_a_mocap_body_is_ground(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("place", "pivot_m"), [("", 0.3), ('mpos="0.35 0 0"', 0.35)])
-def test_a_mocap_body_is_where_the_keyframe_has_it(
-    place: str, pivot_m: float, tmp_path: Path
-) -> None:
+def test_a_mocap_body_is_where_a_key_has_it(place: str, pivot_m: float, tmp_path: Path) -> None:
     key = f'<keyframe><key name="moved" qpos="0 0 0 0 0" {place} mquat="2 0 0 0"/></keyframe>'
     text = planted(*MOCAP, "</mujoco>", f"{key}</mujoco>")
     found = read_text(tmp_path, text, key="moved", turns=0.2, converge=False)
@@ -99,9 +97,7 @@ def test_a_keyframe_that_puts_a_mocap_body_nowhere_is_refused(tmp_path: Path) ->
         read_text(tmp_path, planted(BASE, STAND, "</mujoco>", f"{key}</mujoco>"), key="off")
 
 
-def test_masses_and_inertias_come_from_geoms_and_from_what_is_fixed_to_a_body(
-    tmp_path: Path,
-) -> None:
+def test_masses_and_inertias_come_from_geoms_and_what_is_fixed_to_a_body(tmp_path: Path) -> None:
     bare = planted('size="0.004"', 'size="0.004" mass="0.5"')
     alone = read_text(tmp_path, bare).scene.links["rocker"]
     assert alone.mass_kg == pytest.approx(0.5)
@@ -119,7 +115,7 @@ def test_masses_and_inertias_come_from_geoms_and_from_what_is_fixed_to_a_body(
 
 
 @pytest.mark.parametrize("beside", ["main", "includer"])
-def test_includes_are_read_from_the_main_folder_or_that_of_the_includer(
+def test_includes_are_read_from_the_main_or_the_including_folder(
     beside: str, tmp_path: Path
 ) -> None:
     parts = tmp_path / "parts"

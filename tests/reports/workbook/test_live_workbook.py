@@ -103,9 +103,7 @@ def test_every_kind_has_families(scene: str, name: str) -> None:
         ("crank", [0.1, 0.5], r"--family crank=0.5: .* choose another crank"),
     ],
 )
-def test_a_family_that_can_not_be_is_refused_by_the_name_that_was_given(
-    name: str, values: list[float], told: str
-) -> None:
+def test_a_wrong_family_is_refused_by_its_name(name: str, values: list[float], told: str) -> None:
     scene = "fourbar-lecture-1" if name == "crank" else "slider-crank-excel-350"
     with pytest.raises(CrankcheckError, match=told):
         family(live(scene)[1], name, values)
@@ -242,9 +240,7 @@ def test_what_is_driven_is_drawn() -> None:
         ("rod", [0.2], "1 values; give 2 to 20"),
     ],
 )
-def test_a_family_of_a_scene_that_can_not_be_is_refused(
-    name: str, values: list[float], told: str
-) -> None:
+def test_a_wrong_family_of_a_scene_is_refused(name: str, values: list[float], told: str) -> None:
     with pytest.raises(CrankcheckError, match=told):
         scene_family(load_scene("sixbar-stephenson"), name, values, TIMES)
 

@@ -138,9 +138,7 @@ def test_there_is_a_layer_for_each_step_and_the_same_sheet_has_the_same_bytes() 
 
 
 @pytest.mark.parametrize("case", few(SHEETS, QUICK, "words that meet on another sheet"), ids=str)
-def test_no_letter_is_on_a_line_and_words_and_lines_stay_in_their_boxes(
-    case: tuple[str, Paper],
-) -> None:
+def test_no_letter_is_on_a_line_and_all_stays_in_its_box(case: tuple[str, Paper]) -> None:
     name, paper = case
     sheet, canvas = laid_out(EVERY[name](), paper), sheet_of(name, paper)
     low, high = sheet.box.corners

@@ -111,9 +111,7 @@ def test_graphs_of_any_heights_fit_with_one_scale_round(
         ("fourbar-lecture-1", "crank", "integration", "A4"),
     ],
 )
-def test_graphs_and_table_stay_within_their_boxes(
-    name: str, of: str, by: Method, paper: str
-) -> None:
+def test_graphs_and_table_stay_in_their_boxes(name: str, of: str, by: Method, paper: str) -> None:
     sheet = sheet_of(name, of, by, paper=paper)
     for panel in sheet.panels:
         exact = sheet.drawn.span.exact(panel.order, sheet.drawn.span.dense)
@@ -245,9 +243,7 @@ def test_a_crank_that_loses_its_turns_goes_on(write: Write) -> None:
     assert drawn_graphs(of, "chords", 12, log).own_part(0) < 1e-12
 
 
-def test_a_log_that_begins_later_is_drawn_from_there_or_over_its_first_whole_period(
-    write: Write,
-) -> None:
+def test_a_log_that_begins_later_is_drawn_from_there_or_its_next_period_on(write: Write) -> None:
     for periods, start in ((1, 0.3), (2, PERIOD)):
         t = 0.3 + np.arange(0, 720 * periods + 1) * PERIOD / 720
         graphs = drawn(write(time_s=t, rocker_theta_rad=ROCKER.exact(0, t)))
@@ -363,9 +359,7 @@ UNFIT: list[tuple[dict[str, Array], str]] = [
 
 
 @pytest.mark.parametrize(("columns", "told"), UNFIT)
-def test_a_log_that_can_not_be_drawn_is_refused(
-    write: Write, columns: dict[str, Array], told: str
-) -> None:
+def test_a_log_that_is_unfit_is_refused(write: Write, columns: dict[str, Array], told: str) -> None:
     with pytest.raises(CrankcheckError, match=told):
         drawn(write(**columns))
 

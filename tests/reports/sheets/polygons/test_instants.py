@@ -90,9 +90,7 @@ def test_a_point_with_one_coordinate_is_missing() -> None:
         (lambda log: log.at_time(math.nan), "goes from 0 to"),
     ],
 )
-def test_an_instant_that_is_not_in_the_log_is_refused(
-    ask: Callable[[LogInstants], object], told: str
-) -> None:
+def test_an_instant_off_the_log_is_refused(ask: Callable[[LogInstants], object], told: str) -> None:
     with pytest.raises(CrankcheckError, match=told):
         ask(logged(solve(SCENE, STEP_S * np.arange(100), bound=False)))
 
