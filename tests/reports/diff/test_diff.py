@@ -61,9 +61,7 @@ def flat(told: tuple[int, str]) -> tuple[int, str]:
     return told[0], " ".join(told[1].split())
 
 
-def test_a_run_against_itself_or_with_another_comment_in_its_scene_ends_with_0(
-    stored: Copy, diff: Run
-) -> None:
+def test_a_run_against_itself_or_with_another_comment_ends_with_0(stored: Copy, diff: Run) -> None:
     old = stored("old", text="a = 1")
     for new in (old, stored("new", text="# new\na = 1")):
         code, shown = diff(old, new, strict=True)
@@ -82,9 +80,7 @@ def test_a_planted_growth_ends_with_1_and_is_named(stored: Copy, diff: Run) -> N
     assert diff(new, old)[0] == 0
 
 
-def test_a_growth_below_the_factor_or_at_the_size_of_rounding_ends_with_0(
-    stored: Copy, diff: Run
-) -> None:
+def test_a_growth_below_the_factor_or_of_rounding_size_ends_with_0(stored: Copy, diff: Run) -> None:
     old, new = stored("old"), stored("new", planted(1.05))
     assert diff(old, new)[0] == 0
     assert diff(old, new, factor=1.01)[0] == 1
@@ -172,9 +168,7 @@ def test_junit_has_a_case_for_every_cell(stored: Copy, diff: Run, tmp_path: Path
     assert found.get("failures") == "2", "the exit code 1 of --strict is told in the file too"
 
 
-def test_markdown_goes_to_the_terminal_or_to_a_file(
-    stored: Copy, diff: Run, tmp_path: Path
-) -> None:
+def test_markdown_goes_to_the_terminal_or_a_file(stored: Copy, diff: Run, tmp_path: Path) -> None:
     old, new, path = stored("old"), stored("new", planted(1.2)), tmp_path / "diff.md"
     code, printed = diff(old, new, format="md")
     assert code == 1
@@ -317,9 +311,7 @@ def test_cells_that_failed_in_both_are_told(cell: Make, run: Group) -> None:
 @pytest.mark.parametrize(
     ("apart", "told"), [(0.01, "1.20 x (median of 1 cell)"), (0.3, "equal inside the noise of 30%")]
 )
-def test_costs_are_equal_inside_the_noise_of_the_runs(
-    cell: Make, run: Group, apart: float, told: str
-) -> None:
+def test_costs_are_equal_inside_the_noise(cell: Make, run: Group, apart: float, told: str) -> None:
     old = replace(cell(angle=1e-3), cost=CellCost(2.0, apart, "abacus"))
     new = replace(cell(angle=1e-3), cost=CellCost(2.4, apart, "abacus"))
     assert told in cost_text(compare(run(old), run(new)))

@@ -112,9 +112,7 @@ def test_the_bar_is_a_round_number() -> None:
     assert {value: rounded(value) for value in bars} == pytest.approx(bars, rel=1e-12)
 
 
-def test_with_forces_a_picture_has_arrows_and_a_bar_where_some_act(
-    fourbar: Scene,
-) -> None:
+def test_a_picture_has_arrows_and_a_bar_where_forces_act(fourbar: Scene) -> None:
     plain, forced = svg(fourbar), svg(fourbar, with_forces=True)
     assert plain == svg(fourbar, with_forces=False)
     assert any(str(each.text).endswith(" N") for each in Xml.fromstring(forced).iter(f"{SVG}text"))

@@ -95,9 +95,7 @@ def test_what_an_engine_does_not_report_is_left_out_of_its_log_and_no_row_of_it_
     assert set(judged.frame()["verdict"]) == {"within"}
 
 
-def test_a_run_is_judged_by_its_own_step_and_a_failing_one_fails(
-    ran: crankcheck.Simulation,
-) -> None:
+def test_a_run_is_judged_by_its_own_step_and_a_bad_one_fails(ran: crankcheck.Simulation) -> None:
     verdict = crankcheck.judge(ran.scene, ran)
     checked = crankcheck.check(ran.scene, steps_per_turn=180, turns=1, converge=False)
     assert verdict.verdict == "within"
@@ -168,9 +166,7 @@ def test_what_moves_the_truth_is_said_as_of_judge(log: dict[str, np.ndarray]) ->
         assert_within(SCENE, quicker, target=1e-3, drive=1e-9)  # type: ignore[arg-type]
 
 
-def test_a_tolerance_is_asked_for_and_what_is_required_and_not_there_is_out(
-    log: dict[str, np.ndarray],
-) -> None:
+def test_a_tolerance_is_asked_for_and_what_is_missing_is_out(log: dict[str, np.ndarray]) -> None:
     with pytest.raises(crankcheck.CrankcheckError, match=r"no limit for angle: .* give target"):
         assert_within(SCENE, log, velocity=1e-3)
     with pytest.raises(TypeError):

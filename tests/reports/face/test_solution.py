@@ -118,7 +118,7 @@ def test_a_straight_start_rings() -> None:
     ("name", "asked"),
     [(ELASTIC, {"elements": 1, "shape": "straight"}), ("fourbar-elastic-pulse", {"modes": 1})],
 )
-def test_the_coarsest_of_all_descriptions_is_not_held_to_itself(
+def test_the_coarsest_description_is_not_held_to_itself(
     name: str, asked: dict[str, object]
 ) -> None:
     (told,) = crankcheck.solve(name, [0.0, 0.02], **asked).certainty

@@ -85,9 +85,7 @@ def flat(path: Path) -> str:
     return texts(path.read_bytes()).replace("\n", " ")
 
 
-def test_there_is_an_svg_of_each_and_none_over_turns_of_free_runs(
-    drawn: Path, drawn_free: Path
-) -> None:
+def test_there_is_an_svg_of_each_figure_that_a_store_has(drawn: Path, drawn_free: Path) -> None:
     assert {path.name for path in drawn.iterdir()} == {f"{name}.svg" for name in ALL}
     assert {path.stem for path in drawn_free.iterdir()} == {f"{n}-{LET_GO}" for n in FREE_LABELS}
 
@@ -129,9 +127,7 @@ def test_what_was_run_and_what_failed_stand_under_a_result(drawn: Path) -> None:
     assert "failed" not in flat(drawn / "convergence-fourbar-lecture-1.svg")
 
 
-def test_an_svg_brings_its_font_and_a_pdf_fonts_with_words(
-    drawn: Path, chosen: tuple[Path, str]
-) -> None:
+def test_an_svg_and_a_pdf_bring_their_fonts(drawn: Path, chosen: tuple[Path, str]) -> None:
     for path in drawn.glob("*.svg"):
         assert "@font-face{font-family:'DejaVu Sans'" in path.read_text(), path.name
     has_fonts(chosen[0] / "mechanism-slotted-lever.pdf")
@@ -183,9 +179,7 @@ def test_scene_and_only_choose(chosen: tuple[Path, str]) -> None:
     assert "1 figure, each as .svg and .pdf" in said
 
 
-def test_what_there_is_not_and_a_folder_that_is_a_file_are_refused(
-    store: Path, tmp_path: Path
-) -> None:
+def test_what_there_is_not_and_a_file_for_a_folder_are_refused(store: Path, tmp_path: Path) -> None:
     for words, asked in FAULTS.items():
         with pytest.raises(CrankcheckError, match=words):
             figures(store, tmp_path / "figs", *asked)

@@ -59,14 +59,12 @@ SLIDER_CRANK, RODS = "slider-crank-excel-350", [3.5, 2.5, 2.2, 2.1]
 
 
 @pytest.mark.parametrize("drawn", few(DRAWN, QUICK, "the same figures, other curves"), ids=str)
-def test_words_of_forces_keep_off_each_other_and_off_the_edge(drawn: tuple[str, str]) -> None:
+def test_words_of_forces_have_room(drawn: tuple[str, str]) -> None:
     name, figure = drawn
     has_room(FORCE_FIGURES[figure], turn_of(name))
 
 
-def test_a_turn_is_drawn_from_0_to_360_deg_and_two_over_the_angles_that_they_are_of(
-    fourbar: Scene,
-) -> None:
+def test_a_turn_is_drawn_from_0_to_360_deg_and_two_from_their_start_on(fourbar: Scene) -> None:
     turn = force_turn(fourbar)
     assert turn.ends == (0.0, 360.0)
     assert turn.x[0] <= 0.0
@@ -144,7 +142,7 @@ def wanted() -> WantedFlywheel:
 
 
 @pytest.mark.parametrize("name", REGULATION_FIGURES)
-def test_words_of_regulation_keep_off_each_other(wanted: WantedFlywheel, name: str) -> None:
+def test_words_of_regulation_have_room(wanted: WantedFlywheel, name: str) -> None:
     has_room(REGULATION_FIGURES[name], Regulated(wanted.cycle, wanted))
 
 
@@ -180,16 +178,14 @@ def mapped(vibration: SteadyVibration) -> Figure:
 
 
 @pytest.mark.parametrize("draw", [over_turn.draw, over_turn.draw_spectrum, mapped])
-def test_words_of_vibration_keep_off_each_other(
+def test_words_of_vibration_have_room(
     vibration: SteadyVibration, draw: Callable[..., Figure]
 ) -> None:
     has_room(draw, vibration)
 
 
 @pytest.mark.parametrize("draw", [over_speed.draw, over_speed.draw_waterfall])
-def test_words_over_speeds_keep_off_each_other(
-    speeds: OverSpeeds, draw: Callable[..., Figure]
-) -> None:
+def test_words_over_speeds_have_room(speeds: OverSpeeds, draw: Callable[..., Figure]) -> None:
     has_room(draw, speeds)
 
 
@@ -233,9 +229,7 @@ def test_the_paper_s_four_rods_are_the_reference_of_their_scenes(curves: FamilyC
             assert line.get_ydata() == pytest.approx(exact, abs=1e-11)
 
 
-def test_three_panels_have_labels_and_one_legend_and_a_page_loads_nothing(
-    curves: FamilyCurves,
-) -> None:
+def test_three_panels_have_one_legend_and_their_page_loads_nothing(curves: FamilyCurves) -> None:
     scene = load_scene(SLIDER_CRANK)
     found = texts(family_drawing(scene, curves, "svg")).split("\n")
     axes = ["X [m]", "X' [m/s]", "X'' [m/s²]", "angle of the crank [deg]"]

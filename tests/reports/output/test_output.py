@@ -40,9 +40,7 @@ def refused(message: str, check: Callable[..., None], *arguments: object) -> Non
         check(*arguments)
 
 
-def test_a_file_is_replaced_whole_in_folders_that_are_made_and_nothing_is_left_beside_it(
-    tmp_path: Path,
-) -> None:
+def test_a_file_is_replaced_whole_and_nothing_is_left_beside_it(tmp_path: Path) -> None:
     target = tmp_path / "out.csv"
     target.write_text("old and much longer than the new one")
     write(target, "new")
@@ -70,9 +68,7 @@ def test_a_write_that_fails_leaves_the_old_file_and_names_space_where_there_is_n
 
 
 @pytest.mark.parametrize("target", ["other.csv", "nothing", "folder", "/dev/null"])
-def test_a_link_is_refused_where_it_is_named_and_replaced_in_a_folder(
-    target: str, tmp_path: Path
-) -> None:
+def test_a_named_link_is_refused_and_one_in_a_folder_replaced(target: str, tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
     (tmp_path / "other.csv").write_text("of another")
     link = tmp_path / "out" / "link.csv"
@@ -87,9 +83,7 @@ def test_a_link_is_refused_where_it_is_named_and_replaced_in_a_folder(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["folder", "other.csv", "out"]
 
 
-def test_neither_another_name_of_a_file_nor_a_link_where_it_is_written_aside_is_followed(
-    tmp_path: Path,
-) -> None:
+def test_neither_other_names_of_a_file_nor_links_aside_are_followed(tmp_path: Path) -> None:
     other, out = tmp_path / "other", tmp_path / "out"
     other.write_text("of another")
     out.hardlink_to(other)

@@ -6,22 +6,19 @@ import os
 import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from io import StringIO
 from pathlib import Path
 
 import pandas as pd
 import pytest
 from playwright.sync_api import Browser, sync_playwright
-from rich.console import Console
 
-from reports.cli.commands import sweep as command
-from reports.cli.measuring import SweepRequest
 from reports.page.build import page, stability_page
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored, read_store
 from tests.reports.page import hard_runs
 from tests.reports.page.hostile import evil
 from tests.reports.page.tab import PHONE, WIDE, Tab
+from tests.worlds.command_line import crank
 from tests.worlds.in_process import in_this_process
 from tests.worlds.tiers import slowly
 
@@ -44,6 +41,8 @@ settings = { error_bias = 0.0 }
 engine = "pymunk"
 profile = "tuned"
 """
+FULL = "scenes, engines and times beside each other: what is left out of a page is another part"
+Write = Callable[[str], Path]
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 INSTALL = "apt-get install chromium"
 OFF = ("gpu", "quic", "background-networking", "component-update", "sync")
@@ -54,13 +53,17 @@ FLAGS = ("--no-sandbox", "--no-first-run", *(f"--disable-{each}" for each in OFF
 def small_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A store of two scenes, four variants and three steps, timed; some of its cells fail."""
     folder = tmp_path_factory.mktemp("store")
-    study = folder / "study.toml"
-    study.write_text(STUDY)
-    nowhere = Console(file=StringIO())
+    (folder / "study.toml").write_text(STUDY)
+    return swept(folder / "out", "--study", folder / "study.toml")
+
+
+def swept(folder: Path, *asked: object) -> Path:
+    """The folder, now the store of a sweep; its pages tell times, good or bad."""
     with in_this_process() as patch:
-        patch.setattr("reports.sweep.running.ROUNDS", 2)  # the pages tell times, good or bad
-        command.sweep(SweepRequest(folder / "out", study=study, jobs=1), nowhere, nowhere)
-    return folder / "out"
+        patch.setattr("reports.sweep.running.ROUNDS", 2)
+        ended = crank("sweep", *asked, "-o", folder, "--jobs", 1)
+    assert ended.exit_code == 0, ended.output
+    return folder
 
 
 @pytest.fixture(scope="session")
@@ -87,7 +90,7 @@ def tiny(small: Stored) -> Stored:
 
 
 @pytest.fixture(scope="session")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+def written(tmp_path_factory: pytest.TempPathFactory) -> Write:
     """Writes a page into a file of its own."""
 
     def write(text: str) -> Path:
@@ -99,35 +102,29 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 
 
 @pytest.fixture(scope="session")
-def small_page(small: Stored, written: Callable[[str], Path]) -> Path:
-    """The page of the small store, as a file."""
+def small_page(small: Stored, written: Write) -> Path:
     return written(page(small))
 
 
 @pytest.fixture(scope="session")
-def evil_page(small: Stored, written: Callable[[str], Path]) -> Path:
-    """The page of the small store with hostile text in it, as a file."""
+def evil_page(small: Stored, written: Write) -> Path:
     return written(page(evil(small)))
 
 
 @pytest.fixture(scope="session")
-def hard_matrix() -> Matrix:
+def matrix() -> Matrix:
     """Three scenes in ever larger steps, in both engines with both profiles."""
     return hard_runs.matrix()
 
 
 @pytest.fixture(scope="session")
-def hard_page(hard_matrix: Matrix, written: Callable[[str], Path]) -> Path:
-    """The page of the hard cases alone, as a file."""
-    return written(stability_page(hard_matrix))
+def hard_page(matrix: Matrix, written: Write) -> Path:
+    return written(stability_page(matrix))
 
 
 @pytest.fixture(scope="session")
-def tiny_page(tiny: Stored, written: Callable[[str], Path]) -> Path:
+def tiny_page(tiny: Stored, written: Write) -> Path:
     return written(page(tiny))
-
-
-FULL = "scenes, engines and times beside each other: what is left out of a page is another part"
 
 
 @pytest.fixture(scope="session", params=["tiny", slowly("small", reason=FULL)])
@@ -137,11 +134,9 @@ def paged(request: pytest.FixtureRequest) -> tuple[Stored, Path]:
 
 
 @pytest.fixture(scope="session")
-def both_page(
-    paged: tuple[Stored, Path], hard_matrix: Matrix, written: Callable[[str], Path]
-) -> Path:
+def both_page(paged: tuple[Stored, Path], matrix: Matrix, written: Write) -> Path:
     """The page of that store with the hard cases beside it, as a file."""
-    return written(page(paged[0], hard_matrix))
+    return written(page(paged[0], matrix))
 
 
 def chromium() -> str:

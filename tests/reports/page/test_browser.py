@@ -53,7 +53,7 @@ def page(opened: Tab) -> Page:
     return opened.page
 
 
-def test_without_a_browser_the_tests_are_skipped_and_fail_in_ci(
+def test_without_a_browser_tests_are_skipped_and_fail_in_ci(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     ends = (pytest.skip.Exception, pytest.fail.Exception)
@@ -68,9 +68,8 @@ def test_without_a_browser_the_tests_are_skipped_and_fail_in_ci(
 def test_printing_draws_what_was_not_scrolled_to(wide: Tab, small_page: Path) -> None:
     page = wide.open(small_page).page
     page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
-    page.wait_for_function(
-        "() => [...document.querySelectorAll('.chart')].every(each => each.querySelector('svg'))"
-    )
+    charts = "[...document.querySelectorAll('.chart')]"
+    page.wait_for_function(f"() => {charts}.every(each => each.querySelector('svg'))")
 
 
 def test_a_whole_visit_has_no_error_and_no_request_and_every_control_a_name(opened: Tab) -> None:
@@ -170,9 +169,8 @@ def test_the_drawing_moves_and_stops(opened: Tab) -> None:
 def test_the_drawing_moves_by_itself_where_motion_is_welcome(opened: Tab, page: Page) -> None:
     page.emulate_media(reduced_motion="no-preference")
     page.locator("#precision").scroll_into_view_if_needed()
-    page.wait_for_function(
-        "() => document.getElementById('motion-picture').getBoundingClientRect().top > innerHeight"
-    )
+    top = "document.getElementById('motion-picture').getBoundingClientRect().top"
+    page.wait_for_function(f"() => {top} > innerHeight")
     page.locator("#motion-picture").scroll_into_view_if_needed()
     page.wait_for_function("() => document.getElementById('motion-play').textContent === 'Pause'")
     moved = "([links, before]) => document.querySelector(links).getAttribute('d') !== before"

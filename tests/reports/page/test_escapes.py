@@ -128,7 +128,7 @@ def test_a_place_in_brackets_is_no_style(
     assert result.output.startswith("[/b].")
 
 
-def test_the_terminal_the_page_and_the_summary_show_the_source_as_text(
+def test_terminal_page_and_summary_show_the_source_as_text(
     scene: Path, store: Path, page: Path
 ) -> None:
     assert "".join(NASTY.split()) in "".join(crank("solve", scene).output.split())

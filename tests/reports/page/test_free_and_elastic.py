@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import replace
 from io import StringIO
 from pathlib import Path
@@ -12,9 +11,7 @@ import pandas as pd
 import pytest
 from rich.console import Console
 
-from reports.cli.commands import sweep as command
 from reports.cli.commands.figures import _planned
-from reports.cli.measuring import SweepRequest
 from reports.figures import convergence, work_precision
 from reports.figures.style import styled
 from reports.page.build import page
@@ -26,10 +23,10 @@ from reports.results.recommend import ELASTIC_TARGETS, Recommendation, recommend
 from reports.results.table import recommendation_table
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store
+from tests.reports.page.conftest import Write, swept
 from tests.reports.page.hostile import Outline
 from tests.reports.page.tab import OUT, Tab
 from tests.worlds.free_store import SCENE as FREE
-from tests.worlds.in_process import in_this_process
 from tests.worlds.tiers import few, slowly
 
 ELASTIC = "fourbar-elastic"
@@ -42,26 +39,19 @@ def free(free_store: Path) -> Stored:
 
 
 @pytest.fixture(scope="module")
-def free_path(free: Stored, written: Callable[[str], Path]) -> Path:
+def free_path(free: Stored, written: Write) -> Path:
     return written(page(free))
 
 
 @pytest.fixture(scope="module", params=["360,720", slowly("720,1440", reason=FINER)])
 def bent(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Stored:
-    folder = tmp_path_factory.mktemp("elastic") / "store"
-    nowhere = Console(file=StringIO())
-    asked = SweepRequest(
-        folder, scenes=(ELASTIC,), engines=("mujoco",), profiles=("tuned",), segments="3,4",
-        steps_per_turn=request.param, turns=1.0, jobs=1,
-    )  # fmt: skip
-    with in_this_process() as patch:
-        patch.setattr("reports.sweep.running.ROUNDS", 2)
-        command.sweep(asked, nowhere, nowhere)
-    return read_store(folder)
+    asked = (ELASTIC, "--engine", "mujoco", "--profile", "tuned", "--segments", "3,4")
+    steps = ("--steps-per-turn", request.param, "--turns", 1)
+    return read_store(swept(tmp_path_factory.mktemp("elastic") / "store", *asked, *steps))
 
 
 @pytest.fixture(scope="module")
-def bent_path(bent: Stored, written: Callable[[str], Path]) -> Path:
+def bent_path(bent: Stored, written: Write) -> Path:
     return written(page(bent))
 
 
@@ -91,9 +81,7 @@ def test_a_page_of_free_runs_has_no_section_that_speaks_of_turns(free_path: Path
         assert words not in told  # where all were let go it needs no word
 
 
-def test_what_was_driven_keeps_its_sections_beside_what_was_let_go(
-    small: Stored, free: Stored
-) -> None:
+def test_what_was_driven_keeps_its_sections_beside_free_runs(small: Stored, free: Stored) -> None:
     report = PageReport(beside(small, free))
     assert FREE not in report.driven.scenes
     driven, every = ({x.number for x in each.looks.values()} for each in (report.driven, report))

@@ -45,26 +45,22 @@ def one_case(matrix: Matrix, **run: object) -> Matrix:
     return Matrix(matrix.facts, (case,), (first,), ())
 
 
-def test_the_page_stands_alone_with_a_sign_and_a_meaning_for_every_outcome(
-    text: str, hard_matrix: Matrix
-) -> None:
+def test_the_page_stands_alone_with_a_sign_for_every_outcome(text: str, matrix: Matrix) -> None:
     assert set(SIGNS) == set(MEANINGS) == set(OUTCOMES)
     assert len(set(SIGNS.values())) == len(OUTCOMES)
     stands_alone(text, ["hard"])
     assert "3 cases, 60 runs" in text
-    assert all(value in text for value in hard_matrix.facts.values())
+    assert all(value in text for value in matrix.facts.values())
     assert len(text) < 500_000  # without Plotly
 
 
-def test_there_is_a_cell_for_each_run_of_the_grid_and_it_says_how_it_went(
-    text: str, hard_matrix: Matrix
-) -> None:
+def test_there_is_a_cell_for_each_run_and_it_says_how_it_went(text: str, matrix: Matrix) -> None:
     found = buttons(text)
-    grid = {number for number, run in enumerate(hard_matrix.runs) if run.grid}
+    grid = {number for number, run in enumerate(matrix.runs) if run.grid}
     assert set(found) == grid
-    assert len(grid) < len(hard_matrix.runs)
+    assert len(grid) < len(matrix.runs)
     for number in grid:
-        run, cell = hard_matrix.runs[number], found[number]
+        run, cell = matrix.runs[number], found[number]
         words, classes = cell["aria-label"] or "", (cell["class"] or "").split()
         assert words == cell["title"]
         assert f"{run.value:g}, {run.engine} {run.profile}: {run.outcome}" in words
@@ -76,38 +72,38 @@ def test_there_is_a_cell_for_each_run_of_the_grid_and_it_says_how_it_went(
         assert ("pictured" in classes) == (run.outcome != "ok")
 
 
-def test_the_map_is_a_table_of_cases_by_engine_and_profile(text: str, hard_matrix: Matrix) -> None:
+def test_the_map_is_a_table_of_cases_by_engine_and_profile(text: str, matrix: Matrix) -> None:
     scopes = Counter(each.get("scope") for each in Outline(text).named("th"))
     counts = [scopes[each] for each in ("row", "rowgroup", "colgroup", "col")]
-    assert counts == [len(hard_matrix.cases), 2, 2, 1 + 4]
-    found = heat(hard_matrix)
+    assert counts == [len(matrix.cases), 2, 2, 1 + 4]
+    found = heat(matrix)
     assert [column.name for column in found.columns][:2] == ["mujoco as-shipped", "mujoco tuned"]
     assert found.columns[1].words == "holds 3 of 3 throughout"
     assert found.columns[0].words == "holds 0 of 3 throughout"
-    for one in hard_matrix.critical:
+    for one in matrix.critical:
         assert one.words in text
 
 
-def test_each_failure_has_its_picture_and_a_shared_truth_is_carried_once(
-    text: str, hard_matrix: Matrix
+def test_each_failure_has_its_picture_and_a_truth_is_carried_once(
+    text: str, matrix: Matrix
 ) -> None:
     found = embedded_in(text, "hard")
-    failed = [n for n, run in enumerate(hard_matrix.runs) if run.outcome != "ok"]
+    failed = [n for n, run in enumerate(matrix.runs) if run.outcome != "ok"]
     assert sorted(picture["run"] for picture in found["pictures"]) == failed
     assert len(failed) > 10
     assert len(found["drawings"]) < len(failed)
     assert set(map(str, failed)) <= {each["value"] for each in Outline(text).named("option")}
-    assert found["runs"][failed[0]]["command"] == command(hard_matrix.runs[failed[0]])
+    assert found["runs"][failed[0]]["command"] == command(matrix.runs[failed[0]])
 
 
 def test_a_matrix_that_was_stored_gives_the_same_page(
-    hard_matrix: Matrix, text: str, tmp_path: Path
+    matrix: Matrix, text: str, tmp_path: Path
 ) -> None:
     drawn = [
         replace(one, drawing=finite(one.drawing, DIGITS), rows=finite(one.rows, DIGITS))
-        for one in hard_matrix.pictures
+        for one in matrix.pictures
     ]
-    (tmp_path / FILE).write_text(to_json(replace(hard_matrix, pictures=tuple(drawn))))
+    (tmp_path / FILE).write_text(to_json(replace(matrix, pictures=tuple(drawn))))
     assert stability_page(read_matrix(tmp_path)) == text
 
 
@@ -124,53 +120,49 @@ def single(matrix: Matrix, **run: object) -> tuple[str, str, list[str]]:
     return text, cell["title"] or "", (cell["class"] or "").split()
 
 
-def test_what_is_no_number_is_shown(hard_matrix: Matrix) -> None:
+def test_what_is_no_number_is_shown(matrix: Matrix) -> None:
     for error in (math.nan, math.inf, None):
-        _, told, classes = single(hard_matrix, error=error)
+        _, told, classes = single(matrix, error=error)
         assert "blank" in classes
         assert "error \N{EN DASH}" in told
     lost = dict.fromkeys(
         ("error", "gap", "drive", "sine", "at_s", "at_driver_rad", "dt_s", "wall_s"), math.nan
     )
     for numbers in (lost, dict.fromkeys(lost)):
-        found = embedded_in(single(hard_matrix, **numbers)[0], "hard")["runs"][0]
+        found = embedded_in(single(matrix, **numbers)[0], "hard")["runs"][0]
         assert {found[name] for name in lost} == {None}
         assert found["at_driver"] is None
     assert [same(None, math.nan), same(1.0, math.nan), same(1.0, None)] == [True, False, False]
-    assert single(hard_matrix, value=math.nan)[1].startswith("nan, mujoco")
+    assert single(matrix, value=math.nan)[1].startswith("nan, mujoco")
 
 
-def test_an_outcome_is_held_where_a_good_engine_has_it_and_shown_if_it_is_not_known(
-    hard_matrix: Matrix,
-) -> None:
-    text, told, classes = single(hard_matrix, outcome=f"{EVIL} exploded")
+def test_an_outcome_of_good_engines_is_held_and_an_unknown_one_shown(matrix: Matrix) -> None:
+    text, told, classes = single(matrix, outcome=f"{EVIL} exploded")
     assert "o-strange" in classes
     assert "exploded (fails)" in told
     assert "not known to this page" in text
     assert Outline(text).named("img") == []
-    locked = one_case(hard_matrix, outcome="locked")
+    locked = one_case(matrix, outcome="locked")
     right = replace(locked, cases=(replace(locked.cases[0], good=("locked",)),))
-    for matrix, state in ((locked, "failed"), (right, "held")):
-        text, _, classes = single(matrix)
+    for one, state in ((locked, "failed"), (right, "held")):
+        text, _, classes = single(one)
         assert {state, "o-locked"} <= set(classes)
     assert "right: locked" in text
 
 
-def test_a_value_that_was_not_run_or_only_by_a_bisection_says_so(hard_matrix: Matrix) -> None:
-    first, *others = hard_matrix.runs
+def test_a_value_that_was_not_run_or_only_by_a_bisection_says_so(matrix: Matrix) -> None:
+    first, *others = matrix.runs
     for runs in (others, [replace(first, grid=False), *others]):
-        found = replace(hard_matrix, runs=tuple(runs))
+        found = replace(matrix, runs=tuple(runs))
         assert 'title="360: not run"' in stability_page(found)
         assert heat(found).columns[0].words == "holds 0 of 3 throughout"
 
 
-def test_a_matrix_of_nothing_or_of_one_run_has_a_page_in_which_a_long_reason_is_whole(
-    hard_matrix: Matrix,
-) -> None:
+def test_a_matrix_of_no_run_has_a_page_and_of_one_with_its_long_reason(matrix: Matrix) -> None:
     nothing = stability_page(Matrix({}, (), (), ()))
     assert "0 cases, 0 runs" in nothing
     reason = "it broke " * 300
-    text, told, _ = single(hard_matrix, reason=reason)
+    text, told, _ = single(matrix, reason=reason)
     assert Outline(text).open == Outline(nothing).open == []
     assert "hard-failures" not in text.split("<script>")[2]
     assert "1 case, 1 run;" in text
@@ -199,8 +191,8 @@ def evil(matrix: Matrix) -> Matrix:
     )  # fmt: skip
 
 
-def test_hostile_text_is_shown_and_not_read(hard_matrix: Matrix) -> None:
-    text = stability_page(evil(hard_matrix))
+def test_hostile_text_is_shown_and_not_read(matrix: Matrix) -> None:
+    text = stability_page(evil(matrix))
     shown_and_not_read(text, scripts=2)  # the theme, ours
     assert len(buttons(text)) == 48
 
@@ -216,28 +208,28 @@ def test_the_hard_cases_stand_in_the_report_and_change_no_other_section(
     assert parts[0] == [part for part in parts[1] if not part.startswith('<section id="hard"')]
 
 
-def test_what_does_not_fit_makes_way_and_the_first_failures_stay(hard_matrix: Matrix) -> None:
+def test_what_does_not_fit_makes_way_and_the_first_failures_stay(matrix: Matrix) -> None:
     room = 30_000
-    section = hard(hard_matrix, room)
+    section = hard(matrix, room)
     numbers = [picture["run"] for picture in section.embedded["pictures"]]
-    assert 0 < len(numbers) < len(hard_matrix.pictures)
-    lines = {hard_matrix.runs[n].case + hard_matrix.runs[n].profile for n in numbers}
+    assert 0 < len(numbers) < len(matrix.pictures)
+    lines = {matrix.runs[n].case + matrix.runs[n].profile for n in numbers}
     assert len(lines) > len(numbers) / 3
     shown = [section.embedded[name] for name in ("pictures", "drawings")]
     assert len(embedded(shown)) < room + 40 * len(numbers)
     assert section.words["thinned"]
-    assert not hard(hard_matrix).words["thinned"]
+    assert not hard(matrix).words["thinned"]
     assert fitting([0, 1, 2], [5, 5, 1], 6) == [0, 2]
     assert fitting([1, 2, 0], [5, 5, 1], 6) == [1, 2]
 
 
 def test_a_page_of_many_large_pictures_is_below_8_megabytes(
-    hard_matrix: Matrix, monkeypatch: pytest.MonkeyPatch
+    matrix: Matrix, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    wide = {**hard_matrix.pictures[0].drawing, "places": {"base64": "A" * 200_000}}
-    twice = enumerate(hard_matrix.pictures * 2)
+    wide = {**matrix.pictures[0].drawing, "places": {"base64": "A" * 200_000}}
+    twice = enumerate(matrix.pictures * 2)
     many = tuple(replace(one, drawing={**wide, "name": str(i)}) for i, one in twice)
-    heavy = replace(hard_matrix, pictures=many)
+    heavy = replace(matrix, pictures=many)
     text = stability_page(heavy)
     assert 4_000_000 < len(text.encode()) < MEGABYTES_8
     monkeypatch.setattr(build, "MOST_BYTES", 2_000_000)
@@ -246,14 +238,14 @@ def test_a_page_of_many_large_pictures_is_below_8_megabytes(
 
 def test_pictures_give_way_where_the_report_gets_too_large(
     paged: tuple[Stored, Path],
-    hard_matrix: Matrix,
+    matrix: Matrix,
     both_page: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     whole = both_page.read_text(encoding="utf-8")
     most = len(whole.encode()) - 30_000
     monkeypatch.setattr(build, "MOST_BYTES", most)
-    found = page(paged[0], hard_matrix)
+    found = page(paged[0], matrix)
     assert len(found.encode()) <= most
     kept, every = (embedded_in(each, "hard")["pictures"] for each in (found, whole))
     assert 0 < len(kept) < len(every)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from models.array import Array
 from reports.drawing.packed import packed
 from reports.page.build import stability_page
 from reports.stability.matrix import Matrix
+from tests.reports.page.conftest import Write
 from tests.reports.page.tab import OUT, Tab
 from tests.reports.page.test_hard import evil, one_case
 from tests.reports.page.test_style import contrast
@@ -23,7 +24,6 @@ from tests.worlds.tiers import slow
 
 TRUTH, RUN = "#hard-picture .reference .link", "#hard-picture .overlays .link"
 WIDTHS = "each => [each.scrollWidth, each.clientWidth]"
-Write = Callable[[str], Path]
 STEPPED = """() => {
   const [choice, row, after] = ['failures', 'row', 'after'].map(
     each => document.getElementById(`hard-${each}`));
@@ -72,9 +72,7 @@ def first(matrix: Matrix, outcome: str) -> int:
     return next(n for n, run in enumerate(matrix.runs) if run.grid and run.outcome == outcome)
 
 
-def test_a_whole_visit_has_no_error_and_no_request_and_every_control_a_name(
-    wide: Tab, hard_page: Path
-) -> None:
+def test_a_whole_visit_has_no_error_and_every_control_a_name(wide: Tab, hard_page: Path) -> None:
     wide.open(hard_page).no_error_and_no_request()
     wide.every_control_has_a_name(is_reached_by_tab=False)
 
@@ -92,11 +90,9 @@ def test_the_map_is_one_stop_of_tab_and_arrows_go_from_cell_to_cell(page: Page) 
     assert page.locator("#hard-map [data-run]").evaluate_all(stops) == 1
 
 
-def test_a_cell_shows_its_run_by_keyboard_and_gives_the_focus_back(
-    opened: Tab, hard_matrix: Matrix
-) -> None:
-    number = first(hard_matrix, "diverged")
-    run = hard_matrix.runs[number]
+def test_a_cell_shows_its_run_and_gets_the_focus_back(opened: Tab, matrix: Matrix) -> None:
+    number = first(matrix, "diverged")
+    run = matrix.runs[number]
     opened.page.locator("#hard-close").click()
     assert not opened.page.locator("#hard-panel").is_visible()
     cell(opened.page, number).focus()
@@ -120,9 +116,7 @@ def test_a_cell_shows_its_run_by_keyboard_and_gives_the_focus_back(
     assert opened.page.locator("[aria-expanded=true]").count() == 0
 
 
-def test_a_run_that_holds_has_numbers_and_no_picture_and_is_closed_when_chosen_again(
-    opened: Tab, page: Page
-) -> None:
+def test_a_run_that_holds_has_no_picture_and_is_closed_by_its_cell(opened: Tab, page: Page) -> None:
     cell(page, 0).click()
     assert page.locator("#hard-row").is_visible()
     assert page.locator("#hard-numbers").is_visible()
@@ -142,8 +136,8 @@ def test_a_cell_stays_under_the_finger_that_chose_it(opened: Tab) -> None:
     assert target.bounding_box() == pytest.approx(before, abs=1.5)
 
 
-def test_what_was_opened_is_brought_into_the_window(opened: Tab, hard_matrix: Matrix) -> None:
-    target = cell(opened.page, first(hard_matrix, "diverged"))
+def test_what_was_opened_is_brought_into_the_window(opened: Tab, matrix: Matrix) -> None:
+    target = cell(opened.page, first(matrix, "diverged"))
     target.evaluate("each => scrollBy(0, each.getBoundingClientRect().bottom - innerHeight + 20)")
     target.click()
     shown, row = target.bounding_box(), opened.page.locator("#hard-row").bounding_box()
@@ -151,8 +145,8 @@ def test_what_was_opened_is_brought_into_the_window(opened: Tab, hard_matrix: Ma
     assert row["y"] + row["height"] <= 900
 
 
-def test_the_failures_are_gone_through_one_by_one(opened: Tab, hard_matrix: Matrix) -> None:
-    failed = [str(n) for n, run in enumerate(hard_matrix.runs) if run.outcome != "ok"]
+def test_the_failures_are_gone_through_one_by_one(opened: Tab, matrix: Matrix) -> None:
+    failed = [str(n) for n, run in enumerate(matrix.runs) if run.outcome != "ok"]
     before, after = opened.page.locator("#hard-before"), opened.page.locator("#hard-after")
     assert before.is_disabled()
     after.scroll_into_view_if_needed()
@@ -164,10 +158,8 @@ def test_the_failures_are_gone_through_one_by_one(opened: Tab, hard_matrix: Matr
     assert opened.page.input_value("#hard-failures") == failed[-2]
 
 
-def test_what_the_bisection_looked_at_is_chosen_in_the_panel(
-    opened: Tab, hard_matrix: Matrix
-) -> None:
-    number = next(n for n, run in enumerate(hard_matrix.runs) if not run.grid)
+def test_what_a_bisection_looked_at_is_chosen_in_the_panel(opened: Tab, matrix: Matrix) -> None:
+    number = next(n for n, run in enumerate(matrix.runs) if not run.grid)
     chip = opened.page.locator(f"#hard-between [data-near='{number}']")
     chip.click()
     assert "steps in a turn = 60" in opened.text("#hard-told")
@@ -176,10 +168,10 @@ def test_what_the_bisection_looked_at_is_chosen_in_the_panel(
 
 
 def test_the_picture_moves_beside_the_truth_and_its_error_can_be_magnified(
-    opened: Tab, page: Page, hard_matrix: Matrix
+    opened: Tab, page: Page, matrix: Matrix
 ) -> None:
     """How it stops again is the same stage's in `test_browser`."""
-    page.select_option("#hard-failures", str(first(hard_matrix, "diverged")))
+    page.select_option("#hard-failures", str(first(matrix, "diverged")))
     still, truth = opened.drawn(RUN), opened.drawn(TRUTH)
     assert still
     assert truth != still
@@ -190,7 +182,7 @@ def test_the_picture_moves_beside_the_truth_and_its_error_can_be_magnified(
     assert opened.drawn(RUN) != still
     assert opened.drawn(TRUTH) != truth
     assert page.locator("#hard-picture .trail").count() > 0
-    page.select_option("#hard-failures", str(first(hard_matrix, "degraded")))
+    page.select_option("#hard-failures", str(first(matrix, "degraded")))
     assert page.input_value("#hard-factor") == "1"
     true = opened.drawn(RUN)
     page.select_option("#hard-factor", "10")
@@ -198,12 +190,12 @@ def test_the_picture_moves_beside_the_truth_and_its_error_can_be_magnified(
     assert "m." in opened.text("#hard-readout")
 
 
-def test_the_picture_moves_by_itself_where_motion_is_welcome(
-    opened: Tab, page: Page, hard_matrix: Matrix
+def test_it_moves_by_itself_where_motion_is_welcome(
+    opened: Tab, page: Page, matrix: Matrix
 ) -> None:
     page.emulate_media(reduced_motion="no-preference")
     opened.elapse(0)
-    cell(page, first(hard_matrix, "diverged")).click()
+    cell(page, first(matrix, "diverged")).click()
     assert opened.text("#hard-play") == "Pause"
     before = opened.drawn(RUN)
     opened.elapse(200)
@@ -232,8 +224,8 @@ def test_all_can_be_read_in_both_themes_without_scrolling_aside(opened: Tab, pag
         assert min(contrast(parts(ink), parts(ground)) for ink, ground in found) >= 4.5
 
 
-def test_hostile_text_does_nothing(wide: Tab, hard_matrix: Matrix, written: Write) -> None:
-    page = wide.open(written(stability_page(evil(hard_matrix)))).page
+def test_hostile_text_does_nothing(wide: Tab, matrix: Matrix, written: Write) -> None:
+    page = wide.open(written(stability_page(evil(matrix)))).page
     page.locator("#hard-map button").evaluate_all("all => all.forEach(each => each.click())")
     page.select_option("#hard-failures", index=1)
     assert page.evaluate("() => window.hacked") is None
@@ -243,9 +235,9 @@ def test_hostile_text_does_nothing(wide: Tab, hard_matrix: Matrix, written: Writ
 
 
 def test_a_run_and_a_truth_with_missing_samples_are_drawn_as_far_as_they_go(
-    wide: Tab, hard_matrix: Matrix, written: Write
+    wide: Tab, matrix: Matrix, written: Write
 ) -> None:
-    picture = copy.deepcopy(hard_matrix.pictures[0])
+    picture = copy.deepcopy(matrix.pictures[0])
     samples = len(np.asarray(picture.drawing["told"]["at"]))
     rows = np.full((4, samples), 1e-3)
     rows[:, samples // 2 :] = np.nan
@@ -253,7 +245,7 @@ def test_a_run_and_a_truth_with_missing_samples_are_drawn_as_far_as_they_go(
     exact[:, samples - 5 :] = np.nan
     drawing = {**picture.drawing, "places": packed(exact)}
     broken = replace(picture, drawing=drawing, rows=packed(rows))
-    wide.open(written(stability_page(replace(hard_matrix, pictures=(broken,)))))
+    wide.open(written(stability_page(replace(matrix, pictures=(broken,)))))
     wide.page.locator("#hard-slider").focus()
     for key, count in (("Home", 3), ("End", 0)):
         wide.page.keyboard.press(key)
@@ -263,10 +255,10 @@ def test_a_run_and_a_truth_with_missing_samples_are_drawn_as_far_as_they_go(
 
 @slow("each section has scripts of its own, which `test_browser` and this file run apart")
 def test_hard_cases_work_in_the_report_beside_its_other_sections(
-    wide: Tab, both_page: Path, hard_matrix: Matrix
+    wide: Tab, both_page: Path, matrix: Matrix
 ) -> None:
     wide.open(both_page, "motion")
-    cell(wide.page, first(hard_matrix, "diverged")).click()
+    cell(wide.page, first(matrix, "diverged")).click()
     wide.elapse(0)
     wide.page.locator("#hard-play").click()
     wide.elapse(100)
@@ -292,10 +284,10 @@ def test_no_error_and_no_request_in_a_whole_visit_by_phone(phone: Tab, hard_page
 
 
 def test_a_page_without_pictures_and_with_what_is_not_known_works(
-    phone: Tab, hard_matrix: Matrix, written: Write
+    phone: Tab, matrix: Matrix, written: Write
 ) -> None:
     lost = dict.fromkeys(("error", "gap", "drive", "sine", "dt_s", "wall_s"), float("nan"))
-    one = one_case(hard_matrix, outcome="exploded", reason="bang " * 400, **lost)
+    one = one_case(matrix, outcome="exploded", reason="bang " * 400, **lost)
     phone.open(written(stability_page(one)))
     cell(phone.page, 0).click()
     assert "exploded" in phone.text("#hard-told")

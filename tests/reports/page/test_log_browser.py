@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,13 +12,13 @@ from playwright.sync_api import Page
 from analytic.kinematics import solve
 from reports.logs.map_file import ChannelTable, Map
 from reports.page.log_page import log_page
+from tests.reports.page.conftest import Write
 from tests.reports.page.judged_logs import FACTS, SCENE, TURN_S, angles, judged, motion_of, points
 from tests.reports.page.tab import Tab
 from tests.reports.page.test_browser import corners
 from tests.reports.page.test_log_page import NASTY
 from tests.worlds.tiers import slow
 
-Write = Callable[[str], Path]
 DRAWN = ("channels", "motion")
 MOTION = motion_of(turns=2.0, samples=721)
 TIME_S = MOTION.time_s
@@ -89,9 +89,7 @@ def test_the_error_is_on_the_scale_that_shows_it_until_one_is_chosen(wide: Tab, 
     assert page.evaluate(LAYOUT)["kind"] != "log"
 
 
-def test_errors_are_magnified_as_the_page_opens_and_the_mechanism_moves(
-    opened: Tab, page: Page
-) -> None:
+def test_errors_are_magnified_at_once_and_the_mechanism_moves(opened: Tab, page: Page) -> None:
     """Through the last turn, to its end."""
     assert page.input_value("#motion-factor") == "10"
     names = page.locator("#motion-stretch option").all_inner_texts()

@@ -78,9 +78,7 @@ def test_the_verdict_is_told_with_the_errors_in_the_units_of_the_columns(text: s
     assert "Not judged, as the log has none: gap of A, D, B, C" in told
 
 
-def test_a_column_leads_to_its_curve_and_columns_of_the_same_rows_share_their_instants(
-    text: str,
-) -> None:
+def test_a_column_leads_to_its_curve_and_columns_share_their_instants(text: str) -> None:
     carried = embedded_in(text, "channels")
     channels = carried["channels"]
     assert len(carried["axes"]) == 1

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from html import escape
 from pathlib import Path
@@ -16,13 +15,13 @@ from reports.own_model.judged import JudgedModel, judged_model
 from reports.page.build import _plotly
 from reports.page.model_page import model_page
 from sim.own_models import Disturbance
+from tests.reports.page.conftest import Write
 from tests.reports.page.hostile import Outline, embedded_in, stands_alone
 from tests.reports.page.tab import OUT, Tab
 from tests.reports.page.test_log_page import NASTY, words
 from tests.worlds.own_models import ACTUATORS, CROWDED, FACTS, SLIDER_CRANK, judged
 from tests.worlds.tiers import slow
 
-Write = Callable[[str], Path]
 SECTIONS = ["verdict", "lines", "motion", "disturbing", "recommended", "made"]
 MEGABYTE = 1_000_000
 

@@ -47,7 +47,7 @@ def test_hostile_text_is_shown_and_not_read(evil_page: Path) -> None:
     shown_and_not_read(evil_page.read_text(encoding="utf-8"), scripts=3)  # theme, Plotly, ours
 
 
-def test_a_store_of_one_scene_without_times_or_of_failures_alone_has_a_page(
+def test_a_store_of_one_line_or_of_failures_alone_has_a_page(
     small: Stored, tiny_page: Path
 ) -> None:
     text = tiny_page.read_text(encoding="utf-8")
@@ -58,9 +58,7 @@ def test_a_store_of_one_scene_without_times_or_of_failures_alone_has_a_page(
     assert "stability" in Outline(page(found)).sections()
 
 
-def test_a_store_without_the_text_of_its_scenes_has_a_page_without_drawings(
-    paged: tuple[Stored, Path],
-) -> None:
+def test_a_store_without_texts_of_scenes_has_no_drawings(paged: tuple[Stored, Path]) -> None:
     stored, _ = paged
     outline = Outline(page(replace(stored, manifest=Manifest({}, stored.manifest.runs))))
     assert outline.sections() == [name for name in STORED if name != "motion"]

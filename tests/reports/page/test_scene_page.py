@@ -21,6 +21,7 @@ from reports.sheets.constructions.construction_page import construction_page
 from reports.sheets.polygons.polygon_instant import placed_at_time
 from reports.sheets.polygons.polygon_page import polygon_page
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
+from tests.reports.page.conftest import Write
 from tests.reports.page.tab import Tab
 from tests.reports.sheets.constructions.constructed import (
     burmester_curves,
@@ -38,7 +39,6 @@ BOXES = """all => all.map(each => {
   return [left, top, right, bottom];
 })"""
 OTHER = "each size and each figure is read once: what one has with the other is slow"
-Write = Callable[[str], Path]
 
 
 @pytest.fixture(scope="module")
@@ -62,9 +62,7 @@ def moved(wide: Tab, places: tuple[int, int], shapes: str, told: str) -> tuple[l
     return words, drawn
 
 
-def test_a_page_moves_with_its_forces_and_a_free_motion_tells_the_time(
-    wide: Tab, written: Write
-) -> None:
+def test_a_page_moves_with_its_forces_or_tells_the_time(wide: Tab, written: Write) -> None:
     wide.open(written(page_of(load_scene("shaper"), with_forces=True)))
     words, drawn = moved(wide, (0, 61), "#motion-picture .force path", "#motion-torque")
     assert all(len(arrows) >= 6 for arrows in drawn)
