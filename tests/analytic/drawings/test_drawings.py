@@ -10,18 +10,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analytic.drawings import graphical
 from analytic.drawings.centrodes import centrodes
 from analytic.drawings.curvature_circles import curvature_circles
 from analytic.drawings.drawn_polygons import DrawnPolygons, draw_polygons
-from analytic.drawings.graphical import (
-    Method,
-    Plotted,
-    by_chords,
-    by_tangents,
-    derivative_scale,
-    integrated,
-    three_graphs,
-)
+from analytic.drawings.graphical import Method, Plotted, by_chords, three_graphs
 from analytic.drawings.instant_centres import instant_centres
 from analytic.drawings.paper_scale import book_scales, round_scale
 from analytic.drawings.placed_mechanism import DriverState
@@ -314,11 +307,11 @@ def test_errors_fall_with_the_square_of_the_divisions(
 def test_a_straight_graph_is_differentiated_to_rounding_and_a_parabola_by_tangents() -> None:
     x = np.array([0.0, 1.0, 3.0, 4.0, 8.0])
     assert by_chords(Plotted(x, 3.0 * x - 1.0)).y == pytest.approx(3.0)
-    tangents = by_tangents(Plotted(x, x**2))
+    tangents = graphical.by_tangents(Plotted(x, x**2))
     assert tangents.x == pytest.approx(x[1:-1])
     assert tangents.y == pytest.approx(2.0 * x[1:-1])
     y = np.array([2.0, -1.0, 5.0, 5.5, 0.0])  # which is integrated back from its start
-    assert integrated(x, by_chords(Plotted(x, y)).y, start=2.0).y == pytest.approx(y)
+    assert graphical.integrated(x, by_chords(Plotted(x, y)).y, start=2.0).y == pytest.approx(y)
 
 
 def test_constants_of_integration_are_those_of_the_start() -> None:
@@ -331,6 +324,6 @@ def test_constants_of_integration_are_those_of_the_start() -> None:
 def test_a_ray_over_the_pole_distance_has_the_slope_of_the_chord_on_paper() -> None:
     graph = Plotted(np.linspace(0.0, 1.0, 5), np.linspace(0.0, 1.0, 5) ** 2)
     mu_x, mu_y, pole = 0.01, 0.02, 25.0
-    ordinates = by_chords(graph).y / derivative_scale(pole, mu_x, mu_y)
+    ordinates = by_chords(graph).y / graphical.derivative_scale(pole, mu_x, mu_y)
     on_paper = (np.diff(graph.y) / mu_y) / (np.diff(graph.x) / mu_x)
     assert ordinates / pole == pytest.approx(on_paper)

@@ -16,17 +16,9 @@ import numpy as np
 from mpmath import mp
 from numpy.typing import NDArray
 
-from analytic.dyads import prp, rpp, rpr, rrp, rrr
+from analytic.dyads import plane, prp, rpp, rpr, rrp, rrr
 from analytic.dyads.parts import Dyad, MovingLine
-from analytic.dyads.plane import (
-    EXACT_ANGLE,
-    EXACT_POINT,
-    ZERO,
-    AngleError,
-    PointError,
-    PointKinematics,
-    Vec,
-)
+from analytic.dyads.plane import ZERO, AngleError, PointError, PointKinematics, Vec
 from models.array import Array
 from tests.analytic import oracle
 from tests.analytic.change_points.jets import Jet, Number
@@ -70,7 +62,7 @@ class Points:
 
     def kinematics(self) -> PointKinematics:
         p, v, a = (Vec(self.x[k], self.y[k]) for k in range(3))
-        error = PointError(*self.error) if self.error.any() else EXACT_POINT
+        error = PointError(*self.error) if self.error.any() else plane.EXACT_POINT
         if not (self.x[1:].any() or self.y[1:].any()):  # as the ground gives its pins
             return PointKinematics(p, ZERO, ZERO, error)
         return PointKinematics(p, v, a, error)
@@ -91,7 +83,7 @@ class Lines:
 
     def kinematics(self) -> MovingLine:
         theta, omega, alpha = self.angle
-        error = AngleError(*self.error) if self.error.any() else EXACT_ANGLE
+        error = AngleError(*self.error) if self.error.any() else plane.EXACT_ANGLE
         along = Vec(np.cos(theta), np.sin(theta))
         return MovingLine(self.through.kinematics(), along, omega, alpha, error)
 

@@ -9,20 +9,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from analytic.structure import screws
 from analytic.structure.freedom_names import axis_in_words, names_of_freedoms
 from analytic.structure.joint_chains import chain_of
 from analytic.structure.joint_class import analyse_joint
-from analytic.structure.screws import (
-    carried,
-    cross_matrix,
-    displaced,
-    force,
-    gap,
-    rank,
-    reciprocal,
-    rotation,
-    translation,
-)
+from analytic.structure.screws import carried, displaced, gap, reciprocal, rotation, translation
 from models.scheme import SchemeJoint
 from models.touching import Contact, Touching, load_touching, shipped_contacts
 
@@ -30,7 +21,7 @@ from models.touching import Contact, Touching, load_touching, shipped_contacts
 def matrix(twist: np.ndarray) -> np.ndarray:
     """A twist as the matrix (4, 4) whose exponential is its motion."""
     whole = np.zeros((4, 4))
-    whole[:3, :3], whole[:3, 3] = cross_matrix(twist[:3]), twist[3:]
+    whole[:3, :3], whole[:3, 3] = screws.cross_matrix(twist[:3]), twist[3:]
     return whole
 
 
@@ -52,7 +43,7 @@ def test_a_carried_axis_turns_as_its_body_and_the_gap_of_a_small_motion_is_its_t
 
 def test_a_force_through_an_axis_does_no_work_on_a_turn_about_it() -> None:
     turn = rotation((0.1, 0.2, 0.3), (0.0, 0.6, 0.8))
-    assert force((0.1, 0.2 + 0.6, 0.3 + 0.8), (1.0, 2.0, 3.0)) @ turn == pytest.approx(0.0)
+    assert screws.force((0.1, 0.2 + 0.6, 0.3 + 0.8), (1.0, 2.0, 3.0)) @ turn == pytest.approx(0.0)
     assert np.allclose(reciprocal(turn[:, None]) @ turn, 0.0)
     assert reciprocal(turn[:, None]).shape == (5, 6)
 
@@ -108,7 +99,7 @@ def test_a_pair_leaves_by_its_contacts_what_it_leaves_in_a_scheme(kind: str) -> 
     chain = chain_of(SchemeJoint("A", kind, ("ground", "link"), axes=(axis,), lead=0.006))
     assert joint.alone.constraints == 6 - len(chain)
     assert joint.touching.is_lower_pair == (kind != "ball-in-tube")
-    assert len(joint.alone.freedoms) == rank(np.array([each.twist for each in chain]))
+    assert len(joint.alone.freedoms) == screws.rank(np.array([each.twist for each in chain]))
 
 
 @pytest.mark.parametrize("name", shipped_contacts())

@@ -94,12 +94,10 @@ def test_the_derivative_of_the_closure_is_that_of_differences_and_of_each_joint(
 
 def moved(scheme: Scheme, seed: int, far: float = 1.0) -> Scheme:
     """The scheme turned, shifted, and with its links and joints in another order."""
-    draw = np.random.default_rng(seed)
-    if scheme.dimension == 3:
-        turn = Rotation.from_rotvec([0.0, 0.0, draw.uniform(0.0, 6.0)]).as_matrix()
-    else:
-        turn = Rotation.random(rng=draw).as_matrix()
-    shift = far * np.array([0.4, -0.3, 0.0 if scheme.dimension == 3 else 0.2])
+    draw, flat = np.random.default_rng(seed), scheme.dimension == 3
+    turns = [0.0, 0.0, draw.uniform(0.0, 6.0)] if flat else draw.uniform(-3.0, 3.0, 3)
+    turn = Rotation.from_rotvec(turns).as_matrix()
+    shift = far * np.array([0.4, -0.3, 0.0 if flat else 0.2])
 
     def place(vector: Place, by: float = 1.0) -> Place:
         return tuple((turn @ vector + by * shift).tolist())
@@ -111,9 +109,10 @@ def moved(scheme: Scheme, seed: int, far: float = 1.0) -> Scheme:
     return replace(scheme, links=scheme.links[::-1], joints=tuple(joints[each] for each in order))
 
 
-@pytest.mark.parametrize(
-    "name", ["bennett", "cam-roller", "planetary-three-planets", "rssr", "sarrus", "stretched-bars"]
-)
+MOVED = ["bennett", "cam-roller", "planetary-three-planets", "rssr", "sarrus", "stretched-bars"]
+
+
+@pytest.mark.parametrize("name", MOVED)
 def test_mobility_is_that_of_any_frame_and_order(name: str) -> None:
     here = known(name)
     for far in (1.0, 1e4):
@@ -123,10 +122,8 @@ def test_mobility_is_that_of_any_frame_and_order(name: str) -> None:
 
 
 def renamed(scheme: Scheme, links: Mapping[str, str]) -> tuple[SchemeJoint, ...]:
-    return tuple(
-        replace(each, between=tuple(links.get(end, end) for end in each.between))
-        for each in scheme.joints
-    )
+    ends = [tuple(links.get(end, end) for end in each.between) for each in scheme.joints]
+    return tuple(replace(j, between=own) for j, own in zip(scheme.joints, ends, strict=True))
 
 
 @pytest.mark.parametrize("name", ["bennett", "shaper", "peaucellier", "rscr", "gear-pair"])
@@ -143,8 +140,7 @@ def test_without_what_is_passive_the_count_is_the_mobility(name: str) -> None:
     fewer = mobility.scheme.without_links(*passive.links).without_joints(*passive.joints)
     assert not fewer.loose()
     assert fewer.count + len(passive.single) == mobility.real
-    without = scheme_mobility(fewer)
-    assert without.real == mobility.real
+    assert scheme_mobility(fewer).real == mobility.real
 
 
 def test_what_is_passive_and_idle_is_named() -> None:
@@ -164,10 +160,8 @@ def test_what_is_passive_and_idle_is_named() -> None:
 
 
 def test_a_shaft_in_two_bearings_has_one_that_is_passive_and_no_idle_turn() -> None:
-    bearings = tuple(
-        SchemeJoint(name, "revolute", (GROUND, "shaft"), (x, 0.0, 0.0), ((1.0, 0.0, 0.0),))
-        for name, x in (("A", 0.0), ("B", 0.3))
-    )
+    one = SchemeJoint("A", "revolute", (GROUND, "shaft"), (0.0, 0.0, 0.0), ((1.0, 0.0, 0.0),))
+    bearings = (one, replace(one, name="B", at=(0.3, 0.0, 0.0)))
     mobility = scheme_mobility(Scheme("shaft", "spatial", "", ("shaft",), bearings))
     assert (mobility.scheme.count, mobility.real, mobility.idle_count) == (-4, 1, 0)
     assert mobility.passive.joints == ("B",)
@@ -188,18 +182,15 @@ def test_a_spare_rod_between_balls_is_redundant_and_has_an_idle_turn() -> None:
 
 def test_a_momentary_motion_counts_in_the_drawn_position_alone() -> None:
     flat, shaky = known("parallelogram-flat"), known("stretched-bars")
-    assert flat.near.is_singular
+    assert (flat.near.is_singular, shaky.near.is_singular) == (True, False)
     assert (flat.near.here, flat.real, flat.yielding) == (2, 1, 0)
     assert (shaky.near.here, shaky.real, shaky.yielding) == (1, 0, 1)
-    assert not shaky.near.is_singular
 
 
 def test_a_shaky_part_on_a_crank_is_told_from_the_motion_of_the_crank() -> None:
     bars = load_scheme("stretched-bars")
-    joints = (
-        SchemeJoint("O", "pin", (GROUND, "crank"), (-0.1, -0.2, 0.0)),
-        *renamed(bars, {GROUND: "crank"}),
-    )
+    pivot = SchemeJoint("O", "pin", (GROUND, "crank"), (-0.1, -0.2, 0.0))
+    joints = (pivot, *renamed(bars, {GROUND: "crank"}))
     mobility = scheme_mobility(replace(bars, links=("crank", *bars.links), joints=joints))
     assert (mobility.near.here, mobility.real, mobility.yielding) == (2, 1, 1)
 

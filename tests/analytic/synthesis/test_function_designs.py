@@ -6,6 +6,7 @@ import functools
 import math
 import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,11 +16,7 @@ from analytic.synthesis.construction import Dot, Segment
 from analytic.synthesis.examine import Examined, examine, ranked
 from analytic.synthesis.function.designs import function_designs, starts_of
 from analytic.synthesis.function.given import GivenFunction
-from analytic.synthesis.function.structural_error import (
-    FunctionProposal,
-    StructuralError,
-    structural_error,
-)
+from analytic.synthesis.function.structural_error import FunctionProposal, structural_error
 from analytic.synthesis.function.task import FunctionTask, MechanismKind
 from models.draft import Draft
 from models.errors import CrankcheckError, ReachError
@@ -49,7 +46,7 @@ def designs(task: FunctionTask) -> list[tuple[FunctionProposal, Examined]]:
     return [(proposal, examine(proposal)) for proposal in function_designs(task)]
 
 
-def best(task: FunctionTask) -> tuple[FunctionProposal, Examined, StructuralError]:
+def best(task: FunctionTask) -> tuple[FunctionProposal, Examined, Any]:
     """Of the mechanisms without defect that close over the range, that with the least error."""
     found = [one for one in designs(task) if is_whole(*one)]
     every = [(*one, structural_error(*one)) for one in found]

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve_driven
+from analytic.synthesis.path import unit_four_bar as unit
 from analytic.synthesis.path.arc_length import at_shares, shares, smooth
 from analytic.synthesis.path.atlas import atlas, closed_starts, curves, similar
 from analytic.synthesis.path.candidate import Candidate, in_order
@@ -20,17 +21,7 @@ from analytic.synthesis.path.pieces import open_starts, pieces
 from analytic.synthesis.path.spread import spread
 from analytic.synthesis.path.task import PathTask, UnitPath
 from analytic.synthesis.path.timed_starts import _costs, timed_starts
-from analytic.synthesis.path.unit_four_bar import (
-    BOUNDS,
-    FULL,
-    Complexes,
-    Family,
-    closes_between,
-    direction,
-    family_of,
-    least_sine,
-    lengths,
-)
+from analytic.synthesis.path.unit_four_bar import FULL, Complexes, Family, lengths
 from models.array import Array
 from models.errors import CrankcheckError
 
@@ -79,7 +70,7 @@ FAMILIES: tuple[Family, ...] = (*FULL, "limited")
 
 
 def shapes(family: Family, count: int) -> Array:
-    low, high = np.array(BOUNDS[family]).T
+    low, high = np.array(unit.BOUNDS[family]).T
     return np.asarray(low[:, None] + (high - low)[:, None] * spread(count, 3, seed=1).T)
 
 
@@ -107,7 +98,7 @@ def test_the_derivatives_are_those_of_the_residuals(family: Family, timed: bool)
 def test_the_numbers_of_a_shape_keep_a_crank_that_turns_fully(family: Family) -> None:
     a, b, c = lengths(family, shapes(family, 500))
     for each in zip(a.tolist(), b.tolist(), c.tolist(), strict=True):
-        assert family_of(*each) == family
+        assert unit.family_of(*each) == family
         short, long_ = min(*each, 1.0), max(*each, 1.0)
         assert short in (each[0], 1.0)
         assert 2.0 * (short + long_) < sum(each) + 1.0  # Grashof's rule
@@ -122,12 +113,12 @@ def test_limits_and_transmission_angles_are_those_of_many_looks() -> None:
         look = np.linspace(low, high, 4001)
         rho = np.abs(1.0 - a * np.exp(1j * look))
         closes = bool(np.all((rho > abs(b - c)) & (rho < b + c)))
-        assert closes_between((a, b, c), low, high) == closes
+        assert unit.closes_between((a, b, c), low, high) == closes
         seen[closes] += 1
         if closes:
             cosine = (b**2 + c**2 - rho**2) / (2.0 * b * c)
             least = float(np.sqrt(np.min(1.0 - cosine**2)))
-            assert least_sine((a, b, c), low, high) == pytest.approx(least, abs=2e-3)
+            assert unit.least_sine((a, b, c), low, high) == pytest.approx(least, abs=2e-3)
     assert min(seen) > 40
 
 
@@ -196,7 +187,7 @@ def test_the_look_at_timed_shapes_tells_the_least_sum_of_squares() -> None:
         phi = start[k] + path.turned
         a, b, c = lengths("crank-rocker", x[:, k])
         origin, ground, arm = placed((a, b, c), phi, path.points)
-        u, _ = direction((a, b, c), phi)
+        u, _ = unit.direction((a, b, c), phi)
         off = origin + ground * a * np.exp(1j * phi) + arm * u - path.points
         assert cost[k] == pytest.approx(float(np.sum(np.abs(off) ** 2)), rel=1e-6)
 
