@@ -217,20 +217,11 @@ def rods_and_rockers(count: int) -> bytes:
 @pytest.mark.parametrize("count", [1, slowly(6, reason="fifty links at most, as of eight: 2 s")])
 def test_the_calls_for_a_crank_with_many_rods_grow_as_the_rods_do(count: int) -> None:
     """What twice as many add is twice what the others added; by their square it were four times."""
-    calls: list[int] = []
-
-    def called(*_: object) -> None:
-        calls[-1] += 1
-
-    attempt(rods_and_rockers(1), "solve", "FILE", "--at-deg", "90")  # all is imported then
-    for rods in (count, 2 * count, 4 * count):
-        calls.append(0)
-        sys.setprofile(called)
-        try:
-            ended = attempt(rods_and_rockers(rods), "solve", "FILE", "--at-deg", "90")
-        finally:
-            sys.setprofile(None)
-        assert (ended.code, ended.faults) == (0, [])
+    asked = ("solve", "FILE", "--at-deg", "90")
+    attempt(rods_and_rockers(1), *asked)  # all is imported then
+    ended = [attempt(rods_and_rockers(k * count), *asked, counted=True) for k in (1, 2, 4)]
+    assert {(one.code, *one.faults) for one in ended} == {(0,)}
+    calls = [one.calls for one in ended]
     assert calls[2] - calls[1] < 2.5 * (calls[1] - calls[0])
 
 

@@ -8,31 +8,22 @@ import math
 import numpy as np
 import pytest
 
-from analytic.kinematics import solve
 from benchmarks.step_cost import exudyn, fit, mujoco, points, pymunk, start
 from models.files import load_scene, shipped
 from models.scene import Scene
-from sim.engine import SettingValue
 from sim.exudyn import knobs as exudyn_knobs
 from sim.exudyn.session import ExudynSession
-from sim.exudyn.settings import TUNED as EXUDYN_TUNED
 from sim.mujoco import knobs as mujoco_knobs
 from sim.mujoco.knobs import EVALUATIONS
-from sim.mujoco.settings import INTEGRATORS, TUNED
+from sim.mujoco.settings import INTEGRATORS
 from sim.pymunk import knobs as pymunk_knobs
 from sim.pymunk.knobs import PASS_US, RAIL_US
-from sim.pymunk.settings import TUNED as PYMUNK_TUNED
-from sim.registry import engine, offering
-from sim.run import run
-from sim.settings import profile_of, resolved
+from sim.registry import offering
 from sim.tuning import Knob, Work, rungs, search_space
+from tests.worlds.runs import ran, tuned
 from tests.worlds.tiers import slowly
 
 TUNABLE = offering("knobs")
-
-
-def tuned(name: str) -> dict[str, SettingValue]:
-    return resolved(profile_of(engine(name), "tuned"), None)
 
 
 @pytest.mark.parametrize("name", TUNABLE)
@@ -51,12 +42,11 @@ def test_a_search_starts_at_the_profile_and_its_knobs_reach_every_start(name: st
 @pytest.mark.parametrize("name", TUNABLE)
 def test_the_engine_takes_every_value_and_holds_it(name: str, every: int) -> None:
     scene = load_scene("fourbar-lecture-1")
-    state = solve(scene, np.zeros(1)).state()
     space = search_space(name).around(tuned(name))
     for knob in space.knobs:
         for value in knob.values[::every]:
             settings = space.settings(tuned(name), {**space.starts[0], knob.name: value})
-            done = run(scene, state, name, dt_s=1e-3, steps=1, settings=settings)
+            done = ran(scene, name, dt_s=1e-3, steps=1, settings=settings)
             assert [done.asked[each] for each in knob.targets] == [value] * len(knob.targets)
             assert all(
                 math.isclose(float(done.settings[each]), float(value))
@@ -83,9 +73,7 @@ def test_rungs_are_round_and_about_as_far_apart_as_asked() -> None:
     assert all(1.0 < b / a < 1.12 for a, b in itertools.pairwise(found))
 
 
-MUJOCO = {name: setting.value for name, setting in TUNED.settings.items()}
-PYMUNK: dict[str, SettingValue] = {k: s.value for k, s in PYMUNK_TUNED.settings.items()}
-EXUDYN: dict[str, SettingValue] = {k: s.value for k, s in EXUDYN_TUNED.settings.items()}
+MUJOCO, PYMUNK, EXUDYN = map(tuned, ("mujoco", "pymunk", "exudyn"))
 
 
 def mujoco_work(scene: Scene) -> Work:

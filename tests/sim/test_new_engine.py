@@ -62,105 +62,46 @@ with in_this_process():
         ended = CliRunner().invoke(app, arguments, catch_exceptions=False)
         print(json.dumps([name, ended.exit_code, ended.output]), flush=True)
 """
-Told = dict[str, tuple[int, str]]
+SAID: dict[str, tuple[int, tuple[str, ...]]] = {
+    "engines": (0, ("fake  1.0", "knob = 1: there has to be one")),
+    "verify": (0, ("fake",)),
+    "servo": (0, ("fake",)),
+    "all": (0, (*registry.usual(), "fake")),
+    "sweep": (0, ()),
+    "page": (0, ()),
+    "summary": (0, ()),
+    "tune": (2, ("crankcheck: engine fake: it has no knobs; use mujoco or pymunk or exudyn\n",)),
+    "advise": (0, ("1 step a frame (20 ms): within 0.001",)),
+    "log": (0, ("engine fake: it has no spoiler, so nothing is planted inside it", "row-lost")),
+    "inside": (2, ("it can be planted in mujoco and pymunk only; found --engine fake",)),
+    "misspelt": (2, ("crankcheck: engine 'fak': unknown; did you mean fake?\n",)),
+}
+"""The exit code of each command, and parts of its output."""
 
 
-IN_A_HOUSE = slow("a copy of all packages and a process with every command, for one line more")
-
-
-@pytest.fixture(scope="module")
-def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
+@slow("a copy of all packages and a process with every command, for one line more")
+def test_it_is_known_to_every_command_without_anything_to_copy(tmp_path: Path) -> None:
     """All packages, a folder more and a line more."""
-    root = tmp_path_factory.mktemp("house")
     for package in ARROWS:
-        shutil.copytree(ROOT / package, root / package)  # with what is compiled
-    shutil.copytree(ROOT / "tests" / "worlds" / "fake", root / "sim" / "fake")
-    engines = root / "sim" / "registry.py"
+        shutil.copytree(ROOT / package, tmp_path / package)  # with what is compiled
+    shutil.copytree(ROOT / "tests" / "worlds" / "fake", tmp_path / "sim" / "fake")
+    engines = tmp_path / "sim" / "registry.py"
     first, brace, rest = engines.read_text().partition("}\n")
     engines.write_text(first + LINE + brace + rest)
-    (root / "study.toml").write_text(STUDY)
-    return root
-
-
-@pytest.fixture(scope="module")
-def told(house: Path) -> Told:
-    """The exit code and the output of each command there."""
-    done = subprocess.run(
-        [sys.executable, "-c", SCRIPT, json.dumps(COMMANDS)],
-        cwd=house,
-        env=os.environ | {"PYTHONPATH": f"{house}:{ROOT}", "COLUMNS": "200"},
-        capture_output=True,
-        text=True,
-        timeout=600,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    lines = [json.loads(line) for line in done.stdout.splitlines()]
-    return {name: (code, output) for name, code, output in lines}
-
-
-@IN_A_HOUSE
-def test_it_is_listed_with_its_profiles(told: Told) -> None:
-    code, output = told["engines"]
-    assert code == 0
-    assert "fake  1.0" in output
-    assert "knob = 1: there has to be one" in output
-
-
-@IN_A_HOUSE
-@pytest.mark.parametrize("name", ["verify", "servo"])
-def test_it_is_verified(told: Told, name: str) -> None:
-    code, output = told[name]
-    assert code == 0, output
-    assert "fake" in output
-
-
-@IN_A_HOUSE
-def test_it_is_among_all_engines(told: Told) -> None:
-    code, output = told["all"]
-    assert code == 0
-    assert all(name in output for name in (*registry.usual(), "fake"))
-
-
-@IN_A_HOUSE
-def test_it_is_swept_and_shown_without_anything_to_copy(told: Told, house: Path) -> None:
-    assert [told[name][0] for name in ("sweep", "page", "summary")] == [0, 0, 0], told
-    page, summary = (house / name for name in ("page.html", "summary.md"))
-    assert "fake 1.0" in page.read_text()
-    assert "<summary>fake" not in summary.read_text()
-    assert "<summary>mujoco" in summary.read_text()
-
-
-@IN_A_HOUSE
-def test_what_it_lacks_is_said(told: Told) -> None:
-    assert told["tune"] == (
-        2,
-        "crankcheck: engine fake: it has no knobs; use mujoco or pymunk or exudyn\n",
-    )
-    code, output = told["inside"]
-    assert code == 2
-    assert "it can be planted in mujoco and pymunk only; found --engine fake" in output
-
-
-@IN_A_HOUSE
-def test_it_is_advised_on_without_anything_to_copy(told: Told) -> None:
-    code, output = told["advise"]
-    assert code == 0, output
-    assert "1 step a frame (20 ms): within 0.001" in output
-    assert "knob" not in output
-
-
-@IN_A_HOUSE
-def test_faults_are_planted_in_its_log_alone(told: Told) -> None:
-    code, output = told["log"]
-    assert code == 0, output
-    assert "engine fake: it has no spoiler, so nothing is planted inside it" in output
-    assert "row-lost" in output
-
-
-@IN_A_HOUSE
-def test_its_name_is_suggested(told: Told) -> None:
-    assert told["misspelt"] == (2, "crankcheck: engine 'fak': unknown; did you mean fake?\n")
+    (tmp_path / "study.toml").write_text(STUDY)
+    command = [sys.executable, "-c", SCRIPT, json.dumps(COMMANDS)]
+    env = os.environ | {"PYTHONPATH": f"{tmp_path}:{ROOT}", "COLUMNS": "200"}
+    printed = subprocess.check_output(command, cwd=tmp_path, env=env, text=True)
+    told = {name: end for name, *end in map(json.loads, printed.splitlines())}
+    assert told.keys() == SAID.keys()
+    for name, (code, output) in told.items():
+        assert code == SAID[name][0], output
+        assert all(part in output for part in SAID[name][1]), (name, output)
+    assert "knob" not in told["advise"][1]
+    page, summary = ((tmp_path / name).read_text() for name in ("page.html", "summary.md"))
+    assert "fake 1.0" in page
+    assert "<summary>fake" not in summary
+    assert "<summary>mujoco" in summary
 
 
 @pytest.mark.parametrize(("ask", "lacks"), [
@@ -243,9 +184,6 @@ def test_a_snippet_is_made_where_the_engine_is_not_installed() -> None:
         "from sim.snippets import snippet\n"
         "for name in ('mujoco', 'pymunk', 'exudyn'): print(snippet(name, {}, 90))"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    assert "<option timestep=" in done.stdout
-    assert "space.step(dt)" in done.stdout
-    assert "stepping.numberOfSteps" in done.stdout
+    printed = subprocess.check_output([sys.executable, "-c", code], cwd=ROOT, text=True)
+    for part in ("<option timestep=", "space.step(dt)", "stepping.numberOfSteps"):
+        assert part in printed
