@@ -61,11 +61,8 @@ def test_every_function_says_what_its_arguments_are() -> None:
 
 def test_a_type_checker_sees_what_is_there() -> None:
     tree = ast.parse(Path(crankcheck.__file__).read_text(encoding="utf-8"))
-    (shown,) = (
-        node
-        for node in tree.body
-        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
-    )
+    blocks = (node for node in tree.body if isinstance(node, ast.If))
+    (shown,) = (node for node in blocks if ast.unparse(node.test) == "TYPE_CHECKING")
     names = {node.name for node in ast.walk(shown) if isinstance(node, ast.alias)}
     assert names | {"__version__"} == set(crankcheck.__all__)
 

@@ -196,9 +196,7 @@ def rocker_rad():
 """
 
 
-def test_import_is_the_wheel_and_five_lines_print_the_verdict_of_the_lectures_four_bar(
-    installed: Path, mine: Path
-) -> None:
+def test_import_is_the_wheel_and_five_lines_print_a_verdict(installed: Path, mine: Path) -> None:
     (mine / "five.py").write_text(FIVE_LINES + SOLVES)
     done = ran(installed / "python", "five.py", cwd=mine)
     assert (done.returncode, done.stderr) == (0, "")

@@ -52,9 +52,7 @@ def test_a_page_that_shows_otherwise_or_needs_what_is_not_there_is_named(tmp_pat
     assert "needs no-such-program, which this machine has not" in fault
 
 
-def test_a_figure_that_no_command_draws_is_told_and_stood_in_for_without_examples(
-    tmp_path: Path,
-) -> None:
+def test_a_figure_that_no_command_draws_is_told_or_has_a_stand_in(tmp_path: Path) -> None:
     _, missing = with_figures("o.md", "![Nothing](none.svg)", tmp_path, tmp_path / "site")
     assert missing == ["none.svg"]
     text, missing = with_figures("o.md", "![Later](a/b.svg) `![](c.svg)`", None, tmp_path)

@@ -65,11 +65,9 @@ def dead_links(text: Mapping[str, str]) -> Iterator[str]:
 def test_every_link_leads_somewhere_and_dead_ones_are_seen() -> None:
     assert not list(dead_links(WRITTEN.text))
     page = "# A\n[x](nowhere.md) [y](#b) [z](#a) `[in code](none.md)` [w](https://example.org)\n"
-    faults = list(dead_links({"docs/a.md": page}))
-    assert faults == [
-        "docs/a.md: nowhere.md: there is no docs/nowhere.md",
-        "docs/a.md: #b: no such heading",
-    ]
+    faults = ["nowhere.md: there is no docs/nowhere.md", "#b: no such heading"]
+    found = list(dead_links({"docs/a.md": page}))
+    assert found == [f"docs/a.md: {fault}" for fault in faults]
 
 
 def test_every_name_of_code_that_a_page_refers_to_is_there_and_public() -> None:

@@ -91,18 +91,14 @@ def test_a_reader_that_leaves_is_no_verdict(line: str) -> None:
 
 
 @POSIX
-def test_a_terminal_of_ascii_shows_an_escape_and_an_import_cut_short_is_no_missing_engine(
-    ended: dict[str, End],
-) -> None:
+def test_ascii_is_escaped_and_a_cut_import_is_no_missing_engine(ended: dict[str, End]) -> None:
     assert ended["swallowed"] == (130, "", "crankcheck: interrupted\n")
     code, output, complaint = ended["ascii"]
     assert (code, complaint) == (0, "")
     assert r"\u0110\u1ed9ng" in output
 
 
-def test_a_fault_of_crankcheck_asks_to_be_reported_with_its_traceback(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_fault_of_crankcheck_asks_to_be_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     long = "division " * 50
 
     def fault(*_: object) -> object:

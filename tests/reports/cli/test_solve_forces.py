@@ -125,11 +125,10 @@ def test_an_angle_tells_what_friction_takes_of_the_power() -> None:
 def test_where_it_may_jam_the_numbers_stay_without_a_bound(tmp_path: Path) -> None:
     """The scene that locks itself, with loads that help."""
     scene = load_scene(LOCKING)
-    loads = {
-        name: replace(one, direction_rad=one.direction_rad + math.pi)
-        for name, one in scene.loads.items()
+    turned = {
+        n: replace(k, direction_rad=k.direction_rad + math.pi) for n, k in scene.loads.items()
     }
-    helped = written(replace(scene, name="helped", loads=loads), tmp_path)
+    helped = written(replace(scene, name="helped", loads=turned), tmp_path)
     output = told("solve --at-deg 90 --forces", helped)
     assert abs(row(output, "piston block ground")[-2]) > 100.0
     said = flat(output)

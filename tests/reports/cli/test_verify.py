@@ -47,9 +47,7 @@ def edited(tmp_path: Path, name: str, *changes: tuple[str, str]) -> Path:
     return path
 
 
-def test_out_of_tolerance_ends_with_1_failures_first_with_their_cure_in_every_output(
-    tmp_path: Path,
-) -> None:
+def test_failures_end_with_1_and_stand_first_and_in_all_outputs_with_a_cure(tmp_path: Path) -> None:
     junit, csv = tmp_path / "j.xml", tmp_path / "cells.csv"
     output = told(f"{MUJOCO} --tol angle=1e-12", "--junit", junit, "--csv", csv, code=1)
     assert "OUT OF TOLERANCE: 1 of 1 cell (1 scene x 1 engine)" in output

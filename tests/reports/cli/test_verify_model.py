@@ -138,11 +138,8 @@ def test_what_can_not_be_a_diff_is_in_a_text_and_no_diff_is_left(text: str, why:
     Path("out/recommended.diff").write_text("--- of an earlier run\n")
     told(f"{ONCE} -o out", code=1)
     assert Path("out/recommended.diff").read_text() == ""
-    assert (
-        Path("out/recommended.txt")
-        .read_text()
-        .startswith(f"Recommended:\n{why}: set in <option>: ")
-    )
+    recommended = Path("out/recommended.txt").read_text()
+    assert recommended.startswith(f"Recommended:\n{why}: set in <option>: ")
 
 
 def test_a_second_run_replaces_the_first_and_leaves_the_rest() -> None:

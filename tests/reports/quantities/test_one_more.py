@@ -52,9 +52,7 @@ def test_its_rule_judges_it_and_fails_where_its_limit_is_too_narrow(told: Told) 
     assert order[order.index("CC901") - 1 : order.index("CC901") + 2] == ["CC114", "CC901", "CC109"]
 
 
-def test_it_has_its_columns_in_frames_store_and_tables_where_an_engine_reports_it(
-    told: Told,
-) -> None:
+def test_it_has_its_columns_in_frames_store_and_tables_if_it_is_reported(told: Told) -> None:
     (first, silent), (known, unknown) = told["cells"][:2], told["not_reported"][:2]
     assert "pull of point C" in unknown
     assert not any("pull" in text for text in known)

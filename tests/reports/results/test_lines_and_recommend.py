@@ -73,9 +73,7 @@ def test_what_is_chosen(text: str, chosen: str) -> None:
         ("a x 90 nan 1", "nearest is x at 90 steps a turn: on 0 of 1 scenes; a error is no number"),
     ],
 )  # fmt: skip
-def test_where_nothing_reaches_the_target_what_comes_nearest_is_named(
-    text: str, reason: str
-) -> None:
+def test_what_comes_nearest_is_named_where_nothing_does(text: str, reason: str) -> None:
     assert of(text).reason == reason
 
 
@@ -96,10 +94,8 @@ def test_other_settings_under_the_same_name_are_not_the_same_variant() -> None:
 
 
 def test_what_comes_nearest_is_that_which_is_enough_on_the_most_scenes() -> None:
-    found = of(
-        "a x 90 5e-4 1, b x 90 5e-1 1, a y 180 5e-4 1, b y 180 4e-3 1,"
-        "a z 180 2e-3 1, b z 180 2e-3 1"
-    )
+    text = "a x 90 5e-4 1, b x 90 5e-1 1, a y 180 5e-4 1, b y 180 4e-3 1"
+    found = of(f"{text}, a z 180 2e-3 1, b z 180 2e-3 1")
     assert variant(found) is None
     assert (found.best.variant, found.best.steps_per_turn) == ("y", 180)
     assert (found.best.worst_error, found.best.worst_scene) == (4e-3, "b")

@@ -216,9 +216,7 @@ def test_bare_models_see_a_wrong_setting(recommended: Found) -> None:
     mujoco, pymunk = recommended["mujoco", 1e-4], recommended["pymunk", 1e-4]
     soft = mujoco.snippet().replace("0.9999 0.9999", "0.99 0.99")
     assert soft != mujoco.snippet()
-    assert (
-        bare.mujoco_error(soft, round(mujoco.best.steps_per_turn), 10.0)
-        > 2 * mujoco.best.worst_error
-    )
+    error = bare.mujoco_error(soft, round(mujoco.best.steps_per_turn), 10.0)
+    assert error > 2 * mujoco.best.worst_error
     biased = pymunk.snippet().replace("error_bias = 0.0", "error_bias = 0.1")
     assert bare.pymunk_error(biased, round(pymunk.best.steps_per_turn), 10.0) > 1e-4

@@ -28,9 +28,7 @@ from tests.worlds.tiers import slowly
 Make = Callable[..., StoredCell]
 Group = Callable[..., StoredRun]
 OTHER = {"worse": "better", "better": "worse", "equal": "equal"}
-errors = st.one_of(
-    st.just(0.0), st.just(math.inf), st.floats(-16.0, 2.0).map(lambda exponent: 10.0**exponent)
-)
+errors = st.sampled_from((0.0, math.inf)) | st.floats(-16.0, 2.0).map(lambda power: 10.0**power)
 cells = st.fixed_dictionaries(dict.fromkeys(("drive", "angle", "acceleration-differenced"), errors))
 runs = st.dictionaries(
     st.tuples(st.sampled_from("abc"), st.sampled_from((90.0, 720.0))),
@@ -43,9 +41,8 @@ def made(content: dict[tuple[str, float], tuple[str, dict[str, float]]]) -> Stor
     """A run of drawn cells, with one that every run has."""
     found = {("common", 720.0): ("ok", {"angle": 1e-3})} | content
     names = {key: CellName(key[0], "mujoco", "tuned", "prescribed", key[1], 2.0) for key in found}
-    return StoredRun(
-        "drawn", {names[k]: StoredCell(names[k], "1", s, "", e) for k, (s, e) in found.items()}
-    )
+    cells = {names[k]: StoredCell(names[k], "1", s, "", e) for k, (s, e) in found.items()}
+    return StoredRun("drawn", cells)
 
 
 MORE = slowly(100, reason="rare pairs: cells that one run has alone, errors without end")
@@ -225,9 +222,8 @@ def test_a_verification_is_read_with_every_number(
     frame = verified[0]
     names = [(cell.name.engine, cell.name.variant) for cell in found.cells.values()]
     assert names == list(zip(frame.engine, frame.profile, strict=True))
-    for one, angle, wanted in zip(
-        found.cells.values(), frame.angle_pure, frame.acceleration_pure, strict=True
-    ):
+    wanted_of = zip(frame.angle_pure, frame.acceleration_pure, strict=True)
+    for one, (angle, wanted) in zip(found.cells.values(), wanted_of, strict=True):
         assert one.errors["angle"] == angle
         assert one.errors["acceleration"] == (math.inf if np.isnan(wanted) else wanted)
         assert one.version == engine(one.name.engine).version()
