@@ -20,17 +20,7 @@ import pyarrow.csv as pc
 import pytest
 
 from reports.workers.isolated import Isolated, Limits, Lost
-from tests.worlds.bad_logs import (
-    HEADER,
-    LARGE,
-    PARQUET,
-    ROWS,
-    SPECIAL,
-    TEXTS,
-    WORKBOOKS,
-    Made,
-    text,
-)
+from tests.worlds import bad_logs
 from tests.worlds.fuzzing import Ended, attempt
 from tests.worlds.stranger import FOURBAR
 from tests.worlds.stranger_faults import COLUMNS
@@ -88,6 +78,7 @@ OF_ROCKER: dict[str, str] = {
     'time = "C_x_mm"': "'C_x_mm' is no column of times",
 }
 """What a map says of the column ``rocker_deg``."""
+READ = bad_logs.HEADER.split(",")[1:]
 MAPS: dict[str, str] = {
     **{f'[[channel]]\ncolumn = "rocker_deg"\n{told}': words for told, words in OF_ROCKER.items()},
     '[[channel]]\ncolumn = "rockr_deg"': "'rockr_deg' is not in .*rocker_deg",
@@ -100,9 +91,7 @@ MAPS: dict[str, str] = {
     '[file]\ndecimal = "!"': "file.decimal: found '!'",
     '[file]\nseparator = "|||"': "file.separator: found",
     "[[channel": "not valid TOML",
-    "".join(f'[[channel]]\ncolumn = "{c}"\nignore = true\n' for c in HEADER.split(",")[1:]): (
-        "no column is of scene"
-    ),
+    "".join(f'[[channel]]\ncolumn = "{c}"\nignore = true\n' for c in READ): "no column is of scene",
 }
 
 
@@ -110,7 +99,7 @@ MAPS: dict[str, str] = {
 class Case:
     """A file, a command on it, words of the message, and a map."""
 
-    made: Made
+    made: bad_logs.Made
     words: str
     command: str = PLAIN
     name: str = "log.csv"
@@ -118,25 +107,26 @@ class Case:
 
 
 def cases() -> Iterator[tuple[str, Case]]:
-    for name, (made, words) in {**TEXTS, **LARGE}.items():
+    for name, (made, words) in {**bad_logs.TEXTS, **bad_logs.LARGE}.items():
         yield name, Case(made, words)
-    for name, (made, words) in SPECIAL.items():
+    for name, (made, words) in bad_logs.SPECIAL.items():
         for ending in ("csv", "xlsx", "parquet"):
             yield f"{name} .{ending}", Case(made, words, name=f"log.{ending}")
-    for name, (made, words) in PARQUET.items():
+    for name, (made, words) in bad_logs.PARQUET.items():
         yield f"Parquet, {name}", Case(made, words, name="log.parquet")
-    for name, (made, words) in WORKBOOKS.items():
+    for name, (made, words) in bad_logs.WORKBOOKS.items():
         yield f"workbook, {name}", Case(made, words, name="log.xlsx")
-    right = text(*ROWS)
+    right = bad_logs.text(*bad_logs.ROWS)
     for command, words in OPTIONS.items():
         yield command, Case(right, words, command)
     for mapped, words in MAPS.items():
         yield f"map, {mapped}", Case(right, words, mapped=mapped)
-    rows = [row.split(",") for row in (HEADER, *ROWS)]
+    rows = [row.split(",") for row in (bad_logs.HEADER, *bad_logs.ROWS)]
     without = "\n".join(",".join([*row[:1], *row[2:]]) for row in rows).encode()
     logged = f"{PLAIN} --drive logged"
     yield "logged, no crank", Case(without, "no angle of crank .*log crank_", logged)
-    swinging = text(*ROWS, header=HEADER.replace("crank_deg", "lever_deg"))
+    lever = bad_logs.HEADER.replace("crank_deg", "lever_deg")
+    swinging = bad_logs.text(*bad_logs.ROWS, header=lever)
     fitted, words = "judge tangent FILE --drive fitted", "driver of tangent has no constant speed"
     yield "fitted to a lever that swings", Case(swinging, words, fitted)
     yield "another ending", Case(right, "found '.docx'; use .csv, .tsv", name="log.docx")
@@ -183,7 +173,7 @@ def test_it_is_refused_in_one_message(name: str, apart: Isolated[Ended], tmp_pat
 @pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="root reads every file")
 def test_a_log_that_may_not_be_read_is_refused(apart: Isolated[Ended]) -> None:
     def locked(path: Path) -> None:
-        path.write_bytes(text(*ROWS))
+        path.write_bytes(bad_logs.text(*bad_logs.ROWS))
         path.chmod(0)
 
     ended = apart.call(partial(attempt, name="log.csv"), locked, *PLAIN.split())

@@ -16,16 +16,8 @@ from pathlib import Path
 import pytest
 
 from tests.reports.own_log.conftest import Judge
+from tests.worlds import stranger_faults as faults
 from tests.worlds.stranger import LINKAGES
-from tests.worlds.stranger_faults import (
-    COLUMNS,
-    CULPRITS,
-    Planted,
-    averaged,
-    disguised,
-    planted,
-    stuck,
-)
 from tests.worlds.stranger_log import Dress, Log, even, logged, map_text, uneven
 from tests.worlds.tiers import few, slow
 
@@ -68,7 +60,7 @@ def blamed(judge: Judge, tmp_path: Path) -> Blamed:
     return run
 
 
-def holds(case: Planted, fault: str, text: str, columns: list[str]) -> None:
+def holds(case: faults.Planted, fault: str, text: str, columns: list[str]) -> None:
     """A cause names the fault, and what it is of."""
     assert re.search(WORDS[fault], text), text
     assert re.search(rf"\b{case.named}\b", text), text
@@ -80,27 +72,27 @@ def holds(case: Planted, fault: str, text: str, columns: list[str]) -> None:
 @pytest.mark.parametrize("at", few(EITHER, IN_TURN[::2], "`tests/reports/causes` has each"))
 def test_a_fault_is_named_with_its_channel(at: tuple[str, str], blamed: Blamed) -> None:
     scene, fault = at
-    case = planted(scene, even(LINKAGES[scene], TURNS, PER_TURN))[fault]()
+    case = faults.planted(scene, even(LINKAGES[scene], TURNS, PER_TURN))[fault]()
     holds(case, fault, *blamed(scene, case.log))
 
 
 @slow("only here are times uneven and faults in: what looks for one may count on even steps")
 @pytest.mark.parametrize(("scene", "fault"), EITHER)
 def test_at_uneven_times_too(scene: str, fault: str, blamed: Blamed) -> None:
-    case = planted(scene, uneven(LINKAGES[scene], 2.0, 120))[fault]()
+    case = faults.planted(scene, uneven(LINKAGES[scene], 2.0, 120))[fault]()
     holds(case, fault, *blamed(scene, case.log))
 
 
 @slow("only here do faults meet angles of joints, wrapped ones, and rates said to be late")
 @pytest.mark.parametrize(("scene", "fault"), EITHER)
 def test_in_all_guises_at_once_too(scene: str, fault: str, blamed: Blamed) -> None:
-    linkage, culprits = LINKAGES[scene], CULPRITS[scene]
+    linkage, culprits = LINKAGES[scene], faults.CULPRITS[scene]
     plain = {culprits.turn, *culprits.swapped} if fault in ("lost turn", "swapped columns") else {}
     columns = [
         old if old.header in plain else replace(new, header=old.header)
-        for old, new in zip(COLUMNS[scene], disguised(scene).columns, strict=True)
+        for old, new in zip(faults.COLUMNS[scene], faults.disguised(scene).columns, strict=True)
     ]
-    case = planted(scene, uneven(linkage, 2.0, 120), columns)[fault]()
+    case = faults.planted(scene, uneven(linkage, 2.0, 120), columns)[fault]()
     holds(case, fault, *blamed(scene, case.log, map_text(linkage, columns)))
 
 
@@ -112,7 +104,7 @@ def test_rates_half_a_sample_late_are_told_and_the_map_that_is_told_mends_it(
     late_s = -linkage.period_s / PER_TURN / 2.0
     columns = [
         replace(each, later_s=late_s) if each.what in ("omega", "vx", "vy") else each
-        for each in COLUMNS[scene]
+        for each in faults.COLUMNS[scene]
     ]
     log = logged(linkage, even(linkage, TURNS, PER_TURN), columns)
     text, found = blamed(scene, log)
@@ -128,11 +120,11 @@ def test_rates_half_a_sample_late_are_told_and_the_map_that_is_told_mends_it(
 def test_a_mean_that_is_not_late_and_samples_that_stick_are_told_of_their_column(
     scene: str, blamed: Blamed
 ) -> None:
-    log = logged(LINKAGES[scene], even(LINKAGES[scene], TURNS, PER_TURN), COLUMNS[scene])
-    filtered, still = CULPRITS[scene].filtered, CULPRITS[scene].stuck
-    text, columns = blamed(scene, averaged(log, filtered, 21))
+    log = logged(LINKAGES[scene], even(LINKAGES[scene], TURNS, PER_TURN), faults.COLUMNS[scene])
+    filtered, still = faults.CULPRITS[scene].filtered, faults.CULPRITS[scene].stuck
+    text, columns = blamed(scene, faults.averaged(log, filtered, 21))
     assert columns == [filtered]
     assert "mean over 21 samples" in text
-    text, columns = blamed(scene, stuck(log, still, 6))
+    text, columns = blamed(scene, faults.stuck(log, still, 6))
     assert columns == [still]
     assert re.search(r"sticks: samples \d+ to \d+ ", text), text
