@@ -6,7 +6,6 @@ from __future__ import annotations
 import io
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -50,21 +49,29 @@ FAULTS = {
 }
 
 
-@pytest.fixture(scope="module")
-def drawn(store: Path, as_svg: Callable[[Path], Path]) -> Path:
-    return as_svg(store)
+def as_svg(store: Path, folder: Path) -> Path:
+    """All of a store, as SVG alone: fonts of a PDF take twice the time of all else."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("reports.cli.commands.figures.FORMATS", ("svg",))
+        figures(store, folder)
+    return folder
 
 
 @pytest.fixture(scope="module")
-def drawn_free(free_store: Path, as_svg: Callable[[Path], Path]) -> Path:
-    return as_svg(free_store)
+def drawn(store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return as_svg(store, tmp_path_factory.mktemp("drawn") / "figs")
+
+
+@pytest.fixture(scope="module")
+def drawn_free(free_store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return as_svg(free_store, tmp_path_factory.mktemp("drawn") / "figs")
 
 
 def figures(*asked: object) -> str:
     """What is said as they are drawn."""
     store, folder, *chosen = asked
     said = io.StringIO()
-    run_figures(store, folder, Console(file=said), *chosen)
+    assert run_figures(store, folder, Console(file=said), *chosen) == 0
     return said.getvalue()
 
 

@@ -38,8 +38,8 @@ from reports.figures.regulation.regulated import Regulated
 from reports.figures.vibration import over_inertia, over_speed, over_turn
 from reports.workbook.family_curves import FamilyCurves, family_curves
 from reports.workbook.live_workbook import formulas_of
-from tests.reports.figures.room import has_room
 from tests.reports.figures.test_files import texts
+from tests.reports.figures.test_looks import has_room
 from tests.worlds.tiers import few, slowly
 
 FOUR_STROKES = Tabulated((0.0, 3.0, 6.0, 12.0), (0.0, 5.0, -2.0, 0.0), period=4.0 * math.pi)
