@@ -23,6 +23,8 @@ from tests.analytic.change_points.jets import Jet, Number
 from tests.analytic.oracle import Place
 
 DONE = mpf(10) ** -42
+Frame = tuple[Place, Jet, Place]
+"""Of a body: origin, angle and direction."""
 
 
 def law_at(law: Law, time_s: float) -> Jet:
@@ -95,8 +97,7 @@ class Chain:
             raise AssertionError(f"no convergence at {time_s} s")
         return self._solved([Jet(*row) for row in zip(*levels, strict=True)])
 
-    def _frames(self, q: list[Jet]) -> dict[str, tuple[Place, Jet, Place]]:
-        """Origin, angle and direction of each body."""
+    def _frames(self, q: list[Jet]) -> dict[str, Frame]:
         frames = {GROUND: (oracle.at(0, 0), Jet(0), oracle.at(1, 0))}
         for i, body in enumerate(self.bodies):
             x, y, angle = q[3 * i : 3 * i + 3]
@@ -118,7 +119,7 @@ class Chain:
             rows += [along.cross(away), turn - 2 * mp.pi * whole]
         return [*rows, self._driven(frames, drive)]
 
-    def _driven(self, frames: Mapping[str, tuple[Place, Jet, Place]], drive: Jet) -> Jet:
+    def _driven(self, frames: Mapping[str, Frame], drive: Jet) -> Jet:
         """The driver's coordinate less what it should be."""
         driver = self.scene.driver
         if driver.slider is not None:
@@ -129,9 +130,7 @@ class Chain:
             return off
         return off - 2 * mp.pi * mp.nint(off.value / (2 * mp.pi))  # known but for turns
 
-    def _ride(
-        self, frames: Mapping[str, tuple[Place, Jet, Place]], slider: Slider
-    ) -> tuple[Place, Place]:
+    def _ride(self, frames: Mapping[str, Frame], slider: Slider) -> tuple[Place, Place]:
         """From the line's point to the slider's, and the direction of the line."""
         body = sliding_body(slider)
         tip = (0.0, 0.0) if slider.link is None else local_point(self.scene, body, slider.point)
@@ -167,7 +166,7 @@ def coordinates(scene: Scene, motion: Motion, index: int) -> list[float]:
     return [float(c) for c in found]
 
 
-def _point(frame: tuple[Place, Jet, Place], local: Point) -> Place:
+def _point(frame: Frame, local: Point) -> Place:
     origin, _, along = frame
     x, y = mpf(local[0]), mpf(local[1])
     return Place(origin.x + along.x * x - along.y * y, origin.y + along.y * x + along.x * y)

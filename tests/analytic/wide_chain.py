@@ -181,14 +181,10 @@ class WideChain:
 
     def _ride(self, frames: Mapping[str, Frame], slider: Slider) -> tuple[Place, Place]:
         """From the line's point to the slider's, and the direction of the line."""
-        body, guide = frames[sliding_body(slider)], frames[slider.on]
-        tip = (
-            (0.0, 0.0)
-            if slider.link is None
-            else local_point(self.scene, slider.link, slider.point)
-        )
+        body, guide = sliding_body(slider), frames[slider.on]
+        tip = (0.0, 0.0) if slider.link is None else local_point(self.scene, body, slider.point)
         along = turned(guide.along, self.given.lines[slider.name].direction)
-        return body.at(tip) - guide.at(slider.through_m), along
+        return frames[body].at(tip) - guide.at(slider.through_m), along
 
     def _solved(self, frames: dict[str, Frame]) -> Solved:
         rides = {name: self._ride(frames, s) for name, s in self.scene.sliders.items()}

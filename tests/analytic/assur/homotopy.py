@@ -11,6 +11,7 @@ Software 26, 2000.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -45,12 +46,8 @@ def finite_solutions(equations: Sequence[Equation], number: int) -> Array:
     every = np.zeros((0, 4), complex)
     for attempt in range(8):
         factors = np.exp(1j * draw.uniform(0.0, math.tau, 4)) if attempt else np.ones(4)
-        ends = _followed(
-            [
-                {powers: factor * value for powers, value in equation.items()}
-                for equation, factor in zip(equations, factors, strict=True)
-            ]
-        )
+        pairs = zip(equations, factors, strict=True)
+        ends = _followed([{k: factor * v for k, v in each.items()} for each, factor in pairs])
         every = once([*every, *corrected(equations, ends)])
         if attempt and len(every) < number:
             aside = np.repeat(ends, 4, axis=0)
@@ -137,8 +134,7 @@ def equations_of(row: LegRow) -> list[Equation]:
     if isinstance(row, LineRow):
         own = {Z: across, TAU: across * complex(*row.a), ONE: -across * complex(*row.through)}
     else:
-        seen = {Z: -1.0, ONE: complex(*row.pin)}
-        own = product({(0, 0, 0, 1): across}, seen)
+        own = product({(0, 0, 0, 1): across}, {Z: -1.0, ONE: complex(*row.pin)})
         own = total(own, {ONE: -across * complex(*row.b)})
     return [total(own, conjugate(own))]
 
@@ -149,10 +145,9 @@ def conjugate(one: Equation) -> Equation:
 
 def product(one: Equation, other: Equation) -> Equation:
     every: Equation = {}
-    for k, left in one.items():
-        for m, right in other.items():
-            powers = (k[0] + m[0], k[1] + m[1], k[2] + m[2], k[3] + m[3])
-            every[powers] = every.get(powers, 0.0) + left * right
+    for (k, left), (m, right) in itertools.product(one.items(), other.items()):
+        powers = tuple(map(sum, zip(k, m, strict=True)))
+        every[powers] = every.get(powers, 0.0) + left * right
     return every
 
 

@@ -90,34 +90,31 @@ class Drawn:
         return float(self.rng.uniform(-3.0, 3.0))
 
     def _link(self, name: str, points: dict[str, complex]) -> None:
-        self.tables.append(f"[links.{name}]\npoints = {_points(points)}")
+        self.tables.append(f"links.{name}.points = {_points(points)}")
 
     def _slider(
         self, name: str, on: str, through: complex, direction: float, link: str = "",
         point: str = "", angle: float = 0.0,
     ) -> None:  # fmt: skip
-        rows = [f'[sliders.{name}]\non = "{on}"', f"through_m = {_pair(through)}"]
-        rows.append(f"direction_deg = {math.degrees(direction)!r}")
+        rows = f'on = "{on}", through_m = {_pair(through)}, direction_deg = {_degrees(direction)}'
         if link:
-            rows.append(f'link = "{link}"\npoint = "{point}"\nangle_deg = {math.degrees(angle)!r}')
-        self.tables.append("\n".join(rows))
+            rows += f', link = "{link}", point = "{point}", angle_deg = {_degrees(angle)}'
+        self.tables.append(f"sliders.{name} = {{ {rows} }}")
 
     @property
     def text(self) -> str:
-        platform, start = dict(self.platform), math.degrees(self.start)
-        if len(platform) < 2:
-            platform |= {"U": 0j, "V": 1.1 + 0j}
-        return "\n".join(
-            [
-                'name = "triad"\nsource = "test"',
-                f"[ground]\npoints = {_points(self.ground)}",
-                f"[links.crank]\npoints = {_points(self.crank)}",
-                *(t for t in self.tables if t.startswith("[links")),
-                f"[links.platform]\npoints = {_points(platform)}",
-                *(t for t in self.tables if t.startswith("[sliders")),
-                f'[driver]\nlink = "crank"\nspeed_rad_s = 1.0\nstart_deg = {start!r}',
-            ]
-        )
+        spare = {"U": 0j, "V": 1.1 + 0j} if len(self.platform) < 2 else {}
+        links = [t for t in self.tables if t.startswith("links")]
+        rows = ['name = "triad"\nsource = "test"', f"ground.points = {_points(self.ground)}"]
+        rows += [f"links.crank.points = {_points(self.crank)}", *links]
+        rows += [f"links.platform.points = {_points(self.platform | spare)}"]
+        rows += [t for t in self.tables if t.startswith("sliders")]
+        driver = f'link = "crank", speed_rad_s = 1.0, start_deg = {_degrees(self.start)}'
+        return "\n".join([*rows, f"driver = {{ {driver} }}"])
+
+
+def _degrees(angle: float) -> str:
+    return repr(math.degrees(angle))
 
 
 def _pair(at: complex) -> str:
