@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from mpmath import matrix, mp, mpf
+from mpmath import matrix, mp, mpc, mpf
 
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
@@ -26,8 +26,8 @@ from models.springs import PinSpring, SlideSpring, Spring
 from models.tabulated import Tabulated
 from tests.analytic.chain import Solved, law_at
 from tests.analytic.change_points.jets import Number
+from tests.analytic.oracle import Place
 
-Pair = tuple[Number, Number]
 STAYS = mpf(10) ** -40
 FIRST, MOST = 40, 80
 """Plain substitutions, and Newton's steps after them."""
@@ -35,10 +35,11 @@ FIRST, MOST = 40, 80
 
 @dataclass(frozen=True)
 class ExactForces:
-    """At one time: forces of pins on bodies, of guides on sliders (normal, moment), the torque."""
+    """At one time, vectors as x + iy: forces of pins on bodies, of guides on sliders (normal,
+    moment), the torque, and friction."""
 
-    pins: Mapping[str, Mapping[str, Pair]]
-    sliders: Mapping[str, Pair]
+    pins: Mapping[str, Mapping[str, mpc]]
+    sliders: Mapping[str, tuple[Number, Number]]
     torque: Number
     friction: Mapping[str, Number] = field(default_factory=dict)
 
@@ -46,7 +47,7 @@ class ExactForces:
         """Everything, by the names of `tests.analytic.forces.beside`."""
         yield "torque", (self.torque,)
         for point, by_body in self.pins.items():
-            yield from ((f"pin {point} on {body}", force) for body, force in by_body.items())
+            yield from ((f"pin {point} on {body}", (f.real, f.imag)) for body, f in by_body.items())
         for name, (normal, moment) in self.sliders.items():
             yield from ((f"normal {name}", (normal,)), (f"moment {name}", (moment,)))
         yield from ((f"rubbing {joint}", (size,)) for joint, size in self.friction.items())
@@ -61,25 +62,20 @@ class ExactForces:
 class _Body:
     """The frame of a body: origin with acceleration, angle, angular acceleration and velocity."""
 
-    origin: Pair
-    push: Pair
+    origin: mpc
+    push: mpc
     theta: Number
     omega: Number
     alpha: Number
 
-    def arm(self, local: Point) -> Pair:
-        c, s = mp.cos(self.theta), mp.sin(self.theta)
-        x, y = mpf(local[0]), mpf(local[1])
-        return c * x - s * y, s * x + c * y
+    def arm(self, local: Point) -> mpc:
+        return mp.expj(self.theta) * mpc(*local)
 
-    def place(self, local: Point) -> Pair:
-        x, y = self.arm(local)
-        return self.origin[0] + x, self.origin[1] + y
+    def place(self, local: Point) -> mpc:
+        return self.origin + self.arm(local)
 
-    def acceleration(self, local: Point) -> Pair:
-        x, y = self.arm(local)
-        w2 = self.omega**2
-        return (self.push[0] - self.alpha * y - w2 * x, self.push[1] + self.alpha * x - w2 * y)
+    def acceleration(self, local: Point) -> mpc:
+        return self.push + (mpc(0, self.alpha) - self.omega**2) * self.arm(local)
 
 
 @dataclass(frozen=True)
@@ -97,86 +93,84 @@ class _Demand:
         if name != GROUND:
             self.b[self.at[name] + 2] -= size
 
-    def push(self, name: str, place: Pair, force: Pair) -> None:
+    def push(self, name: str, place: mpc, force: mpc) -> None:
         """A force on a body at a place of the plane."""
-        if name == GROUND:
-            return
-        (ox, oy), row = self.bodies[name].origin, self.at[name]
-        self.b[row] -= force[0]
-        self.b[row + 1] -= force[1]
-        self.couple(name, (place[0] - ox) * force[1] - (place[1] - oy) * force[0])
+        if name != GROUND:
+            row = self.at[name]
+            self.b[row] -= force.real
+            self.b[row + 1] -= force.imag
+            self.couple(name, _cross(place - self.bodies[name].origin, force))
 
     def along_line(self, slider: Slider, size: Number) -> None:
         """A force of the guide on what slides, along its line."""
-        body = sliding_body(slider)
-        angle = self.bodies[slider.on].theta + mpf(slider.direction_rad)
-        place = self.bodies[body].place(local_point(self.scene, body, slider.point))
-        fx, fy = size * mp.cos(angle), size * mp.sin(angle)
-        self.push(body, place, (fx, fy))
-        self.push(slider.on, place, (-fx, -fy))
+        along, place = _line(self.scene, self.bodies, slider)
+        self.push(sliding_body(slider), place, size * along)
+        self.push(slider.on, place, -size * along)
+
+
+def _cross(one: mpc, other: mpc) -> Number:
+    return (mp.conj(one) * other).imag
+
+
+def _line(scene: Scene, bodies: Mapping[str, _Body], slider: Slider) -> tuple[mpc, mpc]:
+    """The direction of a guide, and the place of its slider."""
+    body = sliding_body(slider)
+    along = mp.expj(bodies[slider.on].theta + mpf(slider.direction_rad))
+    return along, bodies[body].place(local_point(scene, body, slider.point))
 
 
 def exact_forces(
     scene: Scene, time_s: float, solved: Solved, friction: Mapping[str, Number] | None = None
 ) -> ExactForces:
     """The forces of an exact motion at a time, under given friction in joints."""
+    friction = friction or {}
     bodies = _bodies(scene, solved)
     names = [name for name in bodies if name != GROUND]
     at = {name: 3 * k for k, name in enumerate(names)}
     a = matrix(3 * len(names), 3 * len(names))
     demand = _Demand(scene, bodies, at, matrix(3 * len(names), 1))
-    column = 0
+    columns = itertools.count()
 
-    def force(body: str, place: Pair, along: Pair, sign: int) -> None:
-        """The unknown of this column pushes a body at a place of the plane."""
-        if body == GROUND:
-            return
-        ox, oy = bodies[body].origin
-        row = at[body]
-        a[row, column] += sign * along[0]
-        a[row + 1, column] += sign * along[1]
-        a[row + 2, column] += sign * ((place[0] - ox) * along[1] - (place[1] - oy) * along[0])
+    def unknown(one: str, other: str, place: mpc, along: mpc) -> None:
+        """A force on a body at a place of the plane, and its reaction on another."""
+        column = next(columns)
+        for body, force in ((one, along), (other, -along)):
+            if body != GROUND:
+                moment = _cross(place - bodies[body].origin, force)
+                for k, part in enumerate((force.real, force.imag, moment)):
+                    a[at[body] + k, column] += part
 
-    hinges, slides = [], []
-    for point, held in _pins(scene).items():
-        for other in held[1:]:
-            place = bodies[held[0]].place(local_point(scene, held[0], point))
-            for along in ((mpf(1), mpf(0)), (mpf(0), mpf(1))):
-                force(held[0], place, along, 1)
-                force(other, place, along, -1)
-                column += 1
-            hinges.append((point, held[0], other))
+    def turning(*signs: tuple[str, int]) -> None:
+        column = next(columns)
+        for body, sign in signs:
+            if body != GROUND:
+                a[at[body] + 2, column] += sign
+
+    hinges = [(p, held[0], other) for p, held in _pins(scene).items() for other in held[1:]]
+    for point, first, other in hinges:
+        place = bodies[first].place(local_point(scene, first, point))
+        for along in (mpc(1), mpc(0, 1)):
+            unknown(first, other, place, along)
     for slider in scene.sliders.values():
-        body, angle = sliding_body(slider), bodies[slider.on].theta + mpf(slider.direction_rad)
-        place = bodies[body].place(local_point(scene, body, slider.point))
-        across = (-mp.sin(angle), mp.cos(angle))
-        force(body, place, across, 1)
-        force(slider.on, place, across, -1)
-        a[at[body] + 2, column + 1] += 1
-        if slider.on != GROUND:
-            a[at[slider.on] + 2, column + 1] -= 1
-        column += 2
-        slides.append(slider.name)
-    a[at[scene.driver.link] + 2, column] += 1
+        along, place = _line(scene, bodies, slider)
+        unknown(sliding_body(slider), slider.on, place, mpc(0, 1) * along)
+        turning((sliding_body(slider), 1), (slider.on, -1))
+    turning((scene.driver.link, 1))
     for name in names:
         _inertia(demand, name)
     for load in scene.loads.values():
         _apply(demand, load, time_s, solved)
     for spring in scene.springs.values():
         _stretch(demand, spring, solved)
-    for joint, size in (friction or {}).items():
+    for joint, size in friction.items():
         _rub(demand, joint, size)
-    found = list(mp.lu_solve(a, demand.b))
-    pins: dict[str, dict[str, Pair]] = {}
-    for k, (point, one, other) in enumerate(hinges):
-        for body, sign in ((one, 1), (other, -1)):
-            x, y = pins.setdefault(point, {}).get(body, (mpf(0), mpf(0)))
-            pins[point][body] = (x + sign * found[2 * k], y + sign * found[2 * k + 1])
-    start = 2 * len(hinges)
-    sliders = {
-        name: (found[start + 2 * k], found[start + 2 * k + 1]) for k, name in enumerate(slides)
-    }
-    return ExactForces(pins, sliders, found[-1])
+    found = iter(mp.lu_solve(a, demand.b))
+    pins: dict[str, dict[str, mpc]] = {}
+    for point, one, other in hinges:
+        force, held = mpc(next(found), next(found)), pins.setdefault(point, {})
+        held[one], held[other] = held.get(one, mpc(0)) + force, held.get(other, mpc(0)) - force
+    sliders = {name: (next(found), next(found)) for name in scene.sliders}
+    return ExactForces(pins, sliders, next(found), friction)
 
 
 def _pins(scene: Scene) -> dict[str, list[str]]:
@@ -188,23 +182,23 @@ def _pins(scene: Scene) -> dict[str, list[str]]:
 
 
 def _bodies(scene: Scene, solved: Solved) -> dict[str, _Body]:
-    still = (mpf(0), mpf(0))
-    found = {GROUND: _Body(still, still, mpf(0), mpf(0), mpf(0))}
+    found = {GROUND: _Body(mpc(0), mpc(0), mpf(0), mpf(0), mpf(0))}
     for link in scene.links.values():
-        point, local = next(iter(link.points.items()))
-        turn, at = solved.links[link.name], solved.points[point]
-        place, push = (at.x.value, at.y.value), (at.x.second, at.y.second)
-        own = _Body(place, push, turn.value, turn.rate, turn.second)
-        back = (-local[0], -local[1])
-        origin, shove = own.place(back), own.acceleration(back)
-        found[link.name] = _Body(origin, shove, turn.value, turn.rate, turn.second)
+        point, (x, y) = next(iter(link.points.items()))
+        turn, back = solved.links[link.name], (-x, -y)
+        own = _Body(*_moving(solved.points[point]), turn.value, turn.rate, turn.second)
+        found[link.name] = replace(own, origin=own.place(back), push=own.acceleration(back))
     for slider in scene.sliders.values():
         if slider.link is None:
-            at, on = solved.points[slider.point], found[slider.on]
-            place, push = (at.x.value, at.y.value), (at.x.second, at.y.second)
+            on, moving = found[slider.on], _moving(solved.points[slider.point])
             theta = on.theta + mpf(slider.direction_rad)
-            found[block_name(slider)] = _Body(place, push, theta, on.omega, on.alpha)
+            found[block_name(slider)] = _Body(*moving, theta, on.omega, on.alpha)
     return found
+
+
+def _moving(at: Place) -> tuple[mpc, mpc]:
+    """A place and its acceleration."""
+    return mpc(at.x.value, at.y.value), mpc(at.x.second, at.y.second)
 
 
 def _inertia(demand: _Demand, name: str) -> None:
@@ -216,14 +210,9 @@ def _inertia(demand: _Demand, name: str) -> None:
     else:
         block = scene.sliders[name.removeprefix("block ")]
         mass, moment, centre = block.mass_kg, block.inertia_kg_m2, (0.0, 0.0)
-    ax, ay = body.acceleration(centre)
-    x, y = body.arm(centre)
-    fx = mpf(mass) * (ax - mpf(scene.gravity_m_s2[0]))
-    fy = mpf(mass) * (ay - mpf(scene.gravity_m_s2[1]))
-    row = demand.at[name]
-    demand.b[row] += fx
-    demand.b[row + 1] += fy
-    demand.b[row + 2] += x * fy - y * fx + mpf(moment) * body.alpha
+    force = mpf(mass) * (body.acceleration(centre) - mpc(*scene.gravity_m_s2))
+    demand.push(name, body.place(centre), -force)
+    demand.couple(name, -mpf(moment) * body.alpha)
 
 
 def _apply(demand: _Demand, load: Load, time_s: float, solved: Solved) -> None:
@@ -242,8 +231,8 @@ def _apply(demand: _Demand, load: Load, time_s: float, solved: Solved) -> None:
         demand.couple(load.body, size)
         return
     angle = mpf(load.direction_rad) + (body.theta if load.frame == "body" else 0)
-    fx, fy = size * mp.cos(angle), size * mp.sin(angle)
-    demand.push(load.body, body.place(local_point(scene, load.body, load.point)), (fx, fy))
+    place = body.place(local_point(scene, load.body, load.point))
+    demand.push(load.body, place, size * mp.expj(angle))
 
 
 def _rub(demand: _Demand, joint: str, size: Number) -> None:
@@ -271,15 +260,12 @@ def _stretch(demand: _Demand, spring: Spring, solved: Solved) -> None:
         for name, own in zip(spring.bodies, (size, -size), strict=True):
             demand.couple(name, own)
     else:
-        held = _pins(scene)
         ends = [solved.points[name] for name in spring.points]
-        x, y = ends[1].x - ends[0].x, ends[1].y - ends[0].y
-        length = mp.hypot(x.value, y.value)
-        speed = (x.value * x.rate + y.value * y.rate) / length
-        pull = (rate * (length - free) + damping * speed) / length
-        for name, end, sign in zip(spring.points, ends, (1, -1), strict=True):
-            force = (sign * pull * x.value, sign * pull * y.value)
-            demand.push(held[name][0], (end.x.value, end.y.value), force)
+        way = ends[1] - ends[0]
+        pull = rate * (way.length.value - free) + damping * way.length.rate
+        force = pull * mp.expj(way.angle.value)
+        for name, end, own in zip(spring.points, ends, (force, -force), strict=True):
+            demand.push(_pins(scene)[name][0], _moving(end)[0], own)
 
 
 def _turns_at_start(scene: Scene, spring: PinSpring) -> int:
@@ -287,6 +273,9 @@ def _turns_at_start(scene: Scene, spring: PinSpring) -> int:
     links = solve(scene, np.zeros(1), bound=False).links
     one, other = (links[n].theta[0] if n in links else 0.0 for n in spring.bodies)
     return round((other - one - spring.free) / math.tau)
+
+
+Pair = tuple[Number, Number]
 
 
 def value_of(own: Characteristic, x: Number) -> Number:
@@ -351,37 +340,35 @@ def exact_rubbed(scene: Scene, time_s: float, solved: Solved) -> ExactForces:
     """The forces with friction."""
     way = {joint: -mp.sign(_rate(scene, joint, solved)) for joint in scene.friction}
     alone = _reactions(scene, exact_forces(scene, time_s, solved))
-    influence = {
-        joint: _less(_reactions(scene, exact_forces(scene, time_s, solved, {joint: mpf(1)})), alone)
-        for joint in scene.friction
-    }
+    influence = {}
+    for joint in scene.friction:
+        by = _reactions(scene, exact_forces(scene, time_s, solved, {joint: mpf(1)}))
+        influence[joint] = {name: by[name] - alone[name] for name in by}
     given = {
         joint: way[joint] * mpf(law.size)
         for joint, law in scene.friction.items()
         if not isinstance(law, CoulombFriction)
     }
+    factors = {j: way[j] * _factor(scene, j, law) for j, law in scene.friction.items()
+               if isinstance(law, CoulombFriction)}  # fmt: skip
     friction = {joint: given.get(joint, mpf(0)) for joint in scene.friction}
     for step in range(MOST):
         bears = {
-            joint: _sum(
-                [alone[joint], *(_times(influence[k][joint], friction[k]) for k in friction)]
-            )
+            joint: alone[joint] + sum(influence[k][joint] * friction[k] for k in friction)
             for joint in friction
         }
-        factors = {j: way[j] * _factor(scene, j, law) for j, law in scene.friction.items()
-                   if isinstance(law, CoulombFriction)}  # fmt: skip
-        after = given | {j: factor * mp.hypot(*bears[j]) for j, factor in factors.items()}
+        after = given | {j: factor * abs(bears[j]) for j, factor in factors.items()}
         change = max(abs(after[joint] - friction[joint]) for joint in friction)
         if change <= STAYS * max(abs(size) for size in friction.values()):
-            return replace(exact_forces(scene, time_s, solved, friction), friction=friction)
+            return exact_forces(scene, time_s, solved, friction)
         friction = after if step < FIRST else _newton(alone, influence, bears, factors, given)
     raise AssertionError(f"friction does not settle at {time_s} s")
 
 
 def _newton(
-    alone: Mapping[str, Pair],
-    influence: Mapping[str, Mapping[str, Pair]],
-    bears: Mapping[str, Pair],
+    alone: Mapping[str, mpc],
+    influence: Mapping[str, Mapping[str, mpc]],
+    bears: Mapping[str, mpc],
     factors: Mapping[str, Number],
     given: Mapping[str, Number],
 ) -> dict[str, Number]:
@@ -391,25 +378,12 @@ def _newton(
         return dict(given)
     a, b = mp.eye(len(names)), matrix(len(names), 1)
     for row, joint in enumerate(names):
-        size = mp.hypot(*bears[joint]) or mpf(1)
-        u = _times(bears[joint], factors[joint] / size)
-        b[row] = _dot(u, alone[joint])
-        b[row] += sum(_dot(u, influence[k][joint]) * size for k, size in given.items())
+        u = mp.conj(bears[joint]) * factors[joint] / (abs(bears[joint]) or mpf(1))
+        known = alone[joint] + sum(influence[k][joint] * size for k, size in given.items())
+        b[row] = (u * known).real
         for column, other in enumerate(names):
-            a[row, column] -= _dot(u, influence[other][joint])
+            a[row, column] -= (u * influence[other][joint]).real
     return dict(zip(names, mp.lu_solve(a, b), strict=True)) | dict(given)
-
-
-def _dot(one: Pair, other: Pair) -> Number:
-    return one[0] * other[0] + one[1] * other[1]
-
-
-def _times(one: Pair, factor: Number) -> Pair:
-    return one[0] * factor, one[1] * factor
-
-
-def _sum(pairs: list[Pair]) -> Pair:
-    return sum(x for x, _ in pairs), sum(y for _, y in pairs)
 
 
 def _factor(scene: Scene, joint: str, law: CoulombFriction) -> Number:
@@ -418,18 +392,14 @@ def _factor(scene: Scene, joint: str, law: CoulombFriction) -> Number:
     return mpf(law.radius_m) * mp.sin(mp.atan(mpf(law.mu)))
 
 
-def _reactions(scene: Scene, found: ExactForces) -> dict[str, Pair]:
-    """What friction grows with, by joint; a normal force as (N, 0)."""
+def _reactions(scene: Scene, found: ExactForces) -> dict[str, mpc]:
+    """What friction grows with, by joint."""
     return {
-        joint: (found.sliders[joint][0], mpf(0))
+        joint: mpc(found.sliders[joint][0])
         if joint in scene.sliders
         else list(found.pins[joint].values())[1]
         for joint in scene.friction
     }
-
-
-def _less(one: Mapping[str, Pair], other: Mapping[str, Pair]) -> dict[str, Pair]:
-    return {n: (one[n][0] - other[n][0], one[n][1] - other[n][1]) for n in one}
 
 
 def _rate(scene: Scene, joint: str, solved: Solved) -> Number:
