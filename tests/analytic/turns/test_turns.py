@@ -26,15 +26,6 @@ from tests.analytic.change_points.test_crossing import LEVER, LOCOMOTIVE, fourba
 from tests.worlds.strategies import Designed, examples, mechanisms
 from tests.worlds.tiers import slowly
 
-WHITWORTH = """
-name = "quick"
-source = "test"
-ground.points = {{ A = [0.0, 0.0], C = [0.0, -{apart!r}] }}
-links.crank = {{ bar = ["A", "B"], length_m = 0.2 }}
-links.lever = {{ bar = ["C", "E"], length_m = 0.35 }}
-sliders.B.on = "lever"
-driver = {{ link = "crank", speed_rad_s = 10.0 }}
-"""
 PERIOD = math.tau / 10.0
 """Of the crank above [s]."""
 
@@ -42,7 +33,10 @@ PERIOD = math.tau / 10.0
 def whitworth(apart: float) -> Scene:
     """A lever that turns all the faster past its dead point, the nearer the pivots' distance is to
     the crank's length."""
-    return parse_scene(WHITWORTH.format(apart=apart), "test")
+    scene = load_scene("slotted-lever")
+    crank = replace(scene.links["crank"], points={"A": (0.0, 0.0), "B": (0.2, 0.0)})
+    ground = {"A": (0.0, 0.0), "C": (0.0, -apart)}
+    return replace(scene, ground=ground, links={**scene.links, "crank": crank})
 
 
 def lever_at(apart: float, theta: Array) -> Array:
@@ -105,14 +99,9 @@ def test_shipped_scenes_turn_as_they_do_step_by_step(name: str) -> None:
     turns_as_step_by_step(load_scene(name), 2, 40, 5.0)
 
 
-LAWS: list[Law] = [
-    ConstantSpeed(0.3, -7.0),
-    ConstantSpeed(-50.0, 3.0),
-    Oscillating(0.2, 9.0, 2.0, 0.4),
-    Oscillating(2.0, -0.7, 5.0),
-    FromRest(1.0, -6.0, 1.3),
-    SpeedChange(0.5, 5.0, -8.0, 2.0, 0.5),
-]
+LAWS = [ConstantSpeed(0.3, -7.0), ConstantSpeed(-50.0, 3.0), Oscillating(0.2, 9.0, 2.0, 0.4)]
+LAWS += [Oscillating(2.0, -0.7, 5.0), FromRest(1.0, -6.0, 1.3)]
+LAWS += [SpeedChange(0.5, 5.0, -8.0, 2.0, 0.5)]
 
 
 @pytest.mark.parametrize("law", LAWS, ids=str)
@@ -202,20 +191,14 @@ def test_two_reachable_ranges_are_counted_each_for_itself() -> None:
     assert np.abs(np.diff(whole[:48])).max() < 0.5
 
 
-SHORT_ROD = """
-name = "narrow"
-source = "test"
-ground.points = {{ A = [0.0, 0.0], D = [{ground!r}, 0.0] }}
-driver = {{ link = "crank", speed_rad_s = 10.0, start_deg = {start_deg!r} }}
-branch.C = {branch}
-links.crank = {{ bar = ["A", "B"], length_m = 1.0 }}
-links.rocker = {{ bar = ["D", "C"], length_m = {rocker!r} }}
-sliders.C.on = "crank"
-"""
+BLOCK = replace(load_scene("slotted-lever").sliders["B"], name="C", point="C", on="crank")
 
 
 def short_rod(rocker: float, ground: float, branch: int, start_deg: float) -> Scene:
-    return parse_scene(SHORT_ROD.format(**locals()), "test")
+    """A rocker whose end slides along the crank."""
+    scene = four_bars.fourbar(1.0, 1.0, rocker, ground, branch, start_deg=start_deg)
+    links = {name: scene.links[name] for name in ("crank", "rocker")}
+    return replace(scene, links=links, sliders={"C": BLOCK})
 
 
 def narrow_ranges(count: int) -> Iterator[tuple[Callable[..., Scene], float, float]]:
@@ -266,26 +249,14 @@ def test_the_angle_at_time_0_is_the_one_nearest_to_zero(count: int) -> None:
         assert 0.0 < theta[4] - theta[0] < math.pi
 
 
-INFINITE = """
-name = "through-infinity"
-source = "test"
-ground.points = { A = [0.0, 0.0], D = [-0.1, 0.07] }
-links.lever = { bar = ["A", "E"], length_m = 0.25 }
-links.guide = { bar = ["D", "F"], length_m = 0.3 }
-sliders.sleeve = { point = "P", on = "lever" }
-sliders.P = { on = "ground", through_m = [0.15, 0.0], direction_deg = 90.0, mass_kg = 0.5 }
-sliders.ring = { point = "P", on = "guide" }
-driver.link = "lever"
-driver.law = "oscillating"
-driver.centre_deg = 20.0
-driver.amplitude_deg = 60.0
-driver.frequency_rad_s = 10.0
-"""
-
-
 def test_what_the_driver_cannot_come_by_does_not_count() -> None:
     """Two lines cross at infinity a quarter of a turn off, where a guide turns round at once."""
-    scene = parse_scene(INFINITE, "test")
+    scene, (start, swing) = load_scene("tangent"), np.radians([20.0, 60.0]).tolist()
+    guide = replace(scene.links["lever"], name="guide", points={"D": (0.0, 0.0), "F": (0.3, 0.0)})
+    ring = replace(scene.sliders["sleeve"], name="ring", on="guide")
+    more = {"links": {**scene.links, "guide": guide}, "sliders": {**scene.sliders, "ring": ring}}
+    driver = replace(scene.driver, law=Oscillating(start, swing, 10.0))
+    scene = replace(scene, ground={**scene.ground, "D": (-0.1, 0.07)}, driver=driver, **more)
     turns_as_step_by_step(scene, 8, 50, 4.0)
     time_s = np.linspace(0.0, scene.driver.law.period_s, 200)
     assert np.abs(sampled(scene, time_s)["guide"]).max() < math.pi
