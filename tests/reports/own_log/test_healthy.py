@@ -1,7 +1,8 @@
 """A stranger's log of a linkage that is right is within, in whatever dress it comes.
 
 The limit is 1e-3 rad, or of a length; what a dress takes away is less. The stranger's integration
-is a second opinion: it shares no line with ours, and agrees.
+is a second opinion: it shares no line with ours, and agrees. Of a log whose names say nothing, the
+map that is written is a form, and filled in it reads it.
 """
 
 from __future__ import annotations
@@ -19,9 +20,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+import crankcheck
 from analytic.kinematics import solve
 from models.array import Array
 from models.files import load_scene
+from reports.logs.map_file import read_map
 from tests.reports.own_log.conftest import Judge
 from tests.worlds import stranger
 from tests.worlds.fuzzing import ACTING
@@ -235,3 +238,76 @@ def test_copies_of_a_pin_come_together() -> None:
     motion = course(stranger.SIXBAR, np.linspace(0.0, 1.0, 101))
     for pin, bars in {"C": ("coupler", "rocker"), "F": ("rod", "lever")}.items():
         near(*(motion.point(pin, on=bar)[0] for bar in bars))
+
+
+TIME_S = np.linspace(0.0, 0.6, 301)
+ROCKER_DEG = np.degrees(solve(load_scene(PLAIN), TIME_S).links["rocker"].theta)
+TIMES, THING = "the column of the times", "of at least one column what it is of"
+FILLED = {"# of": 'of = "rocker"', "# kind": 'kind = "angle"', "# unit": 'unit = "deg"'}
+
+
+def two(times: str, angle: str) -> bytes:
+    rows = [f"{t!r},{a!r}" for t, a in zip(TIME_S.tolist(), ROCKER_DEG.tolist(), strict=True)]
+    return "\n".join([f"{times},{angle}", *rows, ""]).encode()
+
+
+def filled(form: str, times: str) -> str:
+    """The form with the column of times, and the angle of the rocker for what is left."""
+    form = form.replace(f'# column = "{times}"\n', f'column = "{times}"\n', 1)
+    if THING in form:
+        head, mark, rest = form.rpartition("# [[channel]]")
+        rest = rest.replace("# column", "column")
+        for key, line in FILLED.items():
+            rest = rest.replace(f'{key} = ""', line)
+        form = head + mark.removeprefix("# ") + rest
+    return form
+
+
+@pytest.mark.parametrize(
+    ("times", "angle", "lacks"),
+    [
+        ("time_s", "sensor 3", [THING]),
+        ("Zeit", "rocker_deg", [TIMES]),
+        ("Zeit", "sensor 3", [TIMES, THING]),
+        ("Zeit\\t", "the # '[3]'", [TIMES, THING]),
+    ],
+)
+def test_the_map_of_names_that_say_nothing_is_a_form_that_reads_the_log(
+    times: str, angle: str, lacks: list[str], judge: Judge, tmp_path: Path
+) -> None:
+    path, text = tmp_path / "form.toml", two(times, angle)
+    told = " ".join(judge(PLAIN, text, "--write-map", path, target=()).output.split())
+    form = path.read_text(encoding="utf-8")
+    for one in (TIMES, THING):
+        assert (one in told) == (one in form) == (one in lacks)
+    read_map(path)
+    judge(PLAIN, text, mapped=filled(form, times.replace("\\", "\\\\")))
+
+
+def test_what_a_map_says_already_stays(judge: Judge, tmp_path: Path) -> None:
+    path = tmp_path / "form.toml"
+    told = '[[channel]]\ncolumn = "sensor 3"\nof = "rocker"\nkind = "angle"\nunit = "deg"\n'
+    told += 'sign = -1\noffset = 0.5\nwrapped = true\nrelative_to = "coupler"'
+    judge(PLAIN, two("Zeit", "sensor 3"), "--write-map", path, mapped=told)
+    assert told in path.read_text()
+
+
+@pytest.mark.parametrize(
+    ("text", "mapped"),
+    [
+        (two("Zeit", "sensor 3"), '[[channel]]\ncolumn = "sensor 4"\nof = "rocker"'),
+        (two("Zeit", "sensor 3"), '[time]\ncolumn = "Zet"'),
+        (b"time_s,rocker_deg\n0,1\n0,2\n", ""),
+        (b"", ""),
+    ],
+)
+def test_another_fault_leaves_no_form(
+    text: bytes, mapped: str, judge: Judge, tmp_path: Path
+) -> None:
+    judge(PLAIN, text, "--write-map", tmp_path / "form.toml", mapped=mapped, code=2)
+    assert not (tmp_path / "form.toml").exists()
+
+
+def test_in_python_the_cure_is_an_argument() -> None:
+    with pytest.raises(crankcheck.CrankcheckError, match="in Python: the argument map"):
+        crankcheck.judge(PLAIN, {"t": TIME_S, "sensor 3": ROCKER_DEG}, target=1e-3)
