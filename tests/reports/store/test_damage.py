@@ -103,11 +103,10 @@ def test_what_can_be_read_is_reported_and_the_rest_is_named(
     found, wanted = read_store(store).cells, read_store(whole).cells
     assert len(found) == case.cells
     columns = ["scene", "variant", "profile", "gated", "version", "settings", "place_pure"]
-    pd.testing.assert_frame_equal(
-        found.set_index("key").sort_index()[columns],
-        wanted.set_index("key").loc[sorted(found.key), columns],
-        check_exact=True,
+    left, right = (
+        each.set_index("key").loc[sorted(found.key), columns] for each in (found, wanted)
     )
+    pd.testing.assert_frame_equal(left, right, check_exact=True)
 
 
 @pytest.mark.parametrize("name", cases())
