@@ -22,7 +22,7 @@ from models.files import load_scene, shipped
 from models.mjcf import build
 from models.mjcf_options import Writing
 from models.scene import Scene
-from models.tree import UNEQUAL, plan
+from models.tree import plan
 from tests.worlds.runs import start_of
 
 
@@ -117,20 +117,6 @@ def test_a_massless_block_is_a_slide_and_a_hinge_of_the_link_it_holds() -> None:
     assert plan(scene, start_of(scene)).closures[0].point == "B"
 
 
-@pytest.mark.parametrize(("name", "closed"), [
-    ("fourbar-lecture-1", ["C"]),
-    ("slider-crank-offset", ["C"]),
-    ("slotted-lever", ["C"]),
-    ("scotch-yoke", ["B"]),
-    ("tangent", ["P"]),
-    ("sixbar-watt", ["C", "F"]),
-    ("sixbar-stephenson", ["C", "F"]),
-])  # fmt: skip
-def test_loops_close_where_the_documented_rule_says(name: str, closed: list[str]) -> None:
-    scene = load_scene(name)
-    assert [c.point for c in plan(scene, start_of(scene)).closures] == closed
-
-
 @pytest.mark.parametrize("close", ["B", "C", "D"])
 def test_the_loop_of_a_fourbar_closes_at_any_pin_but_the_drivers(close: str) -> None:
     scene = load_scene("fourbar-lecture-1")
@@ -141,39 +127,10 @@ def test_the_loop_of_a_fourbar_closes_at_any_pin_but_the_drivers(close: str) -> 
     assert apart(model, data) < 1e-12
 
 
-def test_three_links_at_one_pin_are_tied_twice() -> None:
-    scene = load_scene("sixbar-watt")
-    rocker, rod = scene.links["rocker"], scene.links["rod"]
-    at_c = {("C" if p == "E" else p): xy for p, xy in rod.points.items()}
-    plain = {p: xy for p, xy in rocker.points.items() if p != "E"}
-    links = {
-        **scene.links,
-        "rocker": replace(rocker, points=plain),
-        "rod": replace(rod, points=at_c),
-    }
-    pivot = {"G": (0.5, 0.2)}
-    scene = replace(scene, links=links, ground={**scene.ground, **pivot})
-    tree = plan(scene, start_of(scene))
-    ties = [c for c in tree.closures if c.point == "C"]
-    in_tree = [f for limb in tree.limbs for f in limb.freedoms if f.name.endswith(".C")]
-    assert len(ties) + len(in_tree) == 2
-    assert len(tree.closures) == 2
-    model, data = assembled(build(scene, start_of(scene)))
-    assert apart(model, data) < 1e-12
-
-
 def test_the_same_scene_gives_the_same_text() -> None:
     text = built("shaper")
     assert text == built("shaper")
     assert text.isascii()
-
-
-def test_numbers_read_back_as_the_same_doubles() -> None:
-    scene = load_scene("fourbar-lecture-1")
-    state = start_of(scene, 0.1)
-    text = build(scene, state)
-    found = re.search(r'name="rocker.D"[^>]* ref="([^"]+)"', text)
-    assert float(found.group(1)) == state.theta["rocker"]
 
 
 def test_a_law_other_than_constant_speed_brings_a_motor_and_a_servo_a_velocity_actuator() -> None:
@@ -264,23 +221,25 @@ def closed(scene: Scene, *close: str) -> list[str]:
     return [closure.point for closure in plan(scene, start_of(scene), close).closures]
 
 
-@pytest.mark.parametrize(("name", "masses", "point"), [
-    ("slider-crank-offset", {}, "C"),
-    ("slider-crank-offset", {"rod": 1e3}, "B"),  # between the crank, which is driven, and it
-    ("slider-crank-offset", {"C": 1e3}, "B"),
-    ("slider-crank-offset", {"crank": 1e3}, "B"),
-    ("fourbar-lecture-1", {"rocker": 1e3}, "D"),
-    ("fourbar-lecture-1", {"coupler": 1e3}, "B"),
-    ("fourbar-lecture-1", {"coupler": 1e3, "rocker": 1e4}, "D"),
+@pytest.mark.parametrize(("name", "masses", "points"), [
+    ("slider-crank-offset", {}, ["C"]),
+    ("slotted-lever", {}, ["C"]),
+    ("scotch-yoke", {}, ["B"]),
+    ("tangent", {}, ["P"]),
+    ("fourbar-lecture-1", {}, ["C"]),
+    ("sixbar-watt", {}, ["C", "F"]),
+    ("sixbar-stephenson", {}, ["C", "F"]),
+    ("slider-crank-offset", {"rod": 1e3}, ["B"]),  # between the crank, which is driven, and it
+    ("slider-crank-offset", {"C": 1e3}, ["B"]),
+    ("slider-crank-offset", {"crank": 1e3}, ["B"]),
+    ("fourbar-lecture-1", {"rocker": 1e3}, ["D"]),
+    ("fourbar-lecture-1", {"coupler": 1e3}, ["B"]),
+    ("fourbar-lecture-1", {"coupler": 1e3, "rocker": 1e4}, ["D"]),
 ])  # fmt: skip
-def test_a_loop_closes_where_its_bodies_are_heaviest(
-    name: str, masses: dict[str, float], point: str
+def test_loops_close_where_the_documented_rule_says_and_at_the_heaviest_bodies(
+    name: str, masses: dict[str, float], points: list[str]
 ) -> None:
-    assert closed(weighed(name, **masses)) == [point]
-
-
-def test_a_pin_that_is_asked_for_is_closed_whatever_the_masses() -> None:
-    assert closed(weighed("slider-crank-offset", rod=1e3), "C") == ["C"]
+    assert closed(weighed(name, **masses)) == points
 
 
 @pytest.mark.parametrize("name", sorted(shipped()))
@@ -291,12 +250,12 @@ def test_no_shipped_scene_is_closed_by_its_masses(
     before = plan(scene, start_of(scene))
     monkeypatch.setattr(tree, "UNEQUAL", math.inf)
     assert plan(scene, start_of(scene)) == before
-    assert math.inf > UNEQUAL
 
 
 def test_the_other_closings_are_each_another_and_none_is_the_default() -> None:
     fourbar, sixbar = load_scene("fourbar-lecture-1"), load_scene("sixbar-watt")
     assert set(closings(fourbar, start_of(fourbar))) == {("B",), ("D",)}
+    assert closed(weighed("slider-crank-offset", rod=1e3), "C") == ["C"]  # whatever the masses
     found = [frozenset(closed(sixbar, *close)) for close in closings(sixbar, start_of(sixbar))]
     assert len(set(found)) == len(found) > 2
     assert frozenset(closed(sixbar)) not in found

@@ -104,17 +104,6 @@ def test_speed_and_acceleration_along_a_moving_line_are_rates_of_the_displacemen
         np.testing.assert_allclose(rate, by_hand, atol=1e-4 * np.abs(rate).max())
 
 
-def test_an_injected_error_comes_out_as_it_went_in(fake_engine: ModuleType) -> None:
-    scene = load_scene("fourbar-lecture-1")
-    poses = exact(scene, fake_engine)
-    wrong = fake_engine.turned_link("rocker", lambda t: 1e-3 * t)(poses)
-    off = motion(scene, wrong).links["rocker"].theta - motion(scene, poses).links["rocker"].theta
-    np.testing.assert_allclose(off, 1e-3 * poses.time_s, atol=1e-15)
-    np.testing.assert_allclose(
-        gaps(scene, wrong)["C"], 0.2e-3 * poses.time_s, rtol=1e-6, atol=1e-15
-    )
-
-
 def lagging(scene: Scene, fake_engine: ModuleType, lag_s: float) -> Poses:
     """Positions and accelerations of each time with the velocities of ``lag_s`` later."""
     now = exact(scene, fake_engine)

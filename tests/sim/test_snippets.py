@@ -30,20 +30,11 @@ STEPS = (
 """Steps per turn, and of how many texts one is tried."""
 ENGINES = offering("snippet")
 OTHER: dict[str, SettingValue] = {
-    "integrator": "RK4",
-    "solver": "CG",
-    "islands": "disable",
-    "contact": "disable",
-    "close": "C",
-    "servo_integrator": "implicit",
-    "lines": "exact",
-    "springs": "forces",
-    "free_paths": "arcs",
-    "jacobian": "each-step",
-    "adaptive_step": "disable",
-    "linear_solver": "EigenDense",
+    "integrator": "RK4", "solver": "CG", "islands": "disable", "contact": "disable", "close": "C",
+    "servo_integrator": "implicit", "lines": "exact", "springs": "forces", "free_paths": "arcs",
+    "jacobian": "each-step", "adaptive_step": "disable", "linear_solver": "EigenDense",
     "ignore_singular": "enable",
-}
+}  # fmt: skip
 """Other words than the engines' defaults; for numbers half of them and one more."""
 
 

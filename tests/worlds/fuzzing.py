@@ -37,24 +37,14 @@ module that is imported for the first time."""
 TABLES = {"out/errors.parquet", "out/verify.csv", "out/verify.json", "out/verify.junit.xml"}
 VERIFY = "verify FILE --turns 0.2 -o OUT"
 COMMANDS = (
-    *[VERIFY] * 8,
-    "verify FILE --turns 0.2 -o OUT --drive servo",
+    *[VERIFY] * 8, "verify FILE --turns 0.2 -o OUT --drive servo",
     "verify FILE --steps-per-turn 1e15 --turns 1e-13 -o OUT",
-    "verify FILE --steps-per-turn 8 --turns 10 --no-convergence",
-    "verify FILE --dt 1e-300",
-    "verify FILE --dt 1e300 --turns 1e300",
-    "solve FILE",
-    "solve FILE --at-deg 90",
-    "solve FILE --at-deg 1e300",
-    "solve FILE --turns 1e300",
-    "solve FILE --turns 3 --steps-per-turn 100 -o OUT.csv",
-    "solve FILE --duration 0.05 --steps 4",
-    "solve FILE --duration 1e300",
-    "solve FILE -o OUT.xlsx",
-    "export FILE",
-    "export FILE --close C -o OUT.xml",
-    "view FILE -o OUT.png",
-)
+    "verify FILE --steps-per-turn 8 --turns 10 --no-convergence", "verify FILE --dt 1e-300",
+    "verify FILE --dt 1e300 --turns 1e300", "solve FILE", "solve FILE --at-deg 90",
+    "solve FILE --at-deg 1e300", "solve FILE --turns 1e300",
+    "solve FILE --turns 3 --steps-per-turn 100 -o OUT.csv", "solve FILE --duration 0.05 --steps 4",
+    "solve FILE --duration 1e300", "solve FILE -o OUT.xlsx", "export FILE",
+    "export FILE --close C -o OUT.xml", "view FILE -o OUT.png")  # fmt: skip
 """What files are tried with."""
 _SHORT = "--turns 0.12 --no-convergence --profile tuned -o OUT"
 LET_GO = (

@@ -12,13 +12,9 @@ from reports.workers.isolated import Limits
 
 Answer = TypeVar("Answer")
 STARTED_IN = (
-    "advise.prices",
-    "stability.running",
-    "sweep.running",
-    "tune.attempt",
-    "tune.timing",
+    "advise.prices", "stability.running", "sweep.running", "tune.attempt", "tune.timing",
     "workers.scheduler",
-)
+)  # fmt: skip
 """The modules that start children."""
 
 

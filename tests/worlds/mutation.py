@@ -171,18 +171,9 @@ def _huge(rng: Rng, text: str) -> str:
 
 
 MUTATIONS: dict[Callable[[Rng, str], str], float] = {
-    _number: 15.0,
-    _scaled: 2.0,
-    _word: 4.0,
-    _drop: 2.0,
-    _again: 1.0,
-    _swap: 1.0,
-    _insert: 2.0,
-    _into_table: 2.0,
-    _splice: 1.0,
-    _cut: 1.0,
-    _huge: 0.5,
-}
+    _number: 15.0, _scaled: 2.0, _word: 4.0, _drop: 2.0, _again: 1.0, _swap: 1.0, _insert: 2.0,
+    _into_table: 2.0, _splice: 1.0, _cut: 1.0, _huge: 0.5,
+}  # fmt: skip
 """What is done to a text, and how often."""
 
 

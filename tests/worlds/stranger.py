@@ -68,17 +68,11 @@ class Linkage:
 FOURBAR = Linkage(
     ground={"A": (0.0, 0.0), "D": (0.3, 0.0)},
     bars={
-        "crank": {"A": (0.0, 0.0), "B": (0.1, 0.0)},
-        "coupler": {"B": (0.0, 0.0), "C": (0.25, 0.0)},
-        "rocker": {"D": (0.0, 0.0), "C": (0.2, 0.0)},
-    },
-    blocks={},
-    crank="crank",
-    speed_rad_s=10.0,
-    start_deg=90.0,
+        "crank": {"A": (0.0, 0.0), "B": (0.1, 0.0)}, "coupler": {"B": (0.0, 0.0), "C": (0.25, 0.0)},
+        "rocker": {"D": (0.0, 0.0), "C": (0.2, 0.0)}},
+    blocks={}, crank="crank", speed_rad_s=10.0, start_deg=90.0,
     guess={"crank": (0, 0, 90), "coupler": (0, 0.1, 20), "rocker": (0.3, 0, 110)},
-    other={"crank": (0, 0, 90), "coupler": (0, 0.1, -60), "rocker": (0.3, 0, 220)},
-)
+    other={"crank": (0, 0, 90), "coupler": (0, 0.1, -60), "rocker": (0.3, 0, 220)})  # fmt: skip
 SLIDER_CRANK = Linkage(
     ground={"A": (0.0, 0.0)},
     bars={"crank": {"A": (0.0, 0.0), "B": (0.1, 0.0)}, "rod": {"B": (0.0, 0.0), "C": (0.3, 0.0)}},
@@ -92,18 +86,11 @@ SLIDER_CRANK = Linkage(
 SIXBAR = Linkage(
     ground={**FOURBAR.ground, "G": (0.65, 0.0)},
     bars={
-        **FOURBAR.bars,
-        "rocker": {"D": (0.0, 0.0), "C": (0.2, 0.0), "E": (0.12, -0.12)},
-        "rod": {"E": (0.0, 0.0), "F": (0.3, 0.0)},
-        "lever": {"G": (0.0, 0.0), "F": (0.25, 0.0)},
-    },
-    blocks={},
-    crank="crank",
-    speed_rad_s=10.0,
-    start_deg=90.0,
+        **FOURBAR.bars, "rocker": {"D": (0.0, 0.0), "C": (0.2, 0.0), "E": (0.12, -0.12)},
+        "rod": {"E": (0.0, 0.0), "F": (0.3, 0.0)}, "lever": {"G": (0.0, 0.0), "F": (0.25, 0.0)}},
+    blocks={}, crank="crank", speed_rad_s=10.0, start_deg=90.0,
     guess={**FOURBAR.guess, "rod": (0.37, 0.15, 20), "lever": (0.65, 0, 90)},
-    other={**FOURBAR.guess, "rod": (0.37, 0.15, -70), "lever": (0.65, 0, 210)},
-)
+    other={**FOURBAR.guess, "rod": (0.37, 0.15, -70), "lever": (0.65, 0, 210)})  # fmt: skip
 LINKAGES = {
     "fourbar-lecture-1": FOURBAR,
     "slider-crank-central": SLIDER_CRANK,

@@ -228,15 +228,10 @@ def named(*columns: tuple[str, str, str, float]) -> list[Column]:
 
 
 OUR_OWN = named(
-    ("crank_theta_rad", "crank", "angle", 1.0),
-    ("crank_omega_rad_s", "crank", "omega", 1.0),
-    ("rocker_theta_rad", "rocker", "angle", 1.0),
-    ("rocker_omega_rad_s", "rocker", "omega", 1.0),
-    ("rocker_alpha_rad_s2", "rocker", "alpha", 1.0),
-    ("C_x_m", "C", "x", 1.0),
-    ("C_vx_m_s", "C", "vx", 1.0),
-    ("C_ay_m_s2", "C", "ay", 1.0),
-)
+    ("crank_theta_rad", "crank", "angle", 1.0), ("crank_omega_rad_s", "crank", "omega", 1.0),
+    ("rocker_theta_rad", "rocker", "angle", 1.0), ("rocker_omega_rad_s", "rocker", "omega", 1.0),
+    ("rocker_alpha_rad_s2", "rocker", "alpha", 1.0), ("C_x_m", "C", "x", 1.0),
+    ("C_vx_m_s", "C", "vx", 1.0), ("C_ay_m_s2", "C", "ay", 1.0))  # fmt: skip
 DOTTED = named(
     ("crank.theta_rad", "crank", "angle", 1.0),
     ("rocker.theta_rad", "rocker", "angle", 1.0),

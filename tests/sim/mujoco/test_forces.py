@@ -37,12 +37,9 @@ from tests.worlds.tiers import few
 
 STEPS = 720
 WITHIN: Mapping[str, float] = {
-    "scotch-yoke": 4e-4,
-    "shaper": 8e-4,
-    "fourbar-double-crank": 3e-4,
-    "slider-crank-offset": 1.2e-4,
-    "slider-crank-central": 1.2e-4,
-}
+    "scotch-yoke": 4e-4, "shaper": 8e-4, "fourbar-double-crank": 3e-4,
+    "slider-crank-offset": 1.2e-4, "slider-crank-central": 1.2e-4,
+}  # fmt: skip
 """Of the largest reaction, and torque of the largest torque, where it is not 1e-4."""
 
 KINDS = ("sixbar-watt", "slider-crank-excel-210", "shaper", "scotch-yoke", "slotted-lever")

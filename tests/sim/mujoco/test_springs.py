@@ -219,19 +219,13 @@ def rod(name: str, first: str, second: str) -> Link:
 
 
 SCENE = Scene(
-    "double-pendulum",
-    "test",
-    {"A": (0.0, 0.0)},
-    {"upper": rod("upper", "A", "B"), "lower": rod("lower", "B", "C")},
-    {},
-    Driver("upper", Released(START[0], START[2], END_S)),
-    gravity_m_s2=(0.0, -9.81),
+    "double-pendulum", "test", {"A": (0.0, 0.0)},
+    {"upper": rod("upper", "A", "B"), "lower": rod("lower", "B", "C")}, {},
+    Driver("upper", Released(START[0], START[2], END_S)), gravity_m_s2=(0.0, -9.81),
     springs={
         "knee": PinSpring("knee", 3.0, 0.1, 0.2, "B", ("upper", "lower")),
-        "line": LineSpring("line", 5.0, 0.1, 0.5, ("A", "C")),
-    },
-    loads={"pulse": Load("pulse", "lower", None, PULSE)},
-)
+        "line": LineSpring("line", 5.0, 0.1, 0.5, ("A", "C"))},
+    loads={"pulse": Load("pulse", "lower", None, PULSE)})  # fmt: skip
 
 
 def rates(time_s: float, y: Array) -> Array:
