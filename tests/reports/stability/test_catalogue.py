@@ -23,7 +23,7 @@ from reports.stability.catalogue.change_points import TRIAD_CRANK_M
 from reports.stability.error_series import nearest
 from reports.stability.grading import graded
 from reports.stability.matrix import Graded
-from tests.worlds.command_line import crank, crank_alone, flat, refused
+from tests.worlds.command_line import crank_alone, flat
 from tests.worlds.tiers import few, slow
 
 DRIVEN = [
@@ -170,17 +170,6 @@ def test_how_near_a_lever_whose_block_comes_to_its_pivot_is_said_to_be(
     trial = CATALOGUE[case].trial(value)
     motion = solve(trial.scene, np.arange(1441) * trial.dt_s, bound=False)
     assert nearest(trial.scene, motion) == sine
-
-
-@pytest.mark.parametrize(
-    ("words", "says"),
-    [
-        (["coarse-step", "--elastic"], "no elastic link in it; those are elastic-thick"),
-        (["--free", "--elastic"], "no case is of both"),
-    ],
-)
-def test_what_is_not_elastic_is_refused(words: list[str], says: str) -> None:
-    refused(crank("stability", *words), says)
 
 
 def test_every_elastic_case_gives_segments_and_few_samples() -> None:

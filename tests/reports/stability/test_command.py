@@ -113,6 +113,11 @@ def test_a_value_that_is_held_ends_with_0_and_one_that_is_not_with_1() -> None:
         (["stability", "wrong-branch", "--at", "5"], ["has the one value -1"]),
         (["stability", "coarse-step", "--at", "5"], ["at least 8"]),
         ([*LINE, "--at", "1e-3", "-o", "x"], ["--at and -o"]),
+        (
+            ["stability", "coarse-step", "--elastic"],
+            ["no elastic link in it; those are elastic-th"],
+        ),
+        (["stability", "--free", "--elastic"], ["no case is of both"]),
         (["stability", "--engine", "mujocco"], ["did you mean mujoco"]),
         (["stability", "--profile", "tund"], ["did you mean tuned"]),
         ([*LINE, "-o", "/dev/null/x"], ["-o /dev/null/x"]),
