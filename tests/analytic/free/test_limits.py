@@ -22,8 +22,13 @@ from models.files import load_scene
 from models.hard import fourbar as triple_rocker
 from models.released import let_go
 from models.scene import Scene
-from tests.analytic.free.mechanisms import fourbar, past_limits, released, slider_crank
-from tests.analytic.free.second_method import newton_euler
+from tests.analytic.free.mechanisms import (
+    fourbar,
+    newton_euler,
+    past_limits,
+    released,
+    slider_crank,
+)
 from tests.analytic.multibody.scenes import by_bodies
 from tests.analytic.multibody.scenes import scene as parsed
 from tests.worlds.loading import loaded_mechanism

@@ -32,8 +32,13 @@ from models.staircase import Staircase
 from models.start import Start
 from models.tabulated import Tabulated
 from models.waves import Pulse
-from tests.analytic.free.mechanisms import fourbar, past_limits, released, slider_crank
-from tests.analytic.free.second_method import driver_by_steps
+from tests.analytic.free.mechanisms import (
+    driver_by_steps,
+    fourbar,
+    past_limits,
+    released,
+    slider_crank,
+)
 from tests.analytic.multibody.scenes import DOUBLE_PENDULUM, by_bodies
 from tests.analytic.multibody.scenes import scene as parsed
 from tests.worlds.let_go import EVERYTHING

@@ -22,7 +22,6 @@ from analytic.free.period import period
 from analytic.free.release import release
 from analytic.free.window_chain import Amplitude, ChainMotion
 from analytic.kinematics import solve_driven
-from analytic.multibody.release_multibody import release_multibody
 from analytic.prepared import Prepared
 from analytic.structure.mobility import analyse
 from models.array import Array
@@ -33,9 +32,15 @@ from models.loads import Load
 from models.poses import centre_of, mass_of
 from models.scene import Scene
 from models.window_chain import UPRIGHT, Chain
-from tests.analytic.free.mechanisms import fourbar, past_limits, released, slider_crank
-from tests.analytic.free.second_method import driver_by_steps, newton_euler
-from tests.analytic.multibody.scenes import scene
+from tests.analytic.free.mechanisms import (
+    driver_by_steps,
+    fourbar,
+    newton_euler,
+    past_limits,
+    released,
+    slider_crank,
+)
+from tests.analytic.multibody.scenes import by_bodies, scene
 from tests.worlds.tiers import few, slowly
 
 SHORT_S = {"engine-flywheel": 0.004, "squeezer": 0.03, "fourbar-double-rocker-swing": 0.35}
@@ -93,8 +98,7 @@ def test_the_multibody_form_agrees_with_every_link(name: str, until_s: float) ->
     if name == "engine-flywheel":
         until_s = min(until_s, load_scene(name).driver.law.period_s)
     free, time_s = steady(name, until_s)
-    near = free.at(np.zeros(1)).state()
-    found = release_multibody(free.scene, until_s, near=near).at(time_s)
+    found = by_bodies(free.scene, until_s).at(time_s)
     wanted, grown = free.at(time_s), free.sensitivity(time_s)
     for link, motion in found.links.items():
         off = np.abs(motion.theta - wanted.links[link].theta)
