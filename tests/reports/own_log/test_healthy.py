@@ -60,11 +60,6 @@ def test_the_plain_log_of_every_linkage_is_within(scene: str, judge: Judge) -> N
     assert "WITHIN TOLERANCE" in result.output
 
 
-def test_with_a_step_limits_follow_from_it(judge: Judge) -> None:
-    log = Dress().text(logged(FOURBAR, even(FOURBAR), COLUMNS[PLAIN]))
-    judge(PLAIN, log, target=("--step", "0.001"))
-
-
 def _as_parquet(log: Log, path: Path) -> None:
     pq.write_table(pa.table(dict(log)), path)
 

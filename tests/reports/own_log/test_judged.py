@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import crankcheck
@@ -14,11 +15,14 @@ from analytic.kinematics import solve
 from crankcheck import CrankcheckError, LogVerdict
 from models.array import Array
 from models.files import load_scene
+from models.scene import Scene
+from reports.describe.frame import motion_frame
+from reports.describe.with_forces import with_forces
 from reports.judge.rules import RULES
 from reports.own_log import drives
 from reports.own_log.drives import moved
 from reports.own_log.rows import log_rows
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import few, slowly
 
 SCENE = load_scene("fourbar-lecture-1")
 TIME_S = np.linspace(0.0, 2.0, 601)
@@ -311,3 +315,40 @@ def test_a_point_whose_coordinates_are_off_by_too_much_only_together_has_its_cau
     one = judged({"C.x_mm": 1e3 * slow[:, 0], "C.y_mm": 1e3 * slow[:, 1]})
     assert one.verdict == "out"
     assert [cause.name for cause in one.causes] == ["drift"]
+
+
+def written(scene: Scene, kept: str = "") -> pd.DataFrame:
+    """A turn with its forces, as we write it; of its columns those with times, and those whose
+    names end so."""
+    time_s = np.linspace(0.0, scene.driver.law.period_s, 200)
+    frame = motion_frame(with_forces(scene, solve(scene, time_s)))
+    return frame[[c for c in frame if c == "time_s" or c.endswith(kept)]]
+
+
+WHOLE = slowly("", reason="a second, with the places, rates and forces of all")
+
+
+@pytest.mark.parametrize("kept", ["_theta_rad", WHOLE])
+def test_a_log_of_another_assembly_of_a_triad_is_told_by_its_number(kept: str) -> None:
+    scene = load_scene("triad-platform")
+    log = written(replace(scene, branch={"plate": 2}), kept)
+    one = crankcheck.judge(scene, log, target=1e-6)
+    assert one.verdict == "out"
+    (cause,) = one.causes
+    assert "the log is of another assembly at plate" in cause.text
+    assert "plate = 2 under [branch]" in cause.text
+
+
+OTHERS = ["slider-crank-by-piston", "fourbar-by-coupler", "triad-slider"]
+
+
+@pytest.mark.parametrize("name", few(OTHERS, OTHERS[:1], "other joints that drive, the same log"))
+def test_a_log_of_another_driver_is_within_with_its_forces(name: str) -> None:
+    log, asked = written(load_scene(name)), {"forces": True, "require": "torque"}
+    assert crankcheck.judge(name, log, target=1e-6, **asked).verdict == "within"  # type: ignore[call-overload]
+
+
+@pytest.mark.parametrize("drive", ["fitted", "logged"])
+def test_a_drive_is_fitted_to_cranks_alone(drive: str) -> None:
+    with pytest.raises(CrankcheckError, match="this scene's is slider C"):
+        crankcheck.judge(OTHERS[0], written(load_scene(OTHERS[0])), target=1e-6, drive=drive)
