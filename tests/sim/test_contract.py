@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from types import ModuleType
 
@@ -16,12 +16,13 @@ from reports.contract.clauses import CLAUSES
 from reports.contract.ruling import SCENES, put_to
 from reports.contract.subject import Subject, numbers
 from sim.check import refuse_other_model
-from sim.engine import BodyPose, Engine
+from sim.engine import BodyPose, Engine, Facts
 from sim.registry import ENGINES, engine
-from sim.settings import resolved
+from tests.worlds.runs import opened, start_of
 from tests.worlds.tiers import slowly
 
 DT_S = 1e-3
+FOURBAR = load_scene("fourbar-lecture-1")
 NOT_OF_FAKES = {
     "EC52": "placing is solved",
     "EC55": "told to refuse drive free",
@@ -91,10 +92,9 @@ def declares(adapter: Engine, clause: str) -> bool:
 
 def test_two_stretches_equal_one_for_a_solver_that_has_not_converged() -> None:
     """Such a solver goes on from the last step's answer, and has to over the seam as well."""
-    scene, mujoco = load_scene("fourbar-lecture-1"), engine("mujoco")
-    state = solve(scene, np.array([0.0])).state(0)
-    rough = resolved(mujoco.profiles["as-shipped"], {"solver": "CG", "iterations": 1})
-    whole, parts = (mujoco.open(scene, state, rough, DT_S, "prescribed") for _ in range(2))
+    given = {"profile": "as-shipped", "dt_s": DT_S}
+    rough = {"solver": "CG", "iterations": 1}
+    whole, parts = (opened(FOURBAR, "mujoco", rough, **given) for _ in range(2))
     one = whole.record(500, 1)
     parts.record(200, 1)
     np.testing.assert_array_equal(numbers(parts.record(300, 1).poses), numbers(one.poses)[200:])
@@ -117,27 +117,21 @@ def test_two_stretches_equal_one_for_a_solver_that_has_not_converged() -> None:
     (lambda f: with_rocker(f, lambda b: replace(b, theta=b.theta * np.nan)), "rocker stands"),
 ])  # fmt: skip
 def test_a_model_that_is_not_the_scene_is_refused_by_name(
-    adapter: Engine, wrong: object, named: str
+    adapter: Engine, wrong: Callable[[Facts], Facts], named: str
 ) -> None:
-    scene = load_scene("fourbar-lecture-1")
-    state = solve(scene, np.array([0.0])).state(0)
-    facts = wrong(Subject(adapter, scene).opened().facts())  # type: ignore[operator]  # a lambda above
+    facts = wrong(Subject(adapter, FOURBAR).opened().facts())
     with pytest.raises(EngineError, match=named):
-        refuse_other_model(scene, state, facts, DT_S, "prescribed")
+        refuse_other_model(FOURBAR, start_of(FOURBAR), facts, DT_S, "prescribed")
 
 
-def with_rocker(facts: object, change: object) -> object:
+def with_rocker(facts: Facts, change: Callable[[BodyPose], BodyPose]) -> Facts:
     """The facts with another rocker at the start."""
-    start = facts.start  # type: ignore[attr-defined]  # Facts
-    body: BodyPose = change(start.bodies["rocker"])  # type: ignore[operator]  # a lambda
-    changed = replace(start, bodies={**start.bodies, "rocker": body})
-    return replace(facts, start=changed)  # type: ignore[type-var]  # Facts
+    bodies = {**facts.start.bodies, "rocker": change(facts.start.bodies["rocker"])}
+    return replace(facts, start=replace(facts.start, bodies=bodies))
 
 
 def test_a_model_with_open_loops_is_refused(adapter: Engine) -> None:
-    scene = load_scene("fourbar-lecture-1")
-    state = solve(scene, np.array([0.0])).state(0)
-    facts = Subject(adapter, scene).opened().facts()
+    facts = Subject(adapter, FOURBAR).opened().facts()
     ajar = with_rocker(facts, lambda b: replace(b, origin=b.origin + 1e-11))
     with pytest.raises(EngineError, match=r"[CD] is open by 1\.4\de-11 m"):
-        refuse_other_model(scene, state, ajar, DT_S, "prescribed")  # type: ignore[arg-type]
+        refuse_other_model(FOURBAR, start_of(FOURBAR), ajar, DT_S, "prescribed")

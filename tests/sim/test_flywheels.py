@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from analytic.kinematics import solve
 from analytic.regulation.cycle_scene import cycle_scene
 from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
 from analytic.regulation.steady_cycle import SteadyCycle
@@ -18,7 +17,7 @@ from models.files import load_scene
 from models.loads import Load
 from models.released import Released
 from models.scene import Driver, Scene
-from sim.run import run
+from tests.worlds.runs import ran
 from tests.worlds.tiers import slow, slowly
 
 DELTA = 0.02
@@ -41,10 +40,7 @@ def wanted(scene: Scene) -> WantedFlywheel:
 
 def measured(scene: Scene, engine: str, cycle: SteadyCycle, steps: int) -> list[Measured]:
     """The cycles of a scene that is let go in an engine, one after the other."""
-    period = scene.driver.law.period_s
-    state = solve(scene, np.zeros(1)).state()
-    logged = run(scene, state, engine, dt_s=period / steps, steps=steps, drive="free")
-    assert logged.status == "ok", logged.reason
+    logged = ran(scene, engine, per_turn=steps, drive="free")
     link = logged.motion.links[scene.driver.link]
     turned = np.abs(link.theta - link.theta[0])
     whole, found = cycle.machine.cycle_rad, []
@@ -96,14 +92,13 @@ def test_an_engine_settles_in_the_cycle_of_a_motor() -> None:
     scene = load_scene("compressor")
     motor = Load("motor", "crank", None, Polynomial((4500.0, -29.5)), "omega")
     law = Released(0.0, 150.0, 1.0)
-    scene = replace(
-        scene, loads={**scene.loads, "motor": motor}, driver=Driver(scene.driver.link, law)
-    )
+    driver, loads = Driver(scene.driver.link, law), {**scene.loads, "motor": motor}
+    scene = replace(scene, loads=loads, driver=driver)
     cycle = wanted(scene).cycle
     assert 0.0 < cycle.settling < 0.2
     started = cycle_scene(cycle, 5.05)
-    faster = replace(law, speed_rad_s=1.05 * started.driver.law.at(np.zeros(1))[1][0],
-                     duration_s=started.driver.law.period_s)  # fmt: skip
+    own = started.driver.law
+    faster = Released(law.start_rad, 1.05 * own.at(np.zeros(1))[1][0], own.period_s)
     started = replace(started, driver=replace(started.driver, law=faster))
     first, *_, last = measured(started, "mujoco", cycle, 8000)
     assert abs(first.delta / DELTA - 1.0) > 0.1

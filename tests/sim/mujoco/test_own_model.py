@@ -8,6 +8,7 @@ import itertools
 import shutil
 import subprocess
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
@@ -206,15 +207,8 @@ def test_the_program_patch_takes_it(form: str, off: bool, tmp_path: Path) -> Non
     text = own.patch(0.001, Advised(contacts_off=off))
     expected = wanted(own, 0.001, Advised(contacts_off=off))
     assert text.startswith("--- model.xml\n+++ model.xml\n@@ ")
-    done = subprocess.run(
-        ["patch", "--binary", "model.xml"],
-        input=text.encode(),
-        cwd=tmp_path,
-        capture_output=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stdout
-    assert b"fuzz" not in done.stdout
+    command = ["patch", "--binary", "model.xml"]
+    assert b"fuzz" not in subprocess.check_output(command, input=text.encode(), cwd=tmp_path)
     assert_alike(mujoco.MjModel.from_xml_path(str(own.path)), expected)
     assert ("\r\n" in FORMS[form]) == (b"\r\n" in own.path.read_bytes())
 
@@ -224,13 +218,10 @@ def test_git_takes_it_and_another_file_is_refused(tmp_path: Path) -> None:
     own = read(tmp_path / "model.xml", PLAIN)
     text = own.patch(0.001, Advised())
     expected = wanted(own, 0.001, Advised())
-    apply = ["git", "apply", "-"]
-    subprocess.run(apply, input=text.encode(), cwd=tmp_path, check=True, capture_output=True)
+    apply = partial(subprocess.run, ["git", "apply", "-"], input=text.encode(), cwd=tmp_path)
+    assert apply(capture_output=True).returncode == 0
     assert_alike(mujoco.MjModel.from_xml_path(str(own.path)), expected)
-    again = subprocess.run(
-        apply, input=text.encode(), cwd=tmp_path, check=False, capture_output=True
-    )
-    assert again.returncode != 0
+    assert apply(capture_output=True).returncode != 0
 
 
 def test_nothing_else_of_the_file_changes(tmp_path: Path) -> None:

@@ -9,16 +9,11 @@ import numpy as np
 import pymunk
 import pytest
 
-from analytic.kinematics import solve
 from models.errors import EngineError
 from models.files import load_scene, parse_scene, shipped
-from models.motion import State
 from models.scene import Scene
 from sim.pymunk.space import build
-
-
-def start_of(scene: Scene, time_s: float = 0.0) -> State:
-    return solve(scene, np.array([time_s])).state(0)
+from tests.worlds.runs import start_of
 
 
 def kinds(space: pymunk.Space) -> list[str]:
