@@ -72,7 +72,6 @@ def test_links_are_seen_on_white_and_on_black(paper: str) -> None:
 
 def test_an_arrow_goes_from_its_pin_along_its_force(fourbar: Scene) -> None:
     turn = shape.turn_of(fourbar, SAMPLES, with_forces=True)
-    assert turn.forces is not None
     arrows = force_arrows(fourbar, turn)
     for index in range(SAMPLES):
         by_tail = {tuple(arrow.tail): arrow for arrow in arrows.at(turn, index)}

@@ -11,12 +11,12 @@ from playwright.sync_api import Page
 
 from analytic.kinematics import solve
 from reports.logs.map_file import ChannelTable, Map
-from reports.page.log_page import log_page
 from tests.reports.page.conftest import Write
-from tests.reports.page.judged_logs import FACTS, SCENE, TURN_S, angles, judged, motion_of, points
+from tests.reports.page.judged_logs import SCENE, TURN_S, angles, motion_of, points
 from tests.reports.page.tab import Tab
 from tests.reports.page.test_browser import corners
 from tests.reports.page.test_log_page import NASTY
+from tests.reports.page.test_log_page import page as log_page_of
 from tests.worlds.tiers import slow
 
 DRAWN = ("channels", "motion")
@@ -32,10 +32,6 @@ LAYOUT = """() => {
   return {x: xaxis.title.text, y: yaxis.title.text, error: yaxis2.title.text, kind: yaxis2.type,
     largest: annotations[0]?.text};
 }"""
-
-
-def log_file(written: Write, *asked: object, **more: object) -> Path:
-    return written(log_page(judged(*asked, **more), FACTS))
 
 
 def trace(page: Page, name: str, axis: str = "y") -> dict[str, list[float]]:
@@ -55,7 +51,7 @@ def log(written: Write) -> Path:
     columns["crank_deg"] = columns["crank_deg"] % 360.0
     columns["coupler_deg"] = columns["coupler_deg"] + 1e-4 * np.sin(TIME_S)
     columns["other"] = TIME_S
-    return log_file(written, TIME_S, columns)
+    return written(log_page_of(TIME_S, columns))
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +60,7 @@ def hostile(written: Write) -> Path:
     table = ChannelTable(column=NASTY, of="coupler", kind="angle", unit="deg")
     columns = {NASTY: angles(MOTION, coupler=1.0)["coupler_deg"]}
     columns |= {f"{NASTY} 2": TIME_S, "x" * 5000: TIME_S}
-    return log_file(written, TIME_S, columns, mapped=Map(channel=[table]))
+    return written(log_page_of(TIME_S, columns, mapped=Map(channel=[table])))
 
 
 @pytest.fixture
@@ -181,7 +177,7 @@ def test_the_dark_theme_reaches_the_diagram(page: Page) -> None:
 def test_times_far_from_zero_keep_their_digits(wide: Tab, written: Write) -> None:
     turn = motion_of(samples=91)
     late = 12345.678 + turn.time_s
-    page = wide.open(log_file(written, late, angles(solve(SCENE, late))), "channels").page
+    page = wide.open(written(log_page_of(late, angles(solve(SCENE, late)))), "channels").page
     assert np.allclose(trace(page, "logged")["x"], late, atol=1e-6)
     page.locator("#motion-slider").focus()
     page.keyboard.press("End")
@@ -194,7 +190,7 @@ def test_the_spike_of_a_long_log_is_seen_and_looked_at_closely(wide: Tab, writte
     motion = motion_of(turns=40.0, samples=40_001)
     off = np.zeros(40_001)
     off[17_000] = 0.5
-    path = log_file(written, motion.time_s, angles(motion, rocker=off))
+    path = written(log_page_of(motion.time_s, angles(motion, rocker=off)))
     page = wide.open(path, "channels").page
     whole = trace(page, "logged", "y2")
     assert len(whole["y"]) < 10_000

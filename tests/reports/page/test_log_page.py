@@ -6,20 +6,16 @@ import base64
 import os
 import re
 import tomllib
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-from rich.console import Console
 
 from analytic.kinematics import solve
 from models.files import load_scene
 from reports.causes.cause import Cause
-from reports.cli.commands.judge import run_judge
-from reports.cli.judging import JudgeRequest
 from reports.logs.map_file import ChannelTable, Map
 from reports.own_log.judged import JudgedLog
 from reports.page.build import _plotly
@@ -29,6 +25,7 @@ from reports.page.log_sections.motion import stretches
 from reports.page.log_sections.verdict import map_lines
 from tests.reports.page.hostile import EVIL, Outline, embedded_in, stands_alone
 from tests.reports.page.judged_logs import FACTS, SCENE, TURN_S, angles, judged, motion_of, points
+from tests.worlds.command_line import crank
 
 MOTION = motion_of()
 TIME_S = MOTION.time_s
@@ -41,9 +38,9 @@ MEGABYTES_3 = 3_000_000
 ONE = {"rocker_deg": angles(MOTION)["rocker_deg"]}
 
 
-def page(columns: Mapping[str, object], *asked: object, **more: object) -> str:
-    """The page of a log at the instants of `MOTION`, where it is of no other scene."""
-    return log_page(judged(TIME_S, columns, *asked, **more), FACTS)
+def page(*asked: object, **more: object) -> str:
+    """The page of a log."""
+    return log_page(judged(*asked, **more), FACTS)
 
 
 def words(text: str) -> str:
@@ -90,10 +87,10 @@ def test_a_column_leads_to_its_curve_and_columns_share_their_instants(text: str)
 
 
 def test_a_log_within_tolerance_needs_no_why_and_a_fitted_drive_is_told_with_its_doubt() -> None:
-    told = words(page(angles(MOTION, rocker=1e-4)))
+    told = words(page(TIME_S, angles(MOTION, rocker=1e-4)))
     assert "✓ WITHIN TOLERANCE: 3 errors" in told
     assert "Why" not in told
-    told = words(log_page(judged(TIME_S * 1.01, angles(MOTION), drive="fitted"), FACTS))
+    told = words(page(TIME_S * 1.01, angles(MOTION), drive="fitted"))
     assert "Drive fitted to 361 angles of the crank: speed 9.9009901 rad/s (within" in told
 
 
@@ -119,10 +116,10 @@ def test_causes_are_told_with_their_lines(out: JudgedLog) -> None:
 
 
 def test_what_is_drawn_of_a_partial_log_is_said_and_that_rates_alone_have_no_drawing() -> None:
-    found = page({"rocker_rad_s": MOTION.links["rocker"].omega})
+    found = page(TIME_S, {"rocker_rad_s": MOTION.links["rocker"].omega})
     assert Outline(found).sections() == ["verdict", "channels", "made"]
     assert "no mechanism to be drawn" in words(found)
-    told = words(page(ONE))
+    told = words(page(TIME_S, ONE))
     assert "rocker: its angle, about D" in told
     assert "Left out, as the log does not say where they are: crank, coupler." in told
 
@@ -162,7 +159,7 @@ def test_a_long_log_of_many_channels_stays_small_with_its_spike() -> None:
     columns |= {f"{n}_rad_s": each.omega for n, each in motion.links.items()}
     columns["lever_deg"] = columns["lever_deg"].copy()
     columns["lever_deg"][17_000] += 3.0
-    found = log_page(judged(motion.time_s, columns, scene), FACTS)
+    found = page(motion.time_s, columns, scene)
     assert len(found.encode()) - len(_plotly().encode()) < MEGABYTES_3
     first = embedded_in(found, "channels")["channels"][0]
     assert first["label"] == "lever_deg"
@@ -173,14 +170,13 @@ def test_a_long_log_of_many_channels_stays_small_with_its_spike() -> None:
 
 def test_times_far_from_zero_keep_their_digits() -> None:
     late = 12345.678 + TIME_S
-    found = log_page(judged(late, angles(solve(SCENE, late))), FACTS)
+    found = page(late, angles(solve(SCENE, late)))
     (axis,) = embedded_in(found, "channels")["axes"]
     after = np.frombuffer(base64.b64decode(axis["time"]["singles"]), "<f4").astype(float)
     assert np.allclose(float(axis["start"]) + after, late, rtol=0, atol=1e-6)
     (turn,) = embedded_in(found, "motion")["stretches"]
-    assert (float(turn["start"]), float(turn["end"])) == pytest.approx(
-        (late[0], late[-1]), rel=1e-12
-    )
+    ends = [float(turn[each]) for each in ("start", "end")]
+    assert ends == pytest.approx(late[[0, -1]], rel=1e-12)
 
 
 def test_of_many_turns_the_first_the_last_and_the_worst_are_drawn() -> None:
@@ -204,14 +200,13 @@ def test_every_drive_and_a_moved_guide_have_a_page(drive: str) -> None:
     columns = angles(motion, rod=0.1)
     columns["B_slider_displacement_mm"] = 1e3 * motion.sliders["B"].displacement
     columns["F_slider_speed_m_s"] = motion.sliders["F"].speed
-    found = log_page(judged(motion.time_s, columns, scene, drive=drive), FACTS)
+    found = page(motion.time_s, columns, scene, drive=drive)
     assert Outline(found).sections() == SECTIONS
 
 
 def test_the_command_writes_the_page_of_a_log(tmp_path: Path) -> None:
     log, target = tmp_path / "log.csv", tmp_path / "page.html"
     pd.DataFrame({"time_s": TIME_S, "rocker_deg": ONE["rocker_deg"] + 0.5}).to_csv(log, index=False)
-    request = JudgeRequest("fourbar-lecture-1", log, target=("1e-3",), output=target)
-    with (tmp_path / "said.txt").open("w") as said:
-        assert run_judge(request, Console(file=said)) == 1
+    ended = crank("judge", "fourbar-lecture-1", log, "--target", "1e-3", "-o", target)
+    assert ended.exit_code == 1
     assert target.read_text(encoding="utf-8").startswith("<!doctype html>")
