@@ -81,13 +81,8 @@ def test_times_of_a_motion_are_its_own(taking: str) -> None:
 
 
 def test_numbers_of_any_kind_are_taken() -> None:
-    for values in (
-        [0, 1],
-        ["0", " 1.0"],
-        np.array([0, 1], np.float32),
-        range(2),
-        pd.Series([0, 1]),
-    ):
+    single = np.array([0, 1], np.float32)
+    for values in ([0, 1], ["0", " 1.0"], single, range(2), pd.Series([0, 1])):
         np.testing.assert_array_equal(samples(values), [0.0, 1.0])
     np.testing.assert_array_equal(samples(3), [3.0])
     np.testing.assert_array_equal(numbers(np.array([1, 2.5], object), "x"), [1.0, 2.5])
@@ -143,11 +138,9 @@ def test_several_names_are_several() -> None:
 
 
 def test_a_pin_to_close_a_loop_at_may_have_a_long_name() -> None:
-    scene = load_scene("fourbar-lecture-1")
-    start = solve(scene, 0.0).state()
-    assert build(scene, start, Writing(close="C")) == build(scene, start, Writing(close=("C",)))
+    assert build(SCENE, START, Writing(close="C")) == build(SCENE, START, Writing(close=("C",)))
     with pytest.raises(CrankcheckError, match="CD"):
-        build(scene, start, Writing(close="CD"))
+        build(SCENE, START, Writing(close="CD"))
 
 
 def test_one_scene_engine_or_profile_is_one() -> None:
@@ -172,8 +165,6 @@ def test_parts_of_a_motion_joined_are_the_whole() -> None:
     parts = [solve(scene, times) for times in (LATER[:2], LATER[2:3], LATER[3:])]
     joined = Motion.joined(parts)
     assert (joined.time_s == LATER).all()
-    assert joined.bound is not None
-    assert whole.bound is not None
     for own, other in ((joined, whole), (joined.bound, whole.bound)):
         for kind in ("links", "points", "sliders"):
             assert getattr(own, kind).keys() == getattr(other, kind).keys()
@@ -181,9 +172,8 @@ def test_parts_of_a_motion_joined_are_the_whole() -> None:
                 for key, series in vars(body).items():
                     wanted = getattr(getattr(other, kind)[name], key)
                     np.testing.assert_allclose(series, wanted, rtol=1e-9, atol=1e-12)
-    assert {name: sine.shape for name, sine in joined.conditioning.items()} == {
-        name: sine.shape for name, sine in whole.conditioning.items()
-    }
+    shapes = [{k: x.shape for k, x in one.conditioning.items()} for one in (joined, whole)]
+    assert shapes[0] == shapes[1]
 
 
 def test_what_a_part_lacks_is_left_out() -> None:
@@ -191,10 +181,8 @@ def test_what_a_part_lacks_is_left_out() -> None:
     bare = replace(motion, points={}, conditioning={}, bound=None)
     for parts in ([motion, bare], [bare, motion]):
         joined = Motion.joined(parts)
-        assert joined.points == {}
-        assert joined.conditioning == {}
-        assert joined.bound is None
-        assert joined.forces is None
+        assert (joined.points, joined.conditioning) == ({}, {})
+        assert joined.bound is joined.forces is None
         assert joined.links["crank"].theta.shape == (14,)
 
 

@@ -21,6 +21,7 @@ from models.files import every_shipped, load_scene, parse_scene
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.scene import Scene
 from models.scene_text import scene_text
+from tests.worlds.runs import driven_by
 
 LAWS = [
     FromRest(0.3, 12.0, 0.25),
@@ -45,15 +46,8 @@ def test_every_shipped_scene_has_a_name_and_a_source_and_reads_back_as_itself(na
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
 def test_every_law_reads_back_but_for_the_last_digit_of_an_angle(law: Law) -> None:
-    scene = load_scene("fourbar-lecture-1")
-    changed = replace(
-        scene,
-        driver=replace(scene.driver, law=law),
-        note='a "quoted" \\ note',
-        gravity_m_s2=(0.0, -9.81),
-        tolerance={"angle": 1e-5},
-        branch={"C": -1},
-    )
+    more = {"note": 'a "quoted" \\ note', "tolerance": {"angle": 1e-5}, "branch": {"C": -1}}
+    changed = replace(driven_by(law), gravity_m_s2=(0.0, -9.81), **more)
     again = parse_scene(scene_text(changed), "changed")
     assert vars(again.driver.law) == pytest.approx(vars(law), rel=1e-15)
     assert replace(again, driver=changed.driver) == changed
@@ -65,10 +59,8 @@ def test_a_law_of_another_kind_is_refused() -> None:
         offset_rad = 0.0
         at = turned = lambda self, _: self
 
-    scene = load_scene("fourbar-lecture-1")
-    other = replace(scene, driver=replace(scene.driver, law=Own()))
     with pytest.raises(CrankcheckError, match="law Own: a scene file has no words for it"):
-        scene_text(other)
+        scene_text(driven_by(Own()))
 
 
 def test_a_flywheel_stands_by_itself_and_is_added_when_it_is_read() -> None:

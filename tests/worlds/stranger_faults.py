@@ -98,54 +98,27 @@ class Planted:
     named: str = ""
 
 
-def swapped(log: Log, one: str, other: str) -> Log:
-    return {**log, one: log[other], other: log[one]}
-
-
-def in_other_unit(log: Log, column: str, factor: float) -> Log:
-    """Numbers in another unit than the header says."""
-    return {**log, column: log[column] * factor}
-
-
-def of_other_sign(log: Log, column: str) -> Log:
-    """Clockwise positive, in one column."""
-    return {**log, column: -log[column]}
-
-
-def late(columns: Sequence[Column], header: str, by_s: float) -> list[Column]:
-    """The columns, one of which shows what was so long ago [s]."""
-    return [
-        replace(column, later_s=column.later_s - by_s) if column.header == header else column
-        for column in columns
-    ]
-
-
-def drifted(log: Log, share: float) -> Log:
-    clock = next(iter(log))
-    return {**log, clock: log[clock] * (1.0 + share)}
-
-
 def stuck(log: Log, column: str, rows: int = 1) -> Log:
     """A reading that was not renewed, for so many rows."""
     series = log[column].copy()
-    at = _at(series)
+    at = round(AT * series.size)
     series[at : at + rows] = series[at - 1]
     return {**log, column: series}
 
 
-def lost_turn(log: Log, column: str, turn: float = 360.0) -> Log:
+def lost_turn(log: Log, column: str) -> Log:
     """A counter of turns that missed one."""
     series = log[column].copy()
-    series[_at(series) :] -= turn
+    series[round(AT * series.size) :] -= 360.0
     return {**log, column: series}
 
 
-def smoothed(log: Log, column: str, rows: float) -> Log:
-    """A low-pass of the first order, with a time constant of so many rows, of which some may be
-    longer than others."""
+def smoothed(log: Log, column: str) -> Log:
+    """A low-pass of the first order, with a time constant of 20 rows, of which some may be longer
+    than others."""
     series, clock = log[column].copy(), next(iter(log.values()))
     steps = np.diff(clock)
-    shares = 1.0 - np.exp(-steps / (rows * np.mean(steps)))
+    shares = 1.0 - np.exp(-steps / (20.0 * np.mean(steps)))
     for k, share in enumerate(shares, 1):
         series[k] = series[k - 1] + share * (series[k] - series[k - 1])
     return {**log, column: series}
@@ -156,10 +129,6 @@ def averaged(log: Log, column: str, rows: int) -> Log:
     ones = np.ones(rows)
     number = np.convolve(np.ones(log[column].size), ones, "same")
     return {**log, column: np.convolve(log[column], ones, "same") / number}
-
-
-def _at(series: Array) -> int:
-    return round(AT * series.size)
 
 
 def planted(
@@ -173,24 +142,33 @@ def planted(
     def log(of: Linkage = linkage, columns: Sequence[Column] = columns) -> Log:
         return logged(of, time_s, columns)
 
-    def column(change: Callable[..., Log], name: str, *rest: float) -> Callable[[], Planted]:
-        return lambda: Planted(change(log(), name, *rest), (name,))
+    def column(change: Callable[[Log, str], Log], name: str) -> Callable[[], Planted]:
+        return lambda: Planted(change(log(), name), (name,))
 
+    def times(factor: float, name: str = "time_s") -> Log:
+        return {key: factor * each if key == name else each for key, each in log().items()}
+
+    def swapped(one: str, other: str) -> Log:
+        return log() | {one: log()[other], other: log()[one]}
+
+    late = [
+        replace(each, later_s=each.later_s - delay_s) if each.header == culprits.late else each
+        for each in columns
+    ]
+    unit, per = culprits.unit
     return {
-        "swapped columns": lambda: Planted(swapped(log(), *culprits.swapped), culprits.swapped),
-        "wrong unit": column(in_other_unit, *culprits.unit),
-        "wrong sign": column(of_other_sign, culprits.sign),
-        "late channel": lambda: Planted(
-            log(columns=late(columns, culprits.late, delay_s)), (culprits.late,)
-        ),
-        "drifted clock": lambda: Planted(drifted(log(), 1e-3), ()),
+        "swapped columns": lambda: Planted(swapped(*culprits.swapped), culprits.swapped),
+        "wrong unit": lambda: Planted(times(per, unit), (unit,)),
+        "wrong sign": lambda: Planted(times(-1.0, culprits.sign), (culprits.sign,)),
+        "late channel": lambda: Planted(log(columns=late), (culprits.late,)),
+        "drifted clock": lambda: Planted(times(1.0 + 1e-3), ()),
         "other branch": lambda: Planted(log(linkage.otherwise()), (), culprits.branch),
         "scaled length": lambda: Planted(
             log(linkage.stretched(culprits.longer, 1.01)), (), culprits.longer
         ),
         "stuck sample": column(stuck, culprits.stuck),
         "lost turn": column(lost_turn, culprits.turn),
-        "filtered signal": column(smoothed, culprits.filtered, 20.0),
+        "filtered signal": column(smoothed, culprits.filtered),
     }
 
 
