@@ -21,7 +21,7 @@ from models.files import load_scene
 from reports.causes import Cause, causes
 from reports.logs.channel import Channel
 from reports.logs.kinds import KINDS as KINDS_OF
-from tests.reports.causes.conftest import CLEAR, FAULTS, SCENES, Diagnosed, Infected
+from tests.reports.causes.infected_sheets import CLEAR, FAULTS, SCENES, diagnosed, infected
 from tests.worlds import other_kinds
 from tests.worlds.other_kinds import KINDS, PARTS, SAMPLING, scene_of
 from tests.worlds.plantings import PLANTINGS
@@ -36,7 +36,7 @@ MISSED = 0.02
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_a_fault_is_named_with_its_channels(fault: str, diagnosed: Diagnosed) -> None:
+def test_a_fault_is_named_with_its_channels(fault: str) -> None:
     planted, columns, found = diagnosed(fault)
     out = {reading.channel.column for reading in planted.case.out}
     assert {cause.name for cause in found} <= set(PLANTINGS[fault].names)
@@ -49,7 +49,7 @@ def test_a_fault_is_named_with_its_channels(fault: str, diagnosed: Diagnosed) ->
 
 
 @pytest.mark.parametrize(("fault", "scene"), list(zip(NONE, cycle(SCENES), strict=False)))
-def test_nothing_is_made_up(fault: str, scene: str, infected: Infected) -> None:
+def test_nothing_is_made_up(fault: str, scene: str) -> None:
     planted, _ = infected(fault, scene, rows=300)
     assert not causes(planted.case)
 
@@ -65,7 +65,7 @@ def test_healthy_logs_of_other_mechanisms_have_no_cause(scene: str) -> None:
 
 @slow("only here are sizes of faults, lengths of logs, limits and noise at random")
 @pytest.mark.parametrize("scene", SCENES)
-def test_the_names_of_faults_at_random_are_not_mistaken(scene: str, infected: Infected) -> None:
+def test_the_names_of_faults_at_random_are_not_mistaken(scene: str) -> None:
     right: Counter[bool] = Counter()
     for fault, planting in PLANTINGS.items():
         for seed in range(MANY):

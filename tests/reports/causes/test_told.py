@@ -24,7 +24,7 @@ from reports.logs.beside_truth import AtCrank
 from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.kinds import KINDS
 from reports.logs.units import UNITS
-from tests.reports.causes.conftest import Diagnosed
+from tests.reports.causes.infected_sheets import diagnosed
 from tests.worlds.fourbar_sheets import SCENE, angle, at, later, of, omega, only
 from tests.worlds.sheets import sheet
 from tests.worlds.tiers import slowly
@@ -64,7 +64,7 @@ MENDED = (
 
 
 @pytest.mark.parametrize("fault", MENDED)
-def test_what_is_to_be_written_in_the_map_mends_the_log(fault: str, diagnosed: Diagnosed) -> None:
+def test_what_is_to_be_written_in_the_map_mends_the_log(fault: str) -> None:
     planted, _, found = diagnosed(fault)
     for cause in found:
         for column in cause.columns:
@@ -159,7 +159,7 @@ def test_rates_tell_a_slow_clock_from_a_fast_driver() -> None:
         ("mean_of_both_sides", r"is a mean over \d+ samples, \d+ on both sides"),
     ],
 )
-def test_the_words_of_a_cause(fault: str, words: str, diagnosed: Diagnosed) -> None:
+def test_the_words_of_a_cause(fault: str, words: str) -> None:
     assert any(re.search(words, cause.text) for cause in diagnosed(fault)[-1])
 
 
