@@ -42,12 +42,9 @@ def lost(one: JudgedModel) -> JudgedModel:
     return judged_model(one.account, lines)
 
 
-def test_every_section_is_there_in_its_order_nothing_is_loaded_and_it_is_small(text: str) -> None:
+def test_it_stands_alone_is_small_and_tells_all_parts(text: str, rubbing: JudgedModel) -> None:
     stands_alone(text, SECTIONS)
     assert len(text.encode()) - len(_plotly().encode()) < MEGABYTE
-
-
-def test_it_tells_the_lines_the_joints_and_the_diff(text: str, rubbing: JudgedModel) -> None:
     told = words(text)
     for part in ("as-written", "contacts-off", "recommended", "gain", "Every joint and loop"):
         assert part in told
