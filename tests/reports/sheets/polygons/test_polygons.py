@@ -1,5 +1,5 @@
 """The sheet of vector polygons, measured as one measures a drawing, and what their page holds;
-`tests.reports.page` opens it. Polygons at an instant: at a time of a motion, against how that moves;
+`tests.reports.page` opens it. Polygons at an instant: at a time of a motion, beside how that moves;
 of a log, beside the reference: planted errors come out as they went in."""
 
 from __future__ import annotations
