@@ -122,9 +122,7 @@ LONG = ("through-pivot", "pymunk")
     "steps", [360, slowly(720, reason="a finer step, at which some ring more")]
 )
 @pytest.mark.parametrize("way", few(WAYS, [way for way in WAYS if way != LONG], "4000 iterations"))
-def test_tuned_engines_go_through_change_points_within_the_limits(
-    way: tuple[str, str], steps: int
-) -> None:
+def test_engines_go_through_change_points_within_limits(way: tuple[str, str], steps: int) -> None:
     name, engine = way
     assert solve(SCENES[name], np.linspace(0.0, 0.7, 50)).crossings
     # Where the block is in the lever's pivot its two joints are as good as one: 150 iterations

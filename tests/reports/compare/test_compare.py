@@ -65,7 +65,7 @@ def pure(
     return errors.worst(quantity, source, kind).pure
 
 
-def test_an_exact_run_has_errors_of_rounding_only(
+def test_exact_runs_are_off_by_rounding(
     fourbar: Scene, slider_crank: Scene, errors_of: Find
 ) -> None:
     errors = errors_of(fourbar)
@@ -109,9 +109,7 @@ def test_a_gap_is_found_at_the_pin_that_opens(fourbar: Scene, errors_of: Find) -
     assert gaps["B"] < 1e-15
 
 
-def test_a_crank_that_lags_shows_in_drive_and_total_but_not_in_geometry(
-    fourbar: Scene, healthy: Run
-) -> None:
+def test_a_late_crank_is_in_drive_and_total_not_in_geometry(fourbar: Scene, healthy: Run) -> None:
     def lagging(lag_s: float) -> Errors:
         time_s = healthy.motion.time_s
         motion = replace(solve(fourbar, time_s - lag_s), time_s=time_s)
@@ -128,9 +126,7 @@ def test_a_crank_that_lags_shows_in_drive_and_total_but_not_in_geometry(
     assert pure(late, "drive") == pytest.approx(late.step_rad)
 
 
-def test_velocities_half_a_step_late_show_in_reported_velocity_alone(
-    fourbar: Scene, healthy: Run
-) -> None:
+def test_velocities_half_a_step_late_show_in_themselves_alone(fourbar: Scene, healthy: Run) -> None:
     own = healthy.motion
     early = own.time_s - healthy.dt_s / 2
     there = solve(fourbar, early)
@@ -177,9 +173,7 @@ def test_a_number_that_is_missing_is_a_failure_wherever_it_stands(
     assert any(row.body == "rocker" and not row.finite for row in errors.rows)
 
 
-def test_a_crank_angle_that_is_missing_leaves_a_note_and_a_broken_drive(
-    fourbar: Scene, healthy: Run
-) -> None:
+def test_a_missing_crank_angle_leaves_a_note_and_no_drive(fourbar: Scene, healthy: Run) -> None:
     theta = link_of(healthy, "crank").theta.copy()
     theta[5] = np.nan
     errors = compared(fourbar, with_link(healthy, "crank", theta=theta))
@@ -188,9 +182,7 @@ def test_a_crank_angle_that_is_missing_leaves_a_note_and_a_broken_drive(
     assert math.isnan(pure(errors, "drive"))
 
 
-def test_accelerations_that_an_engine_does_not_report_are_named_and_no_failure(
-    fourbar: Scene, healthy: Run
-) -> None:
+def test_accelerations_not_reported_are_named_and_no_failure(fourbar: Scene, healthy: Run) -> None:
     def without(parts: dict[str, Any], name: str) -> dict[str, Any]:
         return {n: replace(p, **{name: getattr(p, name) * np.nan}) for n, p in parts.items()}
 
@@ -211,9 +203,7 @@ def test_accelerations_that_an_engine_does_not_report_are_named_and_no_failure(
 @pytest.mark.parametrize(
     ("kind", "name"), [("links", "rocker"), ("links", "crank"), ("points", "C")]
 )
-def test_what_the_engine_leaves_out_is_missed(
-    fourbar: Scene, healthy: Run, kind: str, name: str
-) -> None:
+def test_what_is_left_out_is_missed(fourbar: Scene, healthy: Run, kind: str, name: str) -> None:
     kept = {n: part for n, part in vars(healthy.motion)[kind].items() if n != name}
     errors = compared(fourbar, with_motion(healthy, **{kind: kept}))
     assert errors.missing == (f"{kind[:-1]} {name}",)
@@ -238,9 +228,7 @@ def test_a_series_of_another_length_counts_as_none(fourbar: Scene, healthy: Run)
 @pytest.mark.parametrize(
     "keep", [slice(50), slice(1), slice(720), slice(1, None), slice(0, None, 2)]
 )
-def test_a_log_that_lacks_commanded_samples_is_incomplete(
-    fourbar: Scene, healthy: Run, keep: slice
-) -> None:
+def test_a_log_that_lacks_samples_is_incomplete(fourbar: Scene, healthy: Run, keep: slice) -> None:
     motion = healthy.motion.each_series(lambda series: series[keep])
     cut = replace(
         with_motion(replace(healthy, motion=motion), time_s=motion.time_s[keep]),

@@ -231,9 +231,7 @@ def _loading(scene: Scene) -> float:
         (Tabulated((0.0, 1e-3), (0.0, 1.0)), 0.0),  # it ends before the motion
     ],
 )
-def test_a_load_that_stays_or_grows_evenly_or_is_none_shakes_nothing(
-    law: Characteristic, most: float
-) -> None:
+def test_a_load_that_ends_or_grows_evenly_shakes_nothing(law: Characteristic, most: float) -> None:
     assert _loading(_pushed(law)) <= most
 
 

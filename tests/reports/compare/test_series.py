@@ -39,7 +39,7 @@ def with_one(at: int, value: float) -> Array:
     ],
     ids=["whole turns at the start", "wrapped", "first sample", "one sample", "last sample"],
 )
-def test_whole_turns_are_no_error_at_the_start_alone(
+def test_whole_turns_at_the_start_are_no_error(
     angle: Array, reference: Array, error: float
 ) -> None:
     assert size(angle_error(angle, reference)).maximum == pytest.approx(error)
@@ -74,9 +74,7 @@ def test_differences_are_exact_for_a_parabola_and_drop_both_ends() -> None:
     assert second_rate(series, 0.1) == pytest.approx(np.full(9, 8.0))
 
 
-def test_what_a_run_lacks_is_one_nan_for_all_its_samples(
-    fourbar: Scene, disturbed: Disturbed
-) -> None:
+def test_what_a_run_lacks_is_one_nan_for_all_samples(fourbar: Scene, disturbed: Disturbed) -> None:
     run = disturbed(fourbar)
     rocker = run.motion.links["rocker"]
     silent = replace(rocker, omega=np.full_like(rocker.omega, np.nan))
@@ -95,9 +93,7 @@ def traced(run: Run, scene: Scene) -> dict[str, Array]:
 
 
 @pytest.mark.parametrize("steps", [720, 1440])
-def test_it_is_the_last_turn_at_equal_parts(
-    fourbar: Scene, disturbed: Disturbed, steps: int
-) -> None:
+def test_the_last_turn_is_at_equal_parts(fourbar: Scene, disturbed: Disturbed, steps: int) -> None:
     found = traced(disturbed(fourbar, steps=steps), fourbar)
     assert found["time_s"].size == 91
     turns = np.diff(found["driver_rad"]) * 90 / math.tau

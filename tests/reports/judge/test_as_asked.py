@@ -57,9 +57,7 @@ def said(asked: Cell, *runner: CellRunner) -> str:
 @pytest.mark.parametrize("drive", ["prescribed", "servo"])
 @pytest.mark.parametrize("profile", ["tuned", "as-shipped"])
 @SCENES
-def test_the_run_that_was_asked_for_is_taken(
-    scene: str, name: str, profile: str, drive: str
-) -> None:
+def test_the_run_asked_for_is_taken(scene: str, name: str, profile: str, drive: str) -> None:
     assert said(cell(scene, name, profile=profile, drive=drive)) == ""
 
 
@@ -90,9 +88,7 @@ def test_every_word_of_a_run_is_held_to_the_request(field: str, name: str) -> No
     ("kind", "body", "place"),
     [("links", "rod", "theta"), ("points", "C", "position"), ("sliders", "C", "displacement")],
 )
-def test_a_body_that_begins_elsewhere_is_named(
-    kind: str, body: str, place: str, size: float
-) -> None:
+def test_a_body_begun_elsewhere_is_named(kind: str, body: str, place: str, size: float) -> None:
     def moved(*args: Any, **options: Any) -> Run:
         done = run(*args, **options)
         own = getattr(done.motion, kind)
@@ -243,7 +239,7 @@ def test_least_is_far_above_rounding_at_the_steps_of_verify() -> None:
 
 
 @pytest.mark.parametrize("moved", [0.0, 1e-3])
-def test_forces_where_places_are_solved_are_too_good_for_accelerations_that_are_off(
+def test_forces_of_solved_places_are_too_good_for_accelerations_that_are_off(
     moved: float,
 ) -> None:
     """An engine whose accelerations are right may have its forces from these, as inverse dynamics

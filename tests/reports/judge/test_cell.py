@@ -110,9 +110,7 @@ def test_a_tolerance_that_is_too_tight_puts_the_cell_out(fourbar: Scene) -> None
     assert [f.rule for f in found.failures] == ["CC103"]
 
 
-def test_what_can_not_be_compared_is_a_row_with_a_reason(
-    fourbar: Scene, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_can_not_be_compared_says_why(fourbar: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     def no_reference(*_: object) -> None:
         raise ReachError("the driver is out of reach")
 
@@ -226,9 +224,7 @@ def test_an_error_takes_the_same_share_of_its_limit_at_every_step(name: str, eng
 
 @BOTH
 @pytest.mark.parametrize("name", list(shipped()))
-def test_every_shipped_scene_is_within_tolerance_at_ninety_steps_a_turn(
-    name: str, engine: str
-) -> None:
+def test_every_shipped_scene_is_within_tolerance_at_90_steps_a_turn(name: str, engine: str) -> None:
     found = check(of_turns(name, engine, 90, turns=2))
     assert found.verdict == "within", found.failures
 
@@ -251,7 +247,7 @@ def test_a_failure_is_a_row_with_its_reason_and_the_same_columns(frame: pd.DataF
     assert frame["failed_rules"].tolist() == ["", "CC101"]
 
 
-def test_every_error_column_carries_its_unit_and_is_empty_where_nothing_is_reported(
+def test_error_columns_carry_units_and_nothing_that_is_not_reported(
     frame: pd.DataFrame,
 ) -> None:
     units = ("_rad", "_m", "_rad_s", "_m_s", "_rad_s2", "_m_s2", "_n", "_n_m", "_j", "_kg_m2_s")

@@ -30,9 +30,7 @@ def checked(scene: Scene | str, engine: str, steps: int, **options: object) -> C
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("steps", [90, slowly(1440, reason="whether a budget is of that order")])
 @pytest.mark.parametrize("name", [FOURBAR, "shaper", "slider-crank-excel-210"])
-def test_forces_of_tuned_engines_take_under_six_tenths_of_their_limits(
-    name: str, steps: int, engine: str
-) -> None:
+def test_forces_take_under_six_tenths_of_their_limits(name: str, steps: int, engine: str) -> None:
     found = [f for f in checked(name, engine, steps).findings if f.rule in FORCES]
     assert found
     for finding in found:

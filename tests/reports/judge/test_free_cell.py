@@ -85,9 +85,7 @@ def test_energy_that_is_fed_in_is_a_drift() -> None:
     ("name", "seconds"),
     [("scotch-yoke", 1.4), slowly("shaper", 2.0, reason="the worst of them, which takes longer")],
 )
-def test_driven_scenes_that_are_let_go_are_held_to_what_their_masses_shake_by(
-    name: str, seconds: float
-) -> None:
+def test_driven_scenes_let_go_are_held_to_what_masses_shake_by(name: str, seconds: float) -> None:
     """Light cranks with heavy sliders: over the step and the curvature alone, pymunk was out by up
     to 19 times the limit of a drift that shrinks with the third order of the step."""
     assert check(cell(seconds=seconds, scene=let_go(load_scene(name)))).verdict == "within"
@@ -136,7 +134,7 @@ def test_limits_grow_with_late_impulses_and_with_what_lasts_and_drifts() -> None
         assert default(FREE["geometry"], each) == default(FREE["geometry"], errors)
 
 
-def test_an_order_is_not_graded_where_the_start_grows_a_thousandfold(
+def test_no_order_is_graded_where_a_start_grows_much(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     assert check(cell(converge=True)).convergence is not None

@@ -62,7 +62,7 @@ def test_places_have_room_for_what_closing_the_pins_sets_off(fourbar: Scene) -> 
     assert all(fast[name] == slow[name] for name in ("velocity", "acceleration"))
 
 
-def test_no_default_grows_beyond_what_is_plainly_wrong_or_falls_below_rounding(
+def test_no_default_grows_beyond_the_plainly_wrong_or_falls_below_rounding(
     fourbar: Scene,
 ) -> None:
     found = numbers(fourbar, conditioning=1e-9, curvature=1e9)  # near a singular position
@@ -104,9 +104,7 @@ def test_tolerances_are_read_one_by_one_or_with_commas() -> None:
         ("zzz=1", ["use one of drive, angle"]),
     ],
 )
-def test_a_tolerance_that_does_not_parse_says_where_what_and_how(
-    text: str, parts: list[str]
-) -> None:
+def test_a_tolerance_that_is_not_read_says_where_what_and_how(text: str, parts: list[str]) -> None:
     with pytest.raises(CrankcheckError) as caught:
         parse([text])
     assert all(part in str(caught.value) for part in parts), str(caught.value)

@@ -144,9 +144,7 @@ def along_a_slope() -> Scene:
 @pytest.mark.parametrize(
     ("engine", "scene"), [("pymunk", in_a_moving_guide()), ("exudyn", along_a_slope())]
 )
-def test_an_engine_that_cannot_do_a_driver_is_a_row_with_its_reason(
-    engine: str, scene: Scene
-) -> None:
+def test_an_engine_that_has_no_such_drive_is_a_row_with_a_reason(engine: str, scene: Scene) -> None:
     case = replace(CATALOGUE["piston-near-limit"], trial=lambda _: Trial(scene))
     found, drawn = graded(case, engine, "tuned", 1.0, draw=True)
     assert found.outcome == "unsupported"
@@ -164,9 +162,7 @@ def test_an_engine_that_cannot_do_a_driver_is_a_row_with_its_reason(
     ],
     ids=["through its pivot", "to its pivot", "far from it"],
 )
-def test_how_near_a_lever_whose_block_comes_to_its_pivot_is_said_to_be(
-    case: str, value: float, sine: object
-) -> None:
+def test_how_near_a_block_is_to_its_pivot_is_said(case: str, value: float, sine: object) -> None:
     trial = CATALOGUE[case].trial(value)
     motion = solve(trial.scene, np.arange(1441) * trial.dt_s, bound=False)
     assert nearest(trial.scene, motion) == sine

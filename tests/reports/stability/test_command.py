@@ -80,9 +80,7 @@ def test_a_second_run_takes_the_place_of_the_first(tmp_path: Path) -> None:
     assert {run.engine for run in read_matrix(tmp_path).runs} == {"pymunk"}
 
 
-def test_a_few_cases_do_not_take_the_place_of_a_matrix_of_more(
-    stored: Result, folder: Path
-) -> None:
+def test_a_few_cases_never_take_the_place_of_a_matrix_of_more(stored: Result, folder: Path) -> None:
     before = (folder / "stability.json").read_bytes()
     refused(crank(*PYMUNK, "-o", folder), "holds a matrix with 1 case not run now")
     assert (folder / "stability.json").read_bytes() == before
@@ -130,21 +128,17 @@ def test_a_mistake_ends_with_2_and_says_what_would_work(args: list[str], parts: 
 LONG = ("stability", "long-fourbar", "--engine", "pymunk", "--at", "1e4", "--profile")
 
 
-def late(child: Here[object], *_: object) -> Lost:
-    """No run ends in its time."""
-    return Lost("timeout", f"no end within {child.limits.time_s:g} s")
-
-
-def raising(*_: object) -> Lost:
-    """What a child raises of what it is asked for."""
-    return Lost("crashed", "", CrankcheckError("no such step"))
-
-
 @pytest.mark.parametrize(
     ("call", "code", "words"),
     [
-        (late, 1, "crashed no end within 0.05 s"),
-        (raising, 2, "case long-fourbar at 10000: no such step"),
+        (
+            lambda child, *_: Lost("timeout", f"no end within {child.limits.time_s:g} s"),
+            *(1, "crashed no end within 0.05 s"),
+        ),
+        (
+            lambda *_: Lost("crashed", "", CrankcheckError("no such step")),
+            *(2, "case long-fourbar at 10000: no such step"),
+        ),
     ],
 )
 def test_what_comes_of_a_lost_run(call: Callable[..., Lost], code: int, words: str) -> None:
@@ -163,9 +157,7 @@ def test_a_run_over_its_limit_is_ended(profile: str, limit_s: float) -> None:
     assert f"crashed no end within {limit_s:g} s" in flat(result.stdout)
 
 
-def test_the_report_of_a_folder_of_hard_cases_is_their_page(
-    stored: Result, folder: Path, tmp_path: Path
-) -> None:
+def test_the_report_of_a_folder_is_its_page(stored: Result, folder: Path, tmp_path: Path) -> None:
     made = crank("report", folder, "-o", tmp_path / "page.html")
     assert made.exit_code == 0, made.output
     assert "runs of hard cases" in flat(made.stdout)

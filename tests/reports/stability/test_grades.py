@@ -55,9 +55,7 @@ OTHER = Departure("rocker", 1.0, 0.0)
         (run(drive=0.02 + NOUGHT, gap=0.03 + NOUGHT), "degraded", "the crank", 0),
     ],
 )
-def test_every_end_is_told_by_its_own_rule(
-    errors: ErrorSeries, name: str, word: str, sample: int
-) -> None:
+def test_every_end_has_its_own_rule(errors: ErrorSeries, name: str, word: str, sample: int) -> None:
     found = outcome(errors, WITHIN)
     assert found.outcome == name
     assert word in found.reason

@@ -95,9 +95,7 @@ class _Changed:
         return self._said[name] if name in self._said else getattr(self._motion, name)
 
 
-def test_errors_at_the_same_time_are_over_the_growth_of_their_own_time(
-    truth: FreeTruth, done: Run
-) -> None:
+def test_errors_at_one_time_are_over_the_growth_of_that_time(truth: FreeTruth, done: Run) -> None:
     steeper = _Changed(truth.free, sensitivity=lambda time_s: 1.0 + 1e3 * time_s)
     growing = replace(truth, free=steeper, known_rad=1.0)
     plain, over = (found(each, moved(done, late(truth, 2e-4))) for each in (truth, growing))
@@ -232,9 +230,7 @@ def truth_to_the_end(name: str, link: str) -> FreeTruth:
         slowly("double-pendulum", "upper", reason="two drivers: another truth, the same table"),
     ],
 )
-def test_what_follows_a_table_that_ends_with_the_run_is_as_if_it_went_on(
-    name: str, link: str
-) -> None:
+def test_what_follows_a_table_ending_with_the_run_is_as_if_it_went_on(name: str, link: str) -> None:
     ends = truth_to_the_end(name, link)
     goes_on = free_truth(pushed(name, link, (2.0 * END_S, -0.1)), STEPS, DT_S)
     assert ends.free.until_s == END_S < goes_on.free.until_s
