@@ -28,15 +28,11 @@ UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 @dataclass(frozen=True)
 class Drawing:
-    """How a model is drawn.
-
-    ``turn`` (3, 3) and ``shift_m`` (3,) place the plane in space. Where ``askew`` is a number, the
-    frame of each body and the order of siblings are random, and so is the sense of each hinge that
-    is not driven. Loops are closed between sites or between bodies. ``free`` bodies hang on the
-    world, two slides and a hinge each, and nothing but closures ties them. The link ``cut`` is two
-    bodies that a weld ties. ``reads`` gives the joints another zero. A ``balanced`` driver has its
-    centre of mass on its hinge, whatever the scene says.
-    """
+    """How a model is drawn: in a plane placed by ``turn`` (3, 3) and ``shift_m`` (3,); with random
+    frames, orders of siblings and senses of hinges where ``askew`` is a number; closed between
+    ``sites`` or bodies; with ``free`` bodies that closures alone tie; with the link ``cut`` in two
+    that a weld ties; with another zero of joints (``reads``), and a driver ``balanced`` on its
+    hinge."""
 
     turn: Array | None = None
     shift_m: Sequence[float] = (0.0, 0.0, 0.0)

@@ -4,15 +4,12 @@ A crank turns at constant speed, and one or two dyads (three, where the last nee
 on) hang on it and on each other, of all kinds and in all roles. What is random, and the range:
 
 - lengths 0.2 to 2, the whole scaled by 0.01 to 100, turned and moved by up to three lengths;
-- speed 0.1 to 1000 rad/s, either way, from any angle on, at `LEAST_STEPS` to `MOST_STEPS` steps a
-  turn;
+- speed 0.1 to 1000 rad/s, either way, at `LEAST_STEPS` to `MOST_STEPS` steps a turn;
 - every sine of a transmission angle at least `MARGIN` over the whole turn. Where no layout out of
-  `TRIES` turns round with that margin the driver swings instead, as far as the margin lets it;
-- links are slender rods as long as what they carry: their pins, and the part of their lines that is
-  travelled; each of a density of its own, within 1 : `DENSITY`; half of the mechanisms have
-  massless blocks, where MuJoCo can hold them;
-- steps fine enough that no cap of a tolerance is in force: a coarser step is out of tolerance by
-  what anyone would call wrong, whatever the theory grants (`reports.judge.tolerance`);
+  `TRIES` turns round with that margin the driver swings instead;
+- links are slender rods as long as what they carry, of densities within 1 : `DENSITY`; half of the
+  mechanisms have massless blocks, where MuJoCo can hold them;
+- steps fine enough that no cap of a tolerance is in force (`reports.judge.tolerance`);
 - joints that pymunk's iterations solve: those of profile tuned leave at most `LEFT` of an error
   (`contraction`). From about 0.35 on its mechanisms come apart.
 
@@ -154,10 +151,8 @@ HARD = Range(margin=0.15, density=1000.0, arm=10.0, most_left=1.0)
 
 @dataclass(frozen=True)
 class Driven:
-    """A random mechanism as its scene file says it, and how to run a period of it.
-
-    ``left`` is what the iterations of profile tuned leave of an error of the joints.
-    """
+    """A random mechanism as its scene file says it, how to run a period of it, and what the
+    iterations of profile tuned leave of an error of its joints."""
 
     scene: Scene
     text: str
@@ -177,10 +172,8 @@ def recipes(draw: st.DrawFn) -> tuple[tuple[str, ...], int]:
 
 
 def made(forms: Sequence[str], seed: int, within: Range = TUNED_RANGE) -> Driven:
-    """The mechanism of a seed: laid out and weighed anew until it is within the range.
-
-    Raises LookupError where that does not come about.
-    """
+    """The mechanism of a seed, made anew until it is within the range; LookupError where it never
+    is."""
     chance = random.Random(f"{seed}: {'; '.join(forms)}")
     name = f"random-{chance.getrandbits(64):x}"
     speed = chance.choice((1, -1)) * 10 ** chance.uniform(-1.0, 3.0)

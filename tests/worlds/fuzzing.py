@@ -92,10 +92,9 @@ def fitting(raw: bytes, command: str) -> str:
 
 @dataclass(frozen=True)
 class Ended:
-    """How a command ended: exit code, an exception that it let out, output, messages, warnings of
-    Python and numpy, files that it left and those that it wrote elsewhere, the outcomes of its
-    cells, calls of functions (those of C too; 0 where nobody counted), and the memory [byte] before
-    and at its peak."""
+    """How a command ended, with an exception that it let out, warnings of Python and numpy, files
+    that it left or wrote elsewhere, outcomes of its cells, calls of functions (0 where nobody
+    counted), and the memory [byte] before and at its peak."""
 
     code: int
     escaped: str
@@ -142,12 +141,9 @@ def attempt(
     name: str = "scene.toml",
     counted: bool = False,
 ) -> Ended:
-    """Run the command with ``arguments`` on a file with these bytes, or one that is made by that,
-    in a folder of its own.
-
-    ``FILE`` and ``OUT`` among the arguments are the file and the folder for what it writes. Calls
-    are ``counted`` on demand, as that slows down what calls much.
-    """
+    """Run the command with ``arguments`` on a file of these bytes, or made by that, in a folder of
+    its own. ``FILE`` and ``OUT`` are the file and the folder for what it writes. Calls are
+    ``counted`` on demand, as that slows down what calls much."""
     _forget_peak()
     before = _peak()
     with tempfile.TemporaryDirectory() as folder:

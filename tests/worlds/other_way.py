@@ -39,13 +39,9 @@ def faster_law(law: Law, factor: float) -> Law:
 
 
 def sped_up(scene: Scene, factor: float) -> Scene:
-    """The scene driven ``factor`` times as fast through the same angles, in similar motion, or let
-    go so.
-
-    Loads, springs and constant friction grow as inertia does. Where the factor is below 0 a stroke
-    forward becomes one backward; friction turns round with the motion, and dampers do, so forces
-    with them are others then.
-    """
+    """The scene driven, or let go, ``factor`` times as fast through the same angles. Loads, springs
+    and constant friction grow as inertia does; where the factor is below 0 a stroke forward becomes
+    one backward, and friction and dampers turn round with the motion."""
     g = scene.gravity_m_s2
 
     def load(old: Load) -> Load:

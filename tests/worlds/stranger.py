@@ -147,11 +147,8 @@ def course(linkage: Linkage, time_s: Array) -> Course:
 
 
 class _Equations:
-    """The constraints of a linkage: two of every pin, two of every block, one of the crank.
-
-    ``ends`` are the bodies' ends at the pins: the constraint's first row, the body, its side (1 or
-    -1), and the point in the frame of the body.
-    """
+    """The constraints of a linkage: two of every pin, two of each block, one of the crank. ``ends``
+    at the pins are the constraint's first row, the body, its side (1 or -1), and its point."""
 
     def __init__(self, linkage: Linkage) -> None:
         self.linkage = linkage

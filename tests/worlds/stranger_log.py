@@ -28,12 +28,9 @@ SEED = 20260512
 
 @dataclass(frozen=True)
 class Column:
-    """One column: ``what`` of a body or point, ``per`` SI unit so many.
-
-    An angle may be wrapped into the turn that begins at ``turn_from`` [deg], and be that against a
-    ``parent``. What stands in a row may belong to an instant ``later_s`` after its time; then comes
-    ``offset``, in the unit of the column.
-    """
+    """A column: ``what`` of a body or point, ``per`` SI unit so many, and an ``offset``. An angle
+    may be wrapped into the turn that begins at ``turn_from`` [deg], and be that against a
+    ``parent``; what stands in a row may belong to an instant ``later_s`` after its time."""
 
     header: str
     of: str

@@ -88,11 +88,8 @@ class Layout:
     def slide(
         self, on: str, angle: float, place: complex, link: str | None, point: str | None = None
     ) -> None:
-        """A slider at a place on a line of ``on`` in a direction of the plane.
-
-        With ``link`` that link slides, by a point of its own at the place; else it is a block at
-        ``point``.
-        """
+        """A slider at a place on a line of ``on`` in a direction of the plane: a ``link`` by a
+        point of its own at the place, or a block at ``point``."""
         name = f"S{next(self.names)}"
         through = place - self.number(-1.0, 1.0) * cmath.rect(1.0, angle)
         along = angle - self.frames[on][1]
@@ -141,11 +138,8 @@ def _sign(at: Layout) -> int:
 
 
 def _slide_end(at: Layout, form: str, known: str, angle: float, place: complex) -> str:
-    """One end of a dyad that slides against a known body, at a new pin at ``place``.
-
-    ``block``: a block on the known body; ``link``: a link that slides on it; ``guide``: a link on
-    whose own line the known one slides. Returns the name of the pin.
-    """
+    """The new pin at ``place`` of one end of a dyad that slides against a known body: a ``block`` on
+    it, a ``link`` that slides on it, or a ``guide``, on whose own line the known one slides."""
     if form == "block":
         pin = f"P{next(at.names)}"
         at.slide(known, angle, place, None, pin)
@@ -277,11 +271,8 @@ def some_forms(kind: str, chance: random.Random) -> list[str]:
 
 @dataclass(frozen=True)
 class Designed:
-    """A random mechanism, with the frames (x, y [m], theta) in which its bodies were laid out.
-
-    That layout is the mechanism's position at time 0; blocks are named as in
-    `analytic.check.newton`.
-    """
+    """A random mechanism, with the frames (x, y [m], theta) of its bodies at time 0; blocks are named
+    as in `analytic.check.newton`."""
 
     scene: Scene
     frames: Mapping[str, tuple[float, float, float]]

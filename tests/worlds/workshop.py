@@ -104,13 +104,9 @@ def _body(system: Any, x: float, rates: list[float]) -> tuple[Any, Any]:
 
 @dataclass(frozen=True)
 class Disturbance:
-    """What pasting a snippet changes in the rest of a model [m, rad, or of a quaternion].
-
-    ``moving`` is the largest difference over a second to the model without the snippet, stepped as
-    the snippet says that all is: with its step, and MuJoCo's integrator or pymunk's iterations.
-    ``lasting`` is that of what no step changes, to the model as it was: where a box lies, and a
-    body that drifts at constant speed.
-    """
+    """What pasting a snippet changes in the rest of a model [m, rad, or of a quaternion]: the
+    largest difference over a second to the model without it, stepped as it says that all is, and
+    that of what no step changes: where a box lies, and a body that drifts."""
 
     moving: float
     lasting: float

@@ -37,14 +37,10 @@ TUNED = Profile("tuned", "fake", "as exact as told", {"knob": Setting(1, "there 
 
 @dataclass(frozen=True)
 class FakeEngine:
-    """An engine whose answer is known.
-
-    ``exact(scene, time_s)`` gives the true motion; ``disturb`` puts the error into the poses;
-    velocities are sampled ``velocity_shift`` steps away from the positions, as engines do.
-    It follows the driver's law under any drive, of which ``drives`` are not refused.
-    ``fails_after`` steps it raises, after ``diverges_after`` it says that it has diverged, and in
-    ``stopped`` why.
-    """
+    """An engine whose answer is known: ``exact(scene, time_s)`` with an error that ``disturb`` puts
+    into the poses, velocities sampled ``velocity_shift`` steps away from the positions. It follows
+    the driver's law under any drive that it does not refuse. ``fails_after`` steps it raises, after
+    ``diverges_after`` it says that it has diverged, and in ``stopped`` why."""
 
     exact: Callable[[Scene, Array], Motion] = solve
     disturb: Callable[[Poses], Poses] = lambda poses: poses
