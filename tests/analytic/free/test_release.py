@@ -237,7 +237,7 @@ def test_random_slider_cranks_and_fourbars_keep_their_energy(seed: int) -> None:
     rng = np.random.default_rng(seed)
     a, b, c, d = rng.uniform(0.1, 0.5, 4).round(3).tolist()
     start = {"start_deg": float(rng.uniform(-60.0, 60.0)), "speed_rad_s": 5.0}
-    for scene in (fourbar(a, b, c, d, **start), slider_crank(a, b, 0.01, **start)):  # type: ignore[arg-type]
+    for scene in (fourbar(a, b, c, d, **start), slider_crank(a, b, 0.01, **start)):
         theta = math.remainder(math.radians(start["start_deg"]), math.tau)
         if not any(low <= theta <= high for low, high in reach(scene)):
             continue
@@ -257,8 +257,6 @@ SCENES = {
     "limits": load_scene("fourbar-double-rocker-swing"),
 }
 LONG_S = {"everything that acts": 0.8, "swing": 1.0, "limits": 1.0}
-
-
 CHANGES = MOVES | {"faster": faster(5.0)}
 
 
