@@ -14,7 +14,7 @@ from analytic.structure.freedom_names import axis_in_words, names_of_freedoms
 from analytic.structure.joint_chains import chain_of
 from analytic.structure.joint_class import analyse_joint
 from analytic.structure.screws import carried, displaced, gap, reciprocal, rotation, translation
-from models.scheme import SchemeJoint
+from models.scheme import Place, SchemeJoint
 from models.touching import Contact, Touching, load_touching, shipped_contacts
 
 
@@ -60,12 +60,10 @@ def test_freedoms_have_names_where_axes_of_the_frame_do_and_places_else() -> Non
     assert axis_in_words(thread) == words
 
 
-def contact(
-    kind: str, at: tuple[float, float, float] = (0.0, 0.0, 0.0), **given: object
-) -> Contact:
+def contact(kind: str, at: Place = (0.0, 0.0, 0.0), **given: object) -> Contact:
     """A contact of a kind, with its directions along the frame's where none are given."""
     named = {"normal": (0.0, 0.0, 1.0), "along": (1.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)}
-    return Contact(kind, at, **{**named, "lead": 0.0, "both_ways": False, **given})  # type: ignore[arg-type]
+    return Contact(kind, at, **{**named, "lead": 0.0, "both_ways": False, **given})
 
 
 @pytest.mark.parametrize(
@@ -107,7 +105,7 @@ def test_the_class_is_the_same_in_every_frame(name: str) -> None:
     touching = load_touching(name)
     turn = Rotation.random(rng=np.random.default_rng(4)).as_matrix()
 
-    def moved(vector: tuple[float, float, float], by: float = 0.0) -> tuple[float, float, float]:
+    def moved(vector: Place, by: float = 0.0) -> Place:
         return tuple((turn @ vector + by).tolist())
 
     def carried_along(one: Contact) -> Contact:

@@ -41,7 +41,7 @@ def test_a_four_bar_is_found_again_from_its_path(
     timed: bool, closed: bool, seeds: tuple[int, ...], starts: int
 ) -> None:
     for seed in seeds:
-        _, _, task = random_path(seed, 15, timed=timed, closed=closed)
+        task = random_path(seed, 15, timed=timed, closed=closed)
         found = generate(task, starts=starts)
         assert found.fits[0].rms_m < 1e-4 * task.radius_m
         assert found.complete
@@ -64,30 +64,29 @@ FINE = at_length(40, reason="the share to a few hundredths: two seconds for each
     ids=NAMES,
 )
 def test_most_are_found_again(timed: bool, closed: bool, least: float, count: int) -> None:
-    tasks = [random_path(seed, 20, timed=timed, closed=closed)[2] for seed in range(count)]
+    tasks = [random_path(seed, 20, timed=timed, closed=closed) for seed in range(count)]
     near = sum(generate(task).fits[0].rms_m < 1e-4 * task.radius_m for task in tasks)
     assert near >= least * count
 
 
 @pytest.mark.parametrize("starts", [8, slowly(24, reason="another search, of many starts")])
 def test_timing_is_kept_and_without_it_the_angles_are_free(starts: int) -> None:
-    one, angles, task = random_path(4, 12, timed=True, closed=True)
+    task = random_path(4, 12, timed=True, closed=True)
     for fit in generate(task, starts=starts).fits:
-        assert np.diff(fit.crank_rad) == pytest.approx(np.diff(angles), abs=1e-5)
+        assert np.diff(fit.crank_rad) == pytest.approx(np.diff(task.crank_rad), abs=1e-5)
     # Other angles for the same points are another task, that the same four-bar does not do.
     warped = task.turned_rad + 0.15 * np.sin(task.turned_rad)
     other = replace(task, crank_rad=tuple(warped.tolist()))
     assert generate(other, starts=starts).fits[0].rms_m > 1e-3 * task.radius_m
     free = generate(replace(task, crank_rad=None), starts=starts).fits[0]
     assert free.rms_m < 1e-5 * task.radius_m
-    assert one.family in ("crank-rocker", "double-crank")
 
 
 @few_starts
 @pytest.mark.parametrize("timed", [True, False])
 def test_noise_is_not_fitted_and_not_made_worse(timed: bool, starts: int) -> None:
     noise = 0.01
-    _, _, task = random_path(1, 40, timed=timed, closed=True, noise=noise)
+    task = random_path(1, 40, timed=timed, closed=True, noise=noise)
     best = generate(task, starts=starts).fits[0]
     # Of both directions of the noise with timing, and of the one across the curve without.
     expected = noise * math.sqrt(2.0 if timed else 1.0) * task.radius_m
@@ -97,7 +96,7 @@ def test_noise_is_not_fitted_and_not_made_worse(timed: bool, starts: int) -> Non
 
 @pytest.mark.parametrize("starts", [16, slowly(STARTS, reason="more of them to be told apart")])
 def test_the_mechanisms_are_distinct_and_the_nearest_is_the_first(starts: int) -> None:
-    _, _, task = random_path(0, 12, timed=False, closed=True, noise=0.02)
+    task = random_path(0, 12, timed=False, closed=True, noise=0.02)
     fits = generate(task, count=6, starts=starts).fits
     assert len(fits) > 2
     errors = [round(fit.rms_m / task.radius_m, 6) for fit in fits]
@@ -110,7 +109,7 @@ def test_the_mechanisms_are_distinct_and_the_nearest_is_the_first(starts: int) -
 
 @few_starts
 def test_cognates_are_among_them(starts: int) -> None:
-    task = random_path(0, 20, timed=False, closed=True)[2]
+    task = random_path(0, 20, timed=False, closed=True)
     fits = generate(task, count=4, starts=starts).fits
     assert sum(fit.rms_m < 1e-9 * task.radius_m for fit in fits) >= 2
 
@@ -119,17 +118,17 @@ def test_cognates_are_among_them(starts: int) -> None:
     ("starts", "closed"), [(FEW, True), slowly(10, False, reason="an open path, and more starts")]
 )
 def test_the_same_seed_gives_the_same_answer(starts: int, closed: bool) -> None:
-    _, _, task = random_path(3, 10, timed=False, closed=False)
+    task = random_path(3, 10, timed=False, closed=False)
     one, other = (generate(task, starts=starts, seed=7) for _ in range(2))
     assert [fit.four_bar for fit in one.fits] == [fit.four_bar for fit in other.fits]
-    timed = random_path(3, 10, timed=True, closed=closed, noise=0.02)[2]
+    timed = random_path(3, 10, timed=True, closed=closed, noise=0.02)
     seeds = [generate(timed, starts=4, seed=seed).fits[0].rms_m for seed in (1, 1, 2)]
     assert seeds[0] == seeds[1] != seeds[2]
 
 
 @pytest.mark.parametrize("points", [12, slowly(30, reason="a longer search to tell of")])
 def test_a_search_ends_with_its_time_and_tells_how_far_it_is(points: int) -> None:
-    _, _, task = random_path(0, points, timed=False, closed=True)
+    task = random_path(0, points, timed=False, closed=True)
     told: list[tuple[float, float]] = []
     found = generate(task, time_s=0.0, progress=lambda *each: told.append(each))
     assert not found.complete
@@ -146,7 +145,7 @@ def test_a_search_ends_with_its_time_and_tells_how_far_it_is(points: int) -> Non
 @few_starts
 @pytest.mark.parametrize("closed", [True, False])
 def test_points_in_a_wrong_order_are_never_met_as_if_in_order(closed: bool, starts: int) -> None:
-    _, _, task = random_path(5, 14, timed=False, closed=closed)
+    task = random_path(5, 14, timed=False, closed=closed)
     points = list(task.points)
     points[4], points[8] = points[8], points[4]
     try:
@@ -161,13 +160,14 @@ def test_points_in_a_wrong_order_are_never_met_as_if_in_order(closed: bool, star
         assert np.all(steps > 0.0) or np.all(steps < 0.0)
 
 
-def test_a_distance_that_is_not_allowed_is_told_as_a_defect() -> None:
-    _, _, task = random_path(1, 12, timed=True, closed=True, noise=0.02)
+def test_a_distance_that_is_not_allowed_is_told_as_a_defect_and_the_steps_draw_all() -> None:
+    task = random_path(1, 12, timed=True, closed=True, noise=0.02)
     proposal = generate(task, starts=8).fits[0].proposal
     assert not examine(proposal).defects
     (told,) = examine(replace(proposal, allowed=0.0)).defects
     assert told.startswith("misses a position by")
     assert examine(replace(proposal, allowed=0.5 * proposal.allowed)).defects
+    assert [len(step.elements) for step in proposal.steps] == [12, 1, 7]  # points, curve and links
 
 
 def test_few_points_leave_freedom_and_are_met_exactly() -> None:
@@ -175,16 +175,10 @@ def test_few_points_leave_freedom_and_are_met_exactly() -> None:
     best = generate(PathTask(points), starts=FEW).fits[0]
     assert best.rms_m < 1e-8
     assert best.proposal.chosen["freedom"].startswith("4 numbers")
-    timed = random_path(1, 5, timed=True, closed=False)[2]
+    timed = random_path(1, 5, timed=True, closed=False)
     determined = generate(timed, starts=FEW).fits[0]
     assert "freedom" not in determined.proposal.chosen
     assert determined.rms_m < 1e-6 * timed.radius_m
-
-
-def test_the_steps_draw_the_points_the_curve_and_the_links() -> None:
-    _, _, task = random_path(0, 8, timed=True, closed=False)
-    steps = generate(task, starts=6, count=1).fits[0].proposal.steps
-    assert [len(step.elements) for step in steps] == [8, 1, 7]
 
 
 SQUARE = (0j, 1 + 0j, 1 + 1j, 1j)

@@ -48,9 +48,9 @@ def random_curve(rng: np.random.Generator) -> CouplerCurve:
 
 def random_path(
     seed: int, count: int, *, timed: bool, closed: bool, noise: float = 0.0
-) -> tuple[CouplerCurve, Array, PathTask]:
-    """A four-bar, its crank's angles [rad], and the points it goes through there, each moved by a
-    share of their spread; of links no longer than ten times the radius of these points."""
+) -> PathTask:
+    """Points that a four-bar goes through, each moved by a share of their spread, with its crank's
+    angles; its links are no longer than ten times the radius of these points."""
     rng = np.random.default_rng(seed)
     while True:
         one = random_curve(rng)
@@ -63,7 +63,7 @@ def random_path(
     off = rng.normal(size=count) + 1j * rng.normal(size=count)
     points += noise * np.std(points) * off
     crank = tuple((angles - 3.0).tolist()) if timed else None
-    return one, angles, PathTask(tuple(points.tolist()), crank, closed)
+    return PathTask(tuple(points.tolist()), crank, closed)
 
 
 FAMILIES: tuple[Family, ...] = (*FULL, "limited")
@@ -178,7 +178,7 @@ def test_angles_in_order_are_the_nearest_ones() -> None:
 
 
 def test_the_look_at_timed_shapes_tells_the_least_sum_of_squares() -> None:
-    _, _, task = random_path(3, 11, timed=True, closed=True, noise=0.1)
+    task = random_path(3, 11, timed=True, closed=True, noise=0.1)
     path, x, start = task.unit, shapes("crank-rocker", 40), np.linspace(0.0, 6.0, 40)
     cost = _costs(path, "crank-rocker", x, start)
     told = np.flatnonzero(np.isfinite(cost))
@@ -193,7 +193,7 @@ def test_the_look_at_timed_shapes_tells_the_least_sum_of_squares() -> None:
 
 
 def test_timed_starts_are_the_better_the_earlier_and_apart() -> None:
-    _, _, task = random_path(3, 11, timed=True, closed=True)
+    task = random_path(3, 11, timed=True, closed=True)
     starts = timed_starts(task.unit, 10, 0, limited=False)
     costs = [start.cost for start in starts]
     assert costs == sorted(costs)
@@ -284,7 +284,7 @@ def test_the_atlas_is_built_once_and_the_same() -> None:
 
 @pytest.mark.parametrize("closed", [True, False])
 def test_starts_lie_near_the_path(closed: bool) -> None:
-    _, _, task = random_path(2, 25, timed=False, closed=closed)
+    task = random_path(2, 25, timed=False, closed=closed)
     starts = (closed_starts if closed else open_starts)(task.unit, 6)
     assert len(starts) == 6
     for start in starts:
