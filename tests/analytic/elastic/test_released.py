@@ -249,7 +249,7 @@ def test_control_quells_what_rings_under_a_constant_speed(begin: float, end: flo
 
 
 @pytest.mark.parametrize("turns", [0.05, slowly(0.1, reason="errors that grow with time")])
-def test_with_multipliers_it_is_the_same_motion(turns: float) -> None:
+def test_under_control_multipliers_give_the_same_motion(turns: float) -> None:
     until_s = turns * TURN_S
     time_s = np.linspace(0.0, until_s, 11)
     motion = control_elastic(SCENE, until_s, Modes(1)).at(time_s)
@@ -270,7 +270,7 @@ def test_the_torque_is_that_of_the_controller_and_all_work_there_is() -> None:
     assert np.ptp(energy.work) > 1e-3 * energy.kinetic.max()
 
 
-def test_with_a_stiff_link_the_crank_keeps_to_its_law() -> None:
+def test_under_control_a_crank_with_a_stiff_link_keeps_to_its_law() -> None:
     """From the quasi-static shape, as a rigid mechanism that starts on its way does."""
     stiff = with_elastic(SCENE, flexural_n_m2=4.725e6)
     stiff = replace(stiff, start=replace(SCENE.start, shape="quasi-static"))
@@ -279,14 +279,14 @@ def test_with_a_stiff_link_the_crank_keeps_to_its_law() -> None:
     assert largest(crank.theta - LAW.at(time_s)[0]) < 1e-8
 
 
-def test_without_gains_what_it_needs_is_not_enough() -> None:
+def test_without_gains_the_torque_that_it_needs_is_not_enough() -> None:
     """The torque of the rigid mechanism alone lets the crank drift off."""
     alone = control_elastic(with_gains(SCENE, 0.0, 0.0), 0.35 * TURN_S, Modes(1))
     end = np.array([0.35 * TURN_S])
     assert largest(alone.at(end).links["crank"].theta - LAW.at(end)[0]) > 1e-3
 
 
-def test_a_file_says_it_and_reads_back() -> None:
+def test_a_file_names_a_controller_and_reads_back() -> None:
     text = find_scene("fourbar-elastic-controlled").read_text(encoding="utf-8")
     table = tomllib.loads(text)["driver"]
     assert Controlled(LAW.start_rad, 7.3686, table["kp_n_m_rad"], table["kd_n_m_s"]) == LAW
@@ -302,7 +302,7 @@ def test_a_file_says_it_and_reads_back() -> None:
         with_gains(SCENE, 1.0, -1.0)
 
 
-def test_nobody_takes_it_for_a_crank_that_is_told() -> None:
+def test_nobody_takes_a_controlled_crank_for_one_that_is_told() -> None:
     with pytest.raises(CrankcheckError, match="is controlled, and gives way"):
         assert DrivenElasticMotion(SCENE, 1.0, Modes(1), "straight", stiffened=True).form
     state = solve(SCENE, np.zeros(1), bound=False).state()
@@ -313,7 +313,7 @@ def test_nobody_takes_it_for_a_crank_that_is_told() -> None:
             refuse_unknown_forces(SCENE, engine(name), with_forces=False)
 
 
-def test_let_go_it_has_no_controller() -> None:
+def test_let_go_a_crank_has_no_controller() -> None:
     free = release_elastic(SCENE, 0.01, Modes(1)).at(np.array([0.0, 0.01]))
     assert largest(free.forces.torque) == 0.0
 
@@ -327,7 +327,7 @@ def test_let_go_it_has_no_controller() -> None:
         slowly(0.0, 0.1, 0.1, reason="one gain alone, and errors that grow with time"),
     ],
 )
-def test_its_torque_as_loads_moves_it_as_control_does(kp: float, kd: float, until_s: float) -> None:
+def test_a_controllers_torque_as_loads_does_the_same(kp: float, kd: float, until_s: float) -> None:
     scene = with_gains(replace(SCENE, gravity_m_s2=(0.0, -9.81)), kp, kd)
     times = np.linspace(0.0, until_s, 50)
     loose = released_under_control(scene)

@@ -21,7 +21,6 @@ from models.scene import Scene
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.analytic.forces.beside import AGREED, agreed, apart, at, out_of_balance, series, turn
 from tests.worlds.loading import loaded, massless, rubbed, rubbed_mechanism
-from tests.worlds.tiers import slowly
 
 PRESS = """
 name = "press"
@@ -138,20 +137,6 @@ def test_a_fault_in_friction_makes_them_disagree() -> None:
     assert out_of_balance(scene, time_s, spoilt) > AGREED
     with pytest.raises(CrankcheckError, match=r"friction.piston is not given"):
         power.power_balance(scene, solve(scene, time_s), found.torque)
-
-
-@pytest.mark.parametrize("every", [8, slowly(4, reason="random mechanisms")])
-def test_without_a_coefficient_the_forces_are_those_without_friction(every: int) -> None:
-    """And with a small one they are near it, by as much."""
-    for number in range(0, 40, every):
-        scene, _ = rubbed_mechanism(number)
-        time_s = np.linspace(0.01, 1.0, 7) * scene.driver.law.period_s
-        bare = kinetostatics.forces(replace(scene, friction={}), time_s)
-        for mu, off in ((0.0, 1e-13), (1e-9, 1e-6)):
-            laws = {j: CoulombFriction(j, mu, 0.0 if j in scene.sliders else 0.05)
-                    for j in scene.friction}  # fmt: skip
-            found = kinetostatics.forces(replace(scene, friction=laws), time_s)
-            assert apart(bare, replace(found, friction={})) < off, (number, mu)
 
 
 def test_a_joint_that_does_not_move_may_rub_either_way() -> None:
