@@ -85,17 +85,12 @@ def coupler_poses(angles: list[float]) -> tuple[list[Pose], list[Dyad]]:
     return poses, [Dyad(0j, 0j), Dyad(d + 0j, b + 0j)]
 
 
-def test_the_cranks_of_a_four_bar_are_among_those_of_its_coupler() -> None:
-    poses, cranks = coupler_poses([0.3, 1.0, 2.2, 3.5, 5.0])
-    found = five_positions(poses)
-    assert all(away(crank, found) < 1e-12 for crank in cranks)
-
-
-def test_curves_of_four_positions_hold_the_body_and_pass_its_cranks() -> None:
+def test_curves_of_four_positions_hold_the_body_and_pass_its_cranks_and_theirs_come_near() -> None:
     poses, cranks = coupler_poses([0.3, 1.0, 2.2, 3.5])
     dyads = [dyad for piece in four_positions(poses, 2880) for dyad in piece]
     assert max(spread(poses, dyad) for dyad in dyads) < 1e-11
     assert all(away(crank, dyads) < 0.02 for crank in cranks)
+    assert min(spread(poses, other) for other in theirs(poses)) > 1e-4
 
 
 def test_a_crank_of_five_positions_lies_on_the_curves_of_four() -> None:
@@ -135,16 +130,10 @@ def test_three_positions_are_held_by_the_same_cranks() -> None:
         assert own.fixed == pytest.approx(other.fixed, abs=1e-9 * (1.0 + abs(own.fixed)))
 
 
-def test_their_cranks_of_four_positions_come_near_and_ours_meet_them() -> None:
-    poses, _ = coupler_poses([0.3, 1.0, 2.2, 3.5])
-    others = theirs(poses)
-    assert others
-    assert min(spread(poses, other) for other in others) > 1e-4
-    assert max(spread(poses, own) for piece in four_positions(poses) for own in piece) < 1e-11
-
-
-def test_of_five_positions_they_find_none_and_ours_meet_them() -> None:
-    for poses in (coupler_poses([0.3, 1.0, 2.2, 3.5, 5.0])[0], random_poses(3, 5)):
+def test_of_five_positions_they_find_none_and_ours_meet_them_with_those_of_a_four_bar() -> None:
+    coupler, cranks = coupler_poses([0.3, 1.0, 2.2, 3.5, 5.0])
+    assert all(away(crank, five_positions(coupler)) < 1e-12 for crank in cranks)
+    for poses in (coupler, random_poses(3, 5)):
         assert not theirs(poses)
         own = five_positions(poses)
         assert len(own) >= 2

@@ -148,7 +148,7 @@ def test_equal_ripples_are_equal_and_no_larger_than_before(
 
 def test_a_function_that_a_mechanism_generates_exactly_has_no_ripples() -> None:
     rng = np.random.default_rng(6)
-    for kind in ("fourbar", "slider-crank"):
+    for kind in KINDS:
         case = known(rng, kind, 3, ("input", "output"))
         (proposal,) = function_designs(replace(case.task, equal_ripple=True))
         assert proposal.doubt == ""
@@ -235,13 +235,11 @@ def test_a_hump_and_a_table_are_generated(start: float | None) -> None:
 
 
 def test_lengths_go_with_the_ground_and_with_the_sliders_range() -> None:
-    task = power_task("fourbar", 3)
-    (one,), (large,) = function_designs(task), function_designs(replace(task, ground_m=3.0))
-    assert lengths(large.draft) == pytest.approx([3.0 * each for each in lengths(one.draft)])
-    slide = power_task("slider-crank", 3)
-    (one,) = function_designs(slide)
-    (large,) = function_designs(replace(slide, output_range=0.15, output_start=0.075))
-    assert lengths(large.draft) == pytest.approx([3.0 * each for each in lengths(one.draft)])
+    larger = {"ground_m": 3.0}, {"output_range": 0.15, "output_start": 0.075}
+    for kind, change in zip(KINDS, larger, strict=True):
+        task = power_task(kind, 3)
+        (one,), (large,) = function_designs(task), function_designs(replace(task, **change))
+        assert lengths(large.draft) == pytest.approx([3.0 * each for each in lengths(one.draft)])
 
 
 def lengths(draft: Draft) -> list[float]:
