@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -183,7 +184,10 @@ def test_a_link_to_a_file_elsewhere_is_not_included(tmp_path: Path) -> None:
 
 ASKED = {
     "no such joint": ({"joint": "crnk"}, "no joint of that name"),
-    "not against the ground": ({"joint": "B"}, "it turns against body crank; drivable: A, D"),
+    "not against the ground": (
+        {"joint": "B"},
+        "body crank, and not against the ground; drivable: A, D",
+    ),
     "no such keyframe": ({"key": "home"}, "--key 'home': no keyframe of that name"),
     "no such choice": ({"branch": {"X": 1}}, "--branch X: it chooses between no two assemblies"),
     "far round": ({"start_deg": 36001.0}, "--start 36001: that is more than 100 turns"),
@@ -197,9 +201,8 @@ ASKED = {
 @pytest.mark.parametrize("case", ASKED)
 def test_what_is_asked_for_is_checked(case: str, tmp_path: Path) -> None:
     more, words = ASKED[case]
-    with pytest.raises(CrankcheckError) as refused:
+    with pytest.raises(CrankcheckError, match=re.escape(words)):
         read_text(tmp_path, HEALTHY, **more)
-    assert words.split(";")[0] in str(refused.value)
 
 
 NAMES = {
@@ -220,7 +223,7 @@ def test_any_names_make_a_scene(case: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("more", "ties"), [("", ""), (THIRD.format(off=0), TIED)], ids=["", "+1"])
-def test_a_parallelogram_passes_its_change_points_with_a_note_and_with_a_redundant_link(
+def test_a_parallelogram_passes_change_points_with_a_note(
     more: str, ties: str, tmp_path: Path
 ) -> None:
     text = PLATES.replace("<!-- more -->", more).replace("<!-- ties -->", ties)
@@ -307,17 +310,15 @@ def test_a_line_that_hangs_is_a_row_with_its_reason(tmp_path: Path) -> None:
 def test_a_run_to_a_singular_position_is_refused_with_what_sets_the_range(tmp_path: Path) -> None:
     scene = load_scene("tangent")
     state = solve(scene, np.zeros(1), bound=False).state()
-    with pytest.raises(CrankcheckError) as refused:
+    told = "at driver 90 deg the dyad of .*--start and --turns set the range of joint lever.A"
+    with pytest.raises(CrankcheckError, match=told):
         read_text(tmp_path, build(scene, state), joint="lever.A")
-    assert "at driver 90 deg the dyad of" in str(refused.value)
-    assert "--start and --turns set the range of joint lever.A" in str(refused.value)
 
 
-@pytest.mark.parametrize(
-    "start", [None, slowly(-20.0, reason="a triad that is led elsewhere first")]
-)
-def test_a_model_with_a_triad_has_a_reference_from_its_pose_and_from_elsewhere(
-    tmp_path: Path, start: float | None
-) -> None:
+ELSEWHERE = slowly(-20.0, reason="a triad that is led elsewhere first")
+
+
+@pytest.mark.parametrize("start", [None, ELSEWHERE])
+def test_a_model_with_a_triad_has_a_reference(tmp_path: Path, start: float | None) -> None:
     account = read_text(tmp_path, TRIAD, turns=0.05, dt_s=2e-4, start_deg=start)
     assert [triad.central for triad in analyse(account.scene).triads] == ["plate"]
