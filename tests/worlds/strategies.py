@@ -138,7 +138,7 @@ def _sign(at: Layout) -> int:
 
 
 def _slide_end(at: Layout, form: str, known: str, angle: float, place: complex) -> str:
-    """The new pin at ``place`` of one end of a dyad that slides against a known body: a ``block`` on
+    """The new pin at ``place`` of an end of a dyad that slides against a known body: a ``block`` on
     it, a ``link`` that slides on it, or a ``guide``, on whose own line the known one slides."""
     if form == "block":
         pin = f"P{next(at.names)}"
@@ -271,7 +271,7 @@ def some_forms(kind: str, chance: random.Random) -> list[str]:
 
 @dataclass(frozen=True)
 class Designed:
-    """A random mechanism, with the frames (x, y [m], theta) of its bodies at time 0; blocks are named
+    """A random mechanism, with the frames (x, y [m], theta) of its bodies at time 0; blocks named
     as in `analytic.check.newton`."""
 
     scene: Scene

@@ -25,7 +25,6 @@ from models.waves import Pulse
 from sim.engine import Run, Settings
 from sim.exudyn.engine import ENGINE
 from sim.exudyn.jumps import StepMeans
-from sim.spring_lengths import spring_lengths
 from tests.worlds import runs
 from tests.worlds.let_go import released
 from tests.worlds.runs import acted_on, opened
@@ -177,21 +176,3 @@ def test_jumps_have_their_impulse_and_its_instant_wherever_they_are_in_a_step() 
             assert moment == pytest.approx(ends[-1] ** 2 - place**2, abs=2e-5)
     early = StepMeans(Staircase((-0.2, 0.0), (1.0, 3.0)), 0.0, dt_s)
     assert (early.at(0.0), early.at(dt_s)) == (3.0, 3.0)
-
-
-def test_springs_of_a_driven_mechanism_are_borne_by_its_drive() -> None:
-    """By virtual power: the torque is that without them, and what they pull with."""
-    plain = load_scene("fourbar-lecture-1")
-    sprung = replace(plain, springs=SCENES["springs"].springs)
-    with_, without = (
-        runs.ran(scene, ENGINE, dt_s=1e-3, steps=300, with_forces=True) for scene in (sprung, plain)
-    )
-    session = opened(sprung, ENGINE, dt_s=1e-3)
-    lengths = spring_lengths(sprung, session.record(300, 1).poses)
-    power = np.zeros(301)
-    for name, spring in sprung.springs.items():
-        speed = np.gradient(lengths[name], 1e-3, edge_order=2)
-        power += (spring.rate * (lengths[name] - spring.free) + spring.damping * speed) * speed
-    more = with_.motion.forces.torque - without.motion.forces.torque
-    borne = power / with_.motion.links["crank"].omega
-    np.testing.assert_allclose(more[2:], borne[2:], atol=1e-3 * np.abs(borne).max())

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.free.machine import Machine
 from analytic.free.release import release
 from analytic.multibody.release_multibody import start_state
 from models.array import Array
@@ -109,18 +108,6 @@ def test_springs_are_no_reactions_and_nothing_drives_the_crank(name: str) -> Non
     forces = log.forces
     largest = max(float(np.abs(f).max()) for by in forces.pins.values() for f in by.values())
     assert np.abs(forces.torque).max() < 5e-7 * largest * scene.longest_m
-
-
-def test_springs_of_a_driven_mechanism_are_borne_by_its_drive() -> None:
-    spring = LineSpring("l", 300.0, 4.0, 0.1, ("B", "D"))
-    scene = acted_on(load_scene(FOURBAR), spring)
-    session = runs.opened(scene, "mujoco")
-    forces = session.record_forces(100, 1).forces.stretch(slice(5, None))
-    theta, omega, _ = scene.driver.law.at(forces.time_s)
-    machine = Machine(scene)
-    _, slope = machine.inertia(theta)
-    torque = 0.5 * slope * omega**2 - machine.push(forces.time_s, theta, omega)
-    assert np.abs(forces.torque - torque).max() < 1e-3 * np.abs(torque).max()
 
 
 def test_springs_under_the_servo_s_integrator_have_the_iterations_that_they_need() -> None:

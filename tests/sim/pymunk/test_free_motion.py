@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analytic.free.machine import Machine
 from analytic.free.release import release
 from analytic.kinematics import solve, solve_driven
 from models.array import Array
@@ -34,7 +33,6 @@ from sim.pymunk.snippet import SNIPPET
 from sim.run import run
 from sim.settings import resolved
 from sim.snippets import Stepping
-from tests.sim.pymunk.test_forces import START
 from tests.worlds.let_go import released
 from tests.worlds.runs import acted_on, opened, ran
 from tests.worlds.tiers import slowly
@@ -196,37 +194,6 @@ def test_springs_are_no_part_of_what_joints_bear(name: str, springs: str) -> Non
     found = ran(scene, ENGINE, start=released(scene)[0], with_forces=True, **given).motion
     assert found.forces.contradictions == ()
     assert not found.forces.torque[1:].any()
-
-
-SLIDING = {
-    "slotted-lever": SlideSpring("along", 300.0, 3.0, 0.1, "B"),  # on a link, without mass
-    "scotch-yoke": SlideSpring("along", 300.0, 3.0, 0.1, "B"),  # on a link, with mass
-    "slider-crank-excel-350": ALONG,
-    "fourbar-lecture-1": PinSpring("knee", 5.0, 0.1, 0.3, "C", ("coupler", "rocker")),
-}
-
-
-@pytest.mark.parametrize("name", SLIDING)
-def test_a_driven_mechanism_takes_its_springs_with_it(name: str) -> None:
-    """The torque of the drive is what the power of springs asks for, either way."""
-    scene = replace(load_scene(name), springs={"one": replace(SLIDING[name], name="one")})
-    forces, native = (
-        ran(scene, ENGINE, with_forces=True, settings={"springs": springs}).motion.forces
-        for springs in ("forces", "native")
-    )
-    assert forces.contradictions == native.contradictions == ()
-    exact = power(scene, forces.time_s)
-    size = np.abs(exact).max()
-    assert np.abs(forces.torque - exact)[START:].max() < 1e-3 * size
-    assert np.abs(native.torque - exact)[START:].max() < 3e-2 * size  # of first order
-
-
-def power(scene: Scene, time_s: Array) -> Array:
-    """The torque of the drive at constant speed, by the work of all that moves [N m]."""
-    machine, (theta, omega, _) = Machine(scene), scene.driver.law.at(time_s)
-    return np.asarray(
-        0.5 * machine.inertia(theta)[1] * omega**2 - machine.push(time_s, theta, omega)
-    )
 
 
 def test_what_almost_rests_at_the_start_is_not_taken_to_run_away() -> None:
