@@ -122,9 +122,7 @@ def test_elastic_links_that_are_let_go_are_verified_where_they_are_named(names: 
 
 
 @pytest.mark.parametrize("name", [PULSE, CONTROLLED])
-def test_a_log_of_elastic_links_that_were_let_go_is_not_judged_either(
-    name: str, tmp_path: Path
-) -> None:
+def test_a_log_of_elastic_links_that_were_let_go_is_not_judged(name: str, tmp_path: Path) -> None:
     log = tmp_path / "log.csv"
     asked = ["--segments", "2", "--duration", "0.05"]
     assert "next:" not in crankcheck("run", name, *asked, "-o", log)
@@ -162,9 +160,7 @@ def test_a_sweep_of_what_is_let_go_steps_elastic_links_as_their_segments_ask() -
         assert steps(name, dt_s=[5e-4]) == [5e-4]
 
 
-def test_what_is_let_go_is_swept_and_timed_over_the_step(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_let_go_is_swept_and_timed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("reports.sweep.measured.REPEAT_S", 1e-5)  # nobody compares these times
     asked = [*MUJOCO, "--free", "--segments", 4, "--dt", "1e-3,5e-4", "--duration", 0.3]
     told = crankcheck("sweep", PULSE, "-o", tmp_path / "s", *asked)
@@ -196,9 +192,7 @@ def said(log: Path) -> str:
     return crankcheck("run", NAME, "--segments", 4, *TURN, "-o", log)
 
 
-def test_the_log_of_a_run_is_judged_by_the_command_that_run_tells(
-    said: str, log: Path, tmp_path: Path
-) -> None:
+def test_a_log_is_judged_by_the_command_of_its_run(said: str, log: Path, tmp_path: Path) -> None:
     head = log.read_text().splitlines()[0]
     assert "coupler_deflection_m" in head
     assert "coupler-1" not in head

@@ -56,9 +56,7 @@ def worst(checked: Checked, quantity: str, kind: str = "total") -> float:
         slowly(CONTROLLED, "exudyn", 1e-3, reason=ENGINES),
     ],
 )
-def test_an_engine_comes_to_its_exact_chain_as_the_square_of_the_step(
-    name: str, engine: str, most: float
-) -> None:
+def test_engines_are_off_the_chain_by_the_step_squared(name: str, engine: str, most: float) -> None:
     found = check(cell(name, engine, converge=True))
     assert found.verdict == "within", [finding.text for finding in found.failures]
     assert worst(found, "segments") < most
@@ -70,7 +68,7 @@ def checked() -> Checked:
     return check(cell())
 
 
-def test_the_segments_are_told_from_the_engine_and_the_phase_is_that_of_the_beam(
+def test_the_segments_are_told_from_the_engine_and_the_phase_is_the_beams(
     checked: Checked,
 ) -> None:
     facts, raw = checked.errors.elastic, worst(checked, "phase", "raw")

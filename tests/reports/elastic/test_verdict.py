@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -26,16 +27,12 @@ USUAL = 720
 SCENE = load_scene("fourbar-elastic")
 
 
-def cell(
-    scene: Scene = SCENE, engine: str = "mujoco", steps: int = USUAL, **changes: object
-) -> Cell:
+def cell(scene: Scene = SCENE, engine: str = "mujoco", steps: int = USUAL, **changes: Any) -> Cell:
     """A turn with four segments."""
     return of_turns(scene, engine, steps, **{"segments": 4, **changes})
 
 
-def beam(
-    scene: Scene = SCENE, elements: int = 8, steps: int = 2 * USUAL, **changes: object
-) -> Cell:
+def beam(scene: Scene = SCENE, elements: int = 8, steps: int = 2 * USUAL, **changes: Any) -> Cell:
     return of_turns(scene, "exudyn", steps, segments=elements, springs="beam", **changes)
 
 
@@ -163,9 +160,7 @@ def test_elements_come_to_the_beam_with_more_than_their_fourth_power() -> None:
         slowly(math.inf, 1e-3, reason="both at once show it"),
     ],
 )
-def test_a_link_that_stretches_or_is_damped_is_a_beam(
-    eight: Checked, axial_n: float, damping_s: float
-) -> None:
+def test_a_beam_stretches_and_is_damped(eight: Checked, axial_n: float, damping_s: float) -> None:
     found = within(beam(with_coupler(axial_n=axial_n, damping_s=damping_s)))
     if damping_s:
         assert off(found) < 1e-4

@@ -226,9 +226,7 @@ def through_change_points() -> Iterator[object]:
 
 
 @pytest.mark.parametrize(("name", "engine"), list(through_change_points()))
-def test_a_fault_in_a_run_through_change_points_fails_the_rule_that_it_names(
-    name: str, engine: str
-) -> None:
+def test_a_fault_in_a_run_through_change_points_fails_its_rule(name: str, engine: str) -> None:
     place = trial._place(FAULTS[name], PARALLELOGRAM, engine, trial.STEPS, search=False)
     assert place.finding is not None, place.failed
     assert not place.false

@@ -93,9 +93,7 @@ def rocker(done: Run) -> Array:
 
 @BOTH
 @pytest.mark.parametrize("scene_name", [FOURBAR, SLIDER])
-def test_a_session_cut_into_stretches_gives_the_same_bits(
-    scene_name: str, engine_name: str
-) -> None:
+def test_a_session_cut_into_stretches_has_the_same_bits(scene_name: str, engine_name: str) -> None:
     whole = planted(nothing, engine_name, scene_name=scene_name)
     idle = in_engine(lambda steps: range(0, steps, 50), lambda *_: None)
     cut = planted(idle, engine_name, 0.0, scene_name)

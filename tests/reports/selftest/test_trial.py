@@ -96,9 +96,7 @@ def test_a_fault_is_caught_with_its_smallest_size(planted: Plant) -> None:
         assert planted(replace(SPIKE, size=size), search=False).caught is seen
 
 
-def test_a_fault_escapes_where_its_rule_is_blind(
-    planted: Plant, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_fault_escapes_a_blind_rule(planted: Plant, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(RULES, "CC114", Stubborn("CC114", "pass"))
     verdict = planted(SPIKE)
     assert (verdict.caught, verdict.sound) == (False, True)
@@ -190,7 +188,7 @@ def test_few_faults_are_shown_with_what_the_rule_says() -> None:
     assert "1 of 1 fault caught" in result.output
 
 
-def test_a_blind_rule_lets_its_faults_escape_and_ends_with_1(
+def test_a_blind_rule_lets_its_faults_go_and_ends_with_1(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(RULES, "CC107", Stubborn("CC107", "pass"))
@@ -276,9 +274,7 @@ def shown(found: list[Verdict], width: int) -> str:
 
 
 @pytest.mark.parametrize("width", [80, 100])
-def test_the_table_fits_the_terminal_with_nothing_clipped(
-    every_fault: list[Verdict], width: int
-) -> None:
+def test_the_table_fits_with_nothing_clipped(every_fault: list[Verdict], width: int) -> None:
     text = shown(every_fault, width)
     assert max(len(line.rstrip()) for line in text.splitlines()) <= width
     assert "\u2026" not in text
