@@ -1,7 +1,12 @@
-"""The four-bar A B C D of any lengths."""
+"""The four-bar A B C D of any lengths, and random ones."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+import numpy as np
+
+from analytic.mechanism.fourbar import FourBar
 from models.files import parse_scene
 from models.scene import Scene
 
@@ -22,3 +27,10 @@ def fourbar(
     driver: str = 'link = "crank"', start_deg: float = 0.0, speed: float = 1.0,
 ) -> Scene:  # fmt: skip
     return parse_scene(TEXT.format(**locals()), "test")
+
+
+def random_bars(seed: int, count: int, margin_m: float) -> Iterator[FourBar]:
+    """Those of so many draws that can be assembled and are no nearer to a change point."""
+    for lengths in np.random.default_rng(seed).uniform(0.2, 1.0, (count, 4)).tolist():
+        if 2.0 * max(lengths) <= sum(lengths) and abs(FourBar(*lengths).excess_m) >= margin_m:
+            yield FourBar(*lengths)

@@ -23,7 +23,7 @@ from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.files import load_scene, shipped
 from models.scene import Scene
-from tests.analytic.four_bars import fourbar
+from tests.analytic.four_bars import fourbar, random_bars
 from tests.worlds.tiers import few, slowly
 
 WHOLE = [(-math.pi, math.pi)]
@@ -185,17 +185,11 @@ def test_a_gap_in_a_narrow_range_is_found() -> None:
 
 @pytest.mark.parametrize("count", [45, slowly(150, reason="random lengths")])
 def test_a_four_bar_has_two_circuits_if_it_is_grashof_and_else_one(count: int) -> None:
-    rng, seen = np.random.default_rng(3), [0, 0]
-    for _ in range(count):
-        lengths = [float(x) for x in rng.uniform(0.2, 1.0, 4)]
-        if 2.0 * max(lengths) > sum(lengths):
-            continue
-        bar = FourBar(*lengths)
-        if abs(bar.excess_m) < 1e-3:
-            continue
-        found = circuits_of(fourbar(*lengths)).circuits
+    seen = [0, 0]
+    for bar in random_bars(3, count, 1e-3):
+        found = circuits_of(fourbar(bar.driver, bar.coupler, bar.rocker, bar.ground)).circuits
         grashof = bar.excess_m < 0.0
-        assert len(found) == (2 if grashof else 1), lengths
+        assert len(found) == (2 if grashof else 1), bar
         assert all((arc.low is None) == bar.driver_turns_fully for c in found for arc in c)
         seen[grashof] += 1
     assert min(seen) > 2 * count // 15
