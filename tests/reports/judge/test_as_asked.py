@@ -99,11 +99,14 @@ def test_a_body_begun_elsewhere_is_named(kind: str, body: str, place: str, size:
     assert f"start: {kind[:-1]} {body} begins" in found
 
 
-def again(part: int) -> CellRunner:
-    """The run with its step cut into ``part`` stands in the place of the others, with their
+@pytest.mark.parametrize("name", [name for name in ENGINES if integrates(name)])
+@SCENES
+@pytest.mark.parametrize("part", [1, 2])
+def test_a_finer_run_is_a_run_of_its_own(scene: str, name: str, part: int) -> None:
+    """With its step cut into so many parts a run stands in the place of the others, with their
     words."""
 
-    def runner(*args: Any, dt_s: float, steps: int, every: int, **options: Any) -> Run:
+    def again(*args: Any, dt_s: float, steps: int, every: int, **options: Any) -> Run:
         if every == 1:
             return run(*args, dt_s=dt_s, steps=steps, every=every, **options)
         cut = {"dt_s": dt_s * every / part, "steps": steps // every * part, "every": part}
@@ -111,14 +114,7 @@ def again(part: int) -> CellRunner:
         settings = {**done.settings, **engine(done.engine).holds(done.asked, dt_s, done.drive)}
         return replace(done, dt_s=dt_s, steps=steps, every=every, settings=settings)
 
-    return runner
-
-
-@pytest.mark.parametrize("name", [name for name in ENGINES if integrates(name)])
-@SCENES
-@pytest.mark.parametrize("part", [1, 2])
-def test_a_finer_run_is_a_run_of_its_own(scene: str, name: str, part: int) -> None:
-    found = said(cell(scene, name), again(part))
+    found = said(cell(scene, name), again)
     assert "finer run: asked for dt" in found
     assert found.count("the places are those of dt") == (2 if part == 1 else 1)
 

@@ -62,7 +62,8 @@ def test_every_end_has_its_own_rule(errors: ErrorSeries, name: str, word: str, s
     assert found.sample == sample
 
 
-def test_an_end_that_explains_others_is_told_before_them() -> None:
+def test_an_end_that_explains_others_is_told_before_them_and_each_has_a_meaning() -> None:
+    assert set(MEANINGS) == set(OUTCOMES)
     open_ = run(gap=0.02 + NOUGHT, place=0.03 * TURN, departure=OTHER)
     assert outcome(open_, WITHIN).outcome == "branch-changed"
     assert outcome(replace(open_, status="diverged"), WITHIN).outcome == "diverged"
@@ -94,10 +95,6 @@ def test_what_comes_before_the_run_has_settled_does_not_count() -> None:
     early = run(place=np.where(TURN < 1.0, 0.5, 1e-3))
     assert outcome(early, WITHIN).outcome == "degraded"
     assert outcome(replace(early, settled=SAMPLES), WITHIN).outcome == "ok"
-
-
-def test_every_outcome_has_a_meaning() -> None:
-    assert set(MEANINGS) == set(OUTCOMES)
 
 
 def case(*values: float, scale: str = "log", good: tuple[Outcome, ...] = ("ok",)) -> Case:
