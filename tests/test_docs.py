@@ -11,8 +11,7 @@ import pytest
 
 import crankcheck
 from crankcheck import engine, testing
-from tests.worlds.documents import blocks, scripts
-from tests.worlds.pages import faults_of
+from tests.worlds.pages import blocks, faults_of, scripts
 from tests.worlds.tiers import few
 
 DOCS = Path(__file__).parents[1] / "docs"

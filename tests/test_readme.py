@@ -1,7 +1,7 @@
 """The README is true: every command in it runs, and prints what stands below it.
 
 A block of ``console`` starts with ``$ command``; below it stands what the command prints
-(`tests.worlds.documents`).
+(`tests.worlds.pages`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import pytest
 from reports.selftest.all_faults import FAULTS
 from reports.stability.catalogue import CATALOGUE
 from tests.worlds.command import PYTHON
-from tests.worlds.documents import blocks, commands, follows, ran, same, threads, words
+from tests.worlds.pages import blocks, commands, follows, ran, same, threads, words
 from tests.worlds.tiers import slowly
 
 ROOT = Path(__file__).parents[1]

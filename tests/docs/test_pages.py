@@ -20,7 +20,7 @@ from docs.site.docstrings import one_by_one
 from docs.site.python_pages import face_page, home, others_page, references, theory_rooms
 from docs.site.staging import MADE, ROOT, relinked, sources
 from tests.worlds.command import COMMAND
-from tests.worlds.documents import ran
+from tests.worlds.pages import ran
 
 WRITTEN = sources()
 SITE = staging.pages()

@@ -1,14 +1,128 @@
 """Runs all that a page of documentation shows, in a folder, as its reader would: first what its
-examples start from, then its commands, then its Python."""
+examples start from, then its commands, then its Python; and compares what is printed.
+
+A line of ``...`` stands for any lines, and ``...`` in a line for any words. Words and numbers must
+be the same, but for the rows of a verdict: their numbers, which processors may move a little, must
+agree to 10 %.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import math
+import os
 import re
+import shlex
+import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
-from tests.worlds.command import PYTHON
-from tests.worlds.documents import blocks, commands, follows, ran, scripts, started, words
+from typer.testing import CliRunner
+
+from reports.cli import app
+from tests.worlds.command import COMMAND, PYTHON, VARIABLE
+
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+ANY = "..."
+
+
+def blocks(page: str, language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", page, flags=re.DOTALL)
+
+
+def commands(page: str) -> list[tuple[str, list[str], int]]:
+    """Each command with the lines that should follow, and the exit code stated by ``$ echo $?``."""
+    found: list[tuple[str, list[str], int]] = []
+    for block in blocks(page, "console"):
+        for part in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
+            command, *lines = part.rstrip("\n").split("\n")
+            if command == "echo $?":
+                last = found.pop()
+                found.append((last[0], last[1], int(lines[0])))
+            else:
+                found.append((command, lines, 0))
+    return found
+
+
+def scripts(page: str) -> list[tuple[str, list[str] | None]]:
+    """Each block of Python, and the lines of the block of ``text`` right below it, if there is
+    one."""
+    found = re.findall(r"```python\n(.*?)```(?:\n\n```text\n(.*?)```)?", page, flags=re.DOTALL)
+    return [(code, text.rstrip("\n").split("\n") if text else None) for code, text in found]
+
+
+def threads(told: Sequence[str], code: Sequence[str]) -> list[list[str]]:
+    """Commands, then scripts, in the order of the page; those together that share a file, which
+    stands behind ``-o`` of a command and in others too. Each thread runs without the others."""
+    steps = (*told, *code)
+    found: list[set[int]] = []
+    for at, step in enumerate(steps):
+        shared = [
+            one for one in found if any(_uses(step, file) for i in one for file in _made(steps[i]))
+        ]
+        found = [one for one in found if one not in shared]
+        found.append({at}.union(*shared))
+    return [[steps[i] for i in sorted(one)] for one in sorted(found, key=min)]
+
+
+def _made(step: str) -> list[str]:
+    return re.findall(r"-o (\S+)", step)
+
+
+def _uses(step: str, file: str) -> bool:
+    """Whether a command names a file, or a script does between quotes."""
+    return re.search(rf"(?<![\w.]){re.escape(file)}(?=$|[ /\"'])(?! =)", step) is not None
+
+
+def words(command: str) -> list[str]:
+    """The command, with the programs of this environment."""
+    name, *rest = shlex.split(command)
+    programs = {"crankcheck": COMMAND, "python": PYTHON}
+    return [programs.get(name, name), *rest]
+
+
+def ran(command: Sequence[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    """What came of a command. Ours is called in this process, as most take no longer than a start;
+    that of a wheel and every other one is started."""
+    if command[0] != COMMAND or VARIABLE in os.environ:
+        return started(command, folder)
+    with contextlib.chdir(folder):
+        done = CliRunner().invoke(app, list(command[1:]), catch_exceptions=False)
+    return subprocess.CompletedProcess(command, done.exit_code, done.stdout, done.stderr)
+
+
+def started(command: Sequence[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)
+
+
+def same(shown: str, printed: str) -> bool:
+    """The same words, and numbers that agree."""
+    if ANY in shown:
+        parts = [re.escape(" ".join(part.split())) for part in shown.split(ANY)]
+        return re.fullmatch(r"\s*" + ".*".join(parts), " ".join(printed.split())) is not None
+    ours, theirs = NUMBER.split(shown), NUMBER.split(printed)
+    if [" ".join(w.split()) for w in ours] != [" ".join(w.split()) for w in theirs]:
+        return False
+    tolerance = 0.1 if shown.lstrip().startswith(("ok ", "OUT ")) else 0.0
+    pairs = zip(NUMBER.findall(shown), NUMBER.findall(printed), strict=True)
+    return all(a == b or math.isclose(float(a), float(b), rel_tol=tolerance) for a, b in pairs)
+
+
+def follows(shown: Sequence[str], printed: Sequence[str]) -> str:
+    """Empty where ``printed`` reads as ``shown``; else the first line that does not."""
+    at, free = 0, False
+    for line in shown:
+        if line.strip() == ANY:
+            free = True
+            continue
+        ahead = range(at, len(printed)) if free else range(at, min(at + 1, len(printed)))
+        hit = next((i for i in ahead if same(line, printed[i])), None)
+        if hit is None:
+            near = printed[at] if at < len(printed) else "(end)"
+            return f"the page says\n  {line}\nwhat is printed\n  {near}"
+        at, free = hit + 1, False
+    return ""
+
 
 ROOT = Path(__file__).parents[2]
 OWN_ENGINE = "penalty_engine:ENGINE"

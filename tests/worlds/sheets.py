@@ -1,4 +1,6 @@
-"""Logs of a scene as a user may have them, healthy or with one fault planted in them."""
+"""Logs of a scene as a user may have them, healthy or with one fault planted in them; and healthy
+ones of some channels of the lecture's four-bar, at even times.
+"""
 
 from __future__ import annotations
 
@@ -11,9 +13,10 @@ from numpy.random import Generator
 
 from analytic.kinematics import solve
 from models.array import Array
+from models.files import load_scene
 from models.motion import Motion
 from models.scene import Scene
-from reports.causes import Case
+from reports.causes import Case, Cause, causes
 from reports.compare.beside import Truth
 from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.kinds import KINDS
@@ -162,3 +165,40 @@ def _scale(scene: Scene, channel: Channel) -> float:
     speed = scene.driver.law.peak_speed_rad_s
     length = 1.0 if channel.kind.body_kind == "link" else scene.longest_m
     return float(length * speed**channel.kind.order)
+
+
+SCENE = load_scene("fourbar-lecture-1")
+OMEGA, ANGLE = KINDS["link", "angular velocity"], KINDS["link", "angle"]
+
+
+def of(*channels: Channel, rows: int = 241, turns: float = 2.0) -> Sheet:
+    """A healthy sheet of some channels of the four-bar, with limits of 1e-3 times its speed."""
+    time_s = np.linspace(0.0, turns * SCENE.driver.law.period_s, rows)
+    motion = solve(SCENE, time_s, bound=False)
+    limits = {each.column: 1e-3 * 10.0**each.kind.order for each in channels}
+    by_column = {each.column: each for each in channels}
+    signals = {each.column: each.expected(motion) for each in channels}
+    return Sheet(SCENE, time_s, by_column, {}, limits, signals).of(motion)
+
+
+def angle(link: str, unit: str = "rad", **options: object) -> Channel:
+    return Channel(f"{link}_a", ANGLE, link, unit, **options)
+
+
+def omega(link: str, unit: str = "rad/s", **options: object) -> Channel:
+    return Channel(f"{link}_w", OMEGA, link, unit, **options)
+
+
+def at(sheet: Sheet, time_s: Array, *columns: str) -> Sheet:
+    """The sheet with the readings of other instants, in some columns or all."""
+    return sheet.of(solve(SCENE, time_s, bound=False), columns or None)
+
+
+def later(sheet: Sheet, samples: float, *columns: str) -> Sheet:
+    """The sheet with the readings of so many samples later."""
+    return at(sheet, sheet.time_s + samples * sheet.step_s, *columns)
+
+
+def only(planted: Sheet) -> Cause:
+    (cause,) = causes(planted.case)
+    return cause

@@ -15,9 +15,8 @@ import pytest
 
 from reports.cli.broken_package import broken_package
 from reports.output.console import forget_odd_sizes
-from tests.worlds.command import COMMAND, PYTHON
+from tests.worlds.command import COMMAND, PYTHON, End, ends
 from tests.worlds.command_line import crank, flat, told
-from tests.worlds.forks import End, ends
 from tests.worlds.tiers import few, slowly
 
 ROOT = Path(__file__).parents[3]

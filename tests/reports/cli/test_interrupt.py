@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.worlds.command import COMMAND, PYTHON, script
-from tests.worlds.forks import ends
+from tests.worlds.command import COMMAND, PYTHON, ends, script
 from tests.worlds.programs import Start
 from tests.worlds.tiers import few, slow
 

@@ -239,13 +239,6 @@ def test_they_move_a_chain_as_springs_one_by_one(
         np.testing.assert_allclose(link.omega, theirs.omega, rtol=0.0, atol=1e-10)
 
 
-@pytest.mark.parametrize("damping_s", [0.0, 1e-3])
-def test_a_run_tells_of_each(damping_s: float) -> None:
-    scene, start = chain(damping_s=damping_s)
-    told = opened(scene, ENGINE, start=start).facts().springs
-    assert told == {n: (s.rate, s.damping, s.free) for n, s in scene.springs.items()}
-
-
 def in_pins(**bodies: tuple[str, str]) -> dict[str, Spring]:
     """Springs of a user in the pins of these names."""
     return {pin: PinSpring(pin, 1.0, 0.01, 0.3, pin, pair) for pin, pair in bodies.items()}
