@@ -62,18 +62,15 @@ def test_a_wrapped_angle_is_seen_to_be_one(lowest: float) -> None:
     assert worst(log) < 1e-12
 
 
-def test_a_lost_turn_of_an_angle_that_is_not_wrapped_is_an_error() -> None:
+def test_a_lost_turn_is_an_error_and_no_wrapping_though_the_rest_is_within_one_turn() -> None:
     lost = CRANK.theta - 2 * np.pi * (TIME_S > 0.9)
     log = log_of({"t": TIME_S, "crank": lost})
     assert not log.readings[0].channel.wrapped
     assert worst(log) == pytest.approx(2 * np.pi)
-
-
-def test_a_turn_lost_early_is_no_wrapping_though_the_rest_is_within_one_turn() -> None:
-    lost = CRANK.theta - 2 * np.pi * (CRANK.theta > CRANK.theta[0] + 4.0)
+    early = CRANK.theta - 2 * np.pi * (CRANK.theta > CRANK.theta[0] + 4.0)
     short = CRANK.theta < CRANK.theta[0] + 9.0
-    log = log_of({"t": TIME_S[short], "crank": lost[short]})
-    assert np.ptp(lost[short]) <= 2 * np.pi
+    assert np.ptp(early[short]) <= 2 * np.pi
+    log = log_of({"t": TIME_S[short], "crank": early[short]})
     assert not log.readings[0].channel.wrapped
 
 
@@ -139,11 +136,15 @@ def test_what_can_not_be_understood_is_told(told: dict[str, str], words: str) ->
         log_of({"t": TIME_S, "a": TIME_S}, channel=[told])
 
 
-def test_a_clock_that_does_not_begin_at_zero_may_be_counted_from_the_first_row() -> None:
+def test_the_unit_of_times_and_whether_they_count_from_the_first_row_is_what_the_map_says() -> None:
     columns: dict[str, object] = {"t": TIME_S + 1.7e9, "rocker": ROCKER.theta}
     with pytest.raises(CrankcheckError, match=r"turns of crank after the start; .* zero = 'first'"):
         log_of(columns)
     assert worst(log_of(columns, time={"zero": "first"})) < 1e-5  # digits of such a clock
+    columns = {"time_ms [s]": TIME_S, "rocker": ROCKER.theta}
+    with pytest.raises(CrankcheckError, match="ms and s"):
+        log_of(columns)
+    assert worst(log_of(columns, time={"unit": "s"})) < 1e-12
 
 
 def test_a_hole_that_is_meant_is_no_fault() -> None:
@@ -186,13 +187,6 @@ def test_a_reading_beyond_all_sense_is_refused(columns: dict[str, object], words
 def test_times_of_rates_are_checked_too(column: str, time_s: Array, words: str) -> None:
     with pytest.raises(CrankcheckError, match=words.format(column)):
         log_of({"t": TIME_S, column: time_s, "rocker": ROCKER.theta})
-
-
-def test_the_unit_of_times_is_what_the_map_says() -> None:
-    columns = {"time_ms [s]": TIME_S, "rocker": ROCKER.theta}
-    with pytest.raises(CrankcheckError, match="ms and s"):
-        log_of(columns)
-    assert worst(log_of(columns, time={"unit": "s"})) < 1e-12
 
 
 def test_a_column_called_as_times_are_is_what_the_map_says_beside_one_that_it_names() -> None:

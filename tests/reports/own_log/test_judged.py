@@ -176,11 +176,6 @@ def test_a_wrapped_crank_may_be_logged_seldom() -> None:
     assert one.fit.speed_rad_s == pytest.approx(10.0)
 
 
-def test_a_crank_that_stands_still_has_no_speed() -> None:
-    with pytest.raises(CrankcheckError, match="stands still"):
-        judged({"crank_deg": np.full(601, 37.3)}, drive="fitted")
-
-
 def test_the_geometry_alone_is_judged_at_the_logged_crank() -> None:
     wobbly = 10 * TIME_S + 0.2 * np.sin(9 * TIME_S)
     other = solve(SCENE, wobbly / 10)  # at 10 rad/s that is the angle of the crank
@@ -298,7 +293,7 @@ def test_a_wrapped_crank_that_is_logged_too_seldom_is_told_to_be() -> None:
     assert (often.verdict, often.notes) == ("out", ())
 
 
-def test_a_crank_logged_once_a_turn_is_not_said_to_stand() -> None:
+def test_a_crank_logged_once_a_turn_is_not_said_to_stand_as_one_that_has_no_speed_is() -> None:
     columns = {"t": np.arange(20) * 0.2 * np.pi, "crank": np.full(20, 1.7)}
     one = judged(columns)
     assert one.verdict == "out"
@@ -306,6 +301,8 @@ def test_a_crank_logged_once_a_turn_is_not_said_to_stand() -> None:
     assert "turns by 1 turns from row to row" in one.notes[0]
     with pytest.raises(CrankcheckError, match="or goes round by whole turns between its rows"):
         judged(columns, drive="fitted")
+    with pytest.raises(CrankcheckError, match="stands still"):
+        judged({"crank_deg": np.full(601, 37.3)}, drive="fitted")
 
 
 def test_a_point_whose_coordinates_are_off_by_too_much_only_together_has_its_cause_too() -> None:

@@ -276,12 +276,9 @@ def test_an_instant_off_the_log_is_refused(ask: Callable[[LogInstants], object],
         ask(logged(solve(SCENE, STEP_S * np.arange(100), bound=False)))
 
 
-def test_a_log_without_points_is_refused_with_what_it_holds() -> None:
+def test_logs_without_points_and_of_links_that_bend_are_refused() -> None:
     with pytest.raises(CrankcheckError, match=r"both coordinates of points that move .*angle of"):
         logged(replace(MOTION, points={})).at_angle(90.0)
-
-
-def test_a_log_of_links_that_bend_is_refused() -> None:
     with pytest.raises(CrankcheckError, match="polygons are those of rigid links"):
         LogInstants.of_file(load_scene("fourbar-elastic"), Path("run.csv"), Map())
 
