@@ -147,11 +147,8 @@ def test_at_half_the_step_the_same_faults_are_caught(name: str) -> None:
         assert place.false == ()
 
 
-def test_what_is_promised_is_planted_at_the_promised_size() -> None:
+def test_every_rule_has_a_fault_that_it_must_catch_and_what_is_promised_its_size() -> None:
     assert {name: FAULTS[name].size for name in ASKED_FOR} == ASKED_FOR
-
-
-def test_every_rule_has_a_fault_that_it_must_catch() -> None:
     assert set(RULES) - {fault.rule for fault in FAULTS.values()} == NO_FAULT_OF_A_RUN
 
 
