@@ -17,9 +17,10 @@ from models.files import load_scene
 from models.forces import Forces
 from models.hard import double_parallelogram
 from models.loads import Load
-from models.scene import Scene
+from models.scene import GROUND, Scene
 from reports.contract.subject import numbers
 from sim.engine import Drive, Run
+from sim.momentum_balance import Hinge, MomentumGain, joint_pushes
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.spoiler import SPOILER
 from sim.run import run
@@ -124,6 +125,26 @@ def test_an_impulse_that_momentum_does_not_confirm_is_said() -> None:
     said = "; ".join(slipped.contradictions)
     assert "pymunk's impulse on the pin C of coupler and rocker is" in said
     assert "by the momentum of the bodies" in said
+
+
+def test_weights_are_shared_as_levers_say_and_angles_that_are_lost_spoil_no_other_sample() -> None:
+    """Crank upright, coupler level, rocker hanging; their joints hold up 1, 2 and 3 N in their
+    middles. What stands upright bears no side force."""
+    scene, gains = load_scene("fourbar-lecture-1"), {}
+    ends = {"A": (GROUND, "crank"), "D": (GROUND, "rocker")}
+    ends |= {"B": ("crank", "coupler"), "C": ("coupler", "rocker")}
+    hinges = [Hinge(point, *bodies) for point, bodies in ends.items()]
+    angles = zip(scene.links.values(), (np.pi / 2, 0.0, np.pi / 2), strict=True)
+    for weight, (link, theta) in enumerate(angles, 1):
+        turned, force = np.array([theta, theta, np.nan]), np.tile([0.0, float(weight)], (3, 1))
+        held = (link.centre_m, np.zeros((3, 2)), turned, force, np.zeros(3))
+        gains[link.name] = MomentumGain(*held)
+    for driven in (True, False):
+        pushes = joint_pushes(scene, hinges, gains, driven=driven)
+        for hinge, upwards in zip(hinges, (2.0, 4.0, 1.0, -1.0), strict=True):
+            np.testing.assert_allclose(pushes.hinges[hinge][:2], [[0.0, upwards]] * 2, atol=1e-12)
+            assert np.isnan(pushes.hinges[hinge][2]).all()
+        np.testing.assert_allclose(pushes.torque[:2], 0.0, atol=1e-12)
 
 
 def test_of_redundant_links_the_torque_alone_is_given() -> None:
