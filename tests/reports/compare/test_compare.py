@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -27,6 +26,7 @@ from reports.judge.tolerance import limits
 from reports.quantities.quantity import Source
 from sim.engine import Poses, Run
 from sim.run import run as run_scene
+from tests.worlds.fake.engine import FakeEngine, turned_link
 from tests.worlds.other_way import sped_up
 from tests.worlds.turns import of_turns
 
@@ -79,11 +79,9 @@ def test_exact_runs_are_off_by_rounding(
         assert pure(errors, quantity) < ROUNDING
 
 
-def test_an_angle_error_of_a_link_shows_in_that_link_with_its_size_and_place(
-    fourbar: Scene, errors_of: Find, fake_engine: ModuleType
-) -> None:
+def test_an_angle_error_shows_in_its_link_with_its_size(fourbar: Scene, errors_of: Find) -> None:
     period = fourbar.driver.law.period_s
-    bump = fake_engine.turned_link("rocker", lambda t: 2e-5 * np.sin(np.pi * t / period))
+    bump = turned_link("rocker", lambda t: 2e-5 * np.sin(np.pi * t / period))
     errors = errors_of(fourbar, bump)
     worst = errors.worst("angle")
     assert worst.body == "rocker"
@@ -145,13 +143,11 @@ def test_velocities_half_a_step_late_show_in_themselves_alone(fourbar: Scene, he
     assert pure(wrong, "velocity", "differenced") == pure(right, "velocity", "differenced")
 
 
-def test_a_position_that_trembles_shows_in_the_differenced_rates(
-    fourbar: Scene, errors_of: Find, fake_engine: ModuleType
-) -> None:
+def test_a_trembling_position_shows_in_differenced_rates(fourbar: Scene, errors_of: Find) -> None:
     def tremble(time_s: Array) -> Array:
         return np.asarray(1e-7 * (-1.0) ** np.arange(time_s.size) * (time_s > 0.0))
 
-    errors = errors_of(fourbar, fake_engine.turned_link("rocker", tremble))
+    errors = errors_of(fourbar, turned_link("rocker", tremble))
     (rocker,) = (
         row.pure
         for row in errors.rows
@@ -249,16 +245,14 @@ def test_time_stamps_off_the_commanded_grid_are_found(fourbar: Scene, healthy: R
 
 
 @pytest.mark.parametrize(("steps", "every"), [(720, 1), (720, 7), (9000, 4)])
-def test_a_whole_log_is_complete_however_thinly_it_is_logged(
-    fourbar: Scene, fake_engine: ModuleType, steps: int, every: int
-) -> None:
+def test_a_whole_log_is_complete_however_thin_it_is(fourbar: Scene, steps: int, every: int) -> None:
     state = solve(fourbar, np.array([0.3])).state()
-    engine = fake_engine.FakeEngine(exact=solve)
+    engine = FakeEngine(exact=solve)
     run = run_scene(fourbar, state, engine, dt_s=1e-3, steps=steps, every=every)
     assert incomplete(run) == ""
 
 
-def test_a_crank_out_of_its_range_leaves_a_note_in_place_of_the_geometric_error(
+def test_a_crank_out_of_range_leaves_a_note_and_no_geometry(
     disturbed: Callable[..., Run],
 ) -> None:
     scene = load_scene("fourbar-double-rocker")

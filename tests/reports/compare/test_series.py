@@ -6,7 +6,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -19,6 +18,7 @@ from reports.compare.last_turn import trace
 from reports.compare.series import angle_error, length, rate, second_rate, size
 from reports.compare.tracks import tracks
 from sim.engine import Run
+from tests.worlds.fake.engine import turned_link
 
 Disturbed = Callable[..., Run]
 LINE, LONG = np.linspace(0.0, 1.0, 20), np.linspace(0.0, 20.0, 500)
@@ -39,9 +39,7 @@ def with_one(at: int, value: float) -> Array:
     ],
     ids=["whole turns at the start", "wrapped", "first sample", "one sample", "last sample"],
 )
-def test_whole_turns_at_the_start_are_no_error(
-    angle: Array, reference: Array, error: float
-) -> None:
+def test_whole_turns_at_a_start_are_no_error(angle: Array, reference: Array, error: float) -> None:
     assert size(angle_error(angle, reference)).maximum == pytest.approx(error)
 
 
@@ -102,9 +100,9 @@ def test_the_last_turn_is_at_equal_parts(fourbar: Scene, disturbed: Disturbed, s
 
 
 def test_its_errors_keep_their_signs_and_are_no_larger_than_those_of_the_whole_run(
-    fourbar: Scene, disturbed: Disturbed, fake_engine: ModuleType
+    fourbar: Scene, disturbed: Disturbed
 ) -> None:
-    run = disturbed(fourbar, fake_engine.turned_link("rocker", lambda _: -1e-3))
+    run = disturbed(fourbar, turned_link("rocker", lambda _: -1e-3))
     found = traced(run, fourbar)
     np.testing.assert_allclose(found["angle.rocker"], -1e-3, rtol=1e-6)
     for name in ("angle.coupler", "drive"):
@@ -113,10 +111,8 @@ def test_its_errors_keep_their_signs_and_are_no_larger_than_those_of_the_whole_r
     assert 0.0 < np.max(found["gap"]) <= worst.maximum
 
 
-def test_a_late_crank_is_drive_and_not_geometry(
-    fourbar: Scene, disturbed: Disturbed, fake_engine: ModuleType
-) -> None:
-    late = fake_engine.turned_link("crank", lambda _: 1e-3)
+def test_a_late_crank_is_drive_and_not_geometry(fourbar: Scene, disturbed: Disturbed) -> None:
+    late = turned_link("crank", lambda _: 1e-3)
     found = traced(disturbed(fourbar, late), fourbar)
     np.testing.assert_allclose(found["drive"], 1e-3, rtol=1e-9)
     assert np.max(np.abs(found["angle.rocker"])) < 1e-12

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -28,6 +27,7 @@ from sim.engine import Run
 from sim.registry import ENGINES, engine
 from sim.run import run, setup
 from sim.settings import resolved
+from tests.worlds.fake.engine import FakeEngine
 from tests.worlds.tiers import few
 from tests.worlds.turns import of_turns
 
@@ -185,32 +185,31 @@ def verdict_of(runner: Callable[..., Run]) -> dict[str, str]:
     return {f.rule: f.text for f in examined(of_turns(FOURBAR), runner)[0].failures}
 
 
-def exactly(fake_engine: ModuleType) -> Callable[..., Run]:
+def exactly(scene: Scene, state: Any, _: str, *rest: Any, **asked: Any) -> Run:
     """An engine that solves its joints runs in the place of any."""
-    fake = fake_engine.FakeEngine()
-    return lambda scene, state, _, *rest, **asked: run(scene, state, fake, *rest, **asked)
+    return run(scene, state, FakeEngine(), *rest, **asked)
 
 
-def test_at_rounding_is_no_fault_of_an_engine_that_solves_its_joints(
-    fake_engine: ModuleType, monkeypatch: pytest.MonkeyPatch
+def test_rounding_is_no_fault_where_joints_are_solved(
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    seen = verdict_of(exactly(fake_engine))
+    seen = verdict_of(exactly)
     assert "what is integrated is off by step^2" in seen["CC111"]
-    monkeypatch.setattr("reports.judge.cell.engine", lambda _: fake_engine.FakeEngine())
-    assert "CC111" not in verdict_of(exactly(fake_engine))
+    monkeypatch.setattr("reports.judge.cell.engine", lambda _: FakeEngine())
+    assert "CC111" not in verdict_of(exactly)
 
 
 @pytest.mark.parametrize("spared", [None, "coupler"])
 def test_rates_that_are_the_references_are_too_good_of_any_engine(
-    fake_engine: ModuleType, monkeypatch: pytest.MonkeyPatch, spared: str | None
+    monkeypatch: pytest.MonkeyPatch, spared: str | None
 ) -> None:
     def taken(*args: Any, **options: Any) -> Run:
-        done = exactly(fake_engine)(*args, **options)
+        done = exactly(*args, **options)
         true = solve(FOURBAR, done.motion.time_s)
         own = {n: link for n, link in done.motion.links.items() if n == spared}
         return replace(done, motion=replace(done.motion, links={**true.links, **own}))
 
-    monkeypatch.setattr("reports.judge.cell.engine", lambda _: fake_engine.FakeEngine())
+    monkeypatch.setattr("reports.judge.cell.engine", lambda _: FakeEngine())
     found = verdict_of(taken)["CC111"]
     assert "link rocker" in found
     assert ("link coupler" in found) == (spared is None)
@@ -235,9 +234,7 @@ def test_least_is_far_above_rounding_at_the_steps_of_verify() -> None:
 
 
 @pytest.mark.parametrize("moved", [0.0, 1e-3])
-def test_forces_of_solved_places_are_too_good_for_accelerations_that_are_off(
-    moved: float,
-) -> None:
+def test_forces_of_solved_places_are_too_good_for_accelerations_that_are_off(moved: float) -> None:
     """An engine whose accelerations are right may have its forces from these, as inverse dynamics
     has; one whose are not, has them of somebody else."""
     errors = examined(of_turns(FOURBAR, "exudyn", with_forces=True))[0].errors

@@ -7,7 +7,6 @@ import os
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
-from types import ModuleType
 from typing import Any
 
 import pandas as pd
@@ -32,6 +31,7 @@ from reports.verify.all_cells import check_all
 from reports.workers.scheduler import FEW
 from sim.engine import Run
 from sim.run import run
+from tests.worlds.fake.engine import FakeEngine
 from tests.worlds.tiers import slow
 from tests.worlds.turns import of_turns
 
@@ -67,11 +67,7 @@ def test_the_rounding_of_a_long_run_is_not_taken_for_a_floor(fourbar: Scene) -> 
 
 @pytest.mark.parametrize(("off_s", "trend"), [(2e-11, "at rounding"), (3e-10, "does not shrink")])
 def test_what_rounding_explains_of_the_crank_it_explains_of_all_links(
-    fourbar: Scene,
-    fake_engine: ModuleType,
-    monkeypatch: pytest.MonkeyPatch,
-    off_s: float,
-    trend: str,
+    fourbar: Scene, monkeypatch: pytest.MonkeyPatch, off_s: float, trend: str
 ) -> None:
     """A crank that is 2e-10 rad off at every step, as after a long run, and one off by more."""
 
@@ -79,7 +75,7 @@ def test_what_rounding_explains_of_the_crank_it_explains_of_all_links(
         moved = solve(scene, time_s - off_s * (time_s > 0.0), bound=False)
         return replace(moved, time_s=time_s)
 
-    fake = fake_engine.FakeEngine(late)
+    fake = FakeEngine(late)
     monkeypatch.setattr(cells, "engine", lambda _: fake)
     monkeypatch.setattr(cells, "run", lambda one, state, _, *a, **b: run(one, state, fake, *a, **b))
     seen = check(of_turns(fourbar, converge=True)).convergence
@@ -247,9 +243,7 @@ def test_a_failure_is_a_row_with_its_reason_and_the_same_columns(frame: pd.DataF
     assert frame["failed_rules"].tolist() == ["", "CC101"]
 
 
-def test_error_columns_carry_units_and_nothing_that_is_not_reported(
-    frame: pd.DataFrame,
-) -> None:
+def test_error_columns_carry_units_and_nothing_that_is_not_reported(frame: pd.DataFrame) -> None:
     units = ("_rad", "_m", "_rad_s", "_m_s", "_rad_s2", "_m_s2", "_n", "_n_m", "_j", "_kg_m2_s")
     names = {name for name, *_ in ERROR_COLUMNS}
     assert all(name.endswith(units) for name in names)

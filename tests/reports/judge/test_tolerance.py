@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -25,6 +24,7 @@ from reports.judge.cell import check
 from reports.judge.start_allowance import allowance
 from reports.judge.tolerance import DEFAULTS, check_names, limits, parse
 from sim.run import run
+from tests.worlds.fake.engine import turned_link
 from tests.worlds.tiers import slowly
 from tests.worlds.turns import of_turns
 
@@ -62,9 +62,7 @@ def test_places_have_room_for_what_closing_the_pins_sets_off(fourbar: Scene) -> 
     assert all(fast[name] == slow[name] for name in ("velocity", "acceleration"))
 
 
-def test_no_default_grows_beyond_the_plainly_wrong_or_falls_below_rounding(
-    fourbar: Scene,
-) -> None:
+def test_no_default_grows_beyond_the_plainly_wrong_or_falls_below_rounding(fourbar: Scene) -> None:
     found = numbers(fourbar, conditioning=1e-9, curvature=1e9)  # near a singular position
     assert found["angle"] == found["position"] == pytest.approx(2e-2)
     assert found["velocity"] == pytest.approx(5e-2)
@@ -246,9 +244,9 @@ def test_every_limit_leaves_room_for_what_the_driver_passes_on(fourbar: Scene) -
 
 @pytest.mark.parametrize("slower", [False, True])
 def test_a_part_in_a_hundred_thousand_is_seen_in_the_drive_of_a_turn(
-    slower: bool, fourbar: Scene, errors_of: Callable[..., Errors], fake_engine: ModuleType
+    slower: bool, fourbar: Scene, errors_of: Callable[..., Errors]
 ) -> None:
     """The crank is behind by so much throughout, or slower by that."""
     rate = fourbar.driver.law.peak_speed_rad_s
-    behind = fake_engine.turned_link("crank", lambda t: -1e-5 * (rate * t if slower else 1.0))
+    behind = turned_link("crank", lambda t: -1e-5 * (rate * t if slower else 1.0))
     assert share(fourbar, errors_of(fourbar, behind)) > 5_000
