@@ -163,9 +163,7 @@ def test_a_run_that_ends_too_early_says_when_and_why(
     assert result.reason == reason if apart_s is None else result.reason.startswith(reason)
 
 
-def test_an_engine_that_raises_or_refuses_is_a_row_with_a_reason(
-    fake_engine: ModuleType,
-) -> None:
+def test_an_engine_that_raises_or_refuses_is_a_row_with_a_reason(fake_engine: ModuleType) -> None:
     result = ran(engine=fake_engine.FakeEngine(solve, fails_after=5000), steps=9000)
     assert result.status == "crashed"
     assert "RuntimeError: the fake engine fails" in result.reason

@@ -21,14 +21,7 @@ from models.laws import ConstantSpeed
 from models.scene import Scene
 from models.scene_text import scene_text
 from tests.analytic.wide_chain import Angle, Given
-from tests.worlds.strategies import (
-    KINDS,
-    Layout,
-    least_sine,
-    some_forms,
-    swinging,
-    with_dyads,
-)
+from tests.worlds.strategies import KINDS, Layout, least_sine, some_forms, swinging, with_dyads
 
 TURNS = 2775
 """Nearly a million degrees."""
