@@ -169,11 +169,9 @@ def deadly_check(cell: Cell) -> object:
     return check(cell)
 
 
-def test_a_cell_that_kills_its_process_in_a_pool_costs_that_cell_alone(
-    fourbar: Scene, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_cell_that_kills_its_process_costs_only_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     """The others have the same errors as in one process, in the same order."""
-    scenes = [fourbar, "slotted-lever", "tangent"]
+    scenes = ["fourbar-lecture-1", "slotted-lever", "tangent"]
     cells = [of_turns(scene, engine) for scene in scenes for engine in ("mujoco", "pymunk")]
     assert len(cells) >= FEW + 2
     cells[2] = replace(cells[2], profile="deadly")
@@ -187,11 +185,9 @@ def test_a_cell_that_kills_its_process_in_a_pool_costs_that_cell_alone(
     assert [one.errors for one in found] == [one.errors for one in check_all(cells, 1)]
 
 
-def test_a_cell_of_an_engine_that_is_not_ours_is_apart_by_itself(
-    fourbar: Scene, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_cell_of_no_engine_of_ours_is_apart_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("reports.verify.all_cells.advised", deadly_check)
-    (found,) = check_all([of_turns(fourbar, "penalty", profile="deadly")], 2)
+    (found,) = check_all([of_turns("fourbar-lecture-1", "penalty", profile="deadly")], 2)
     assert found.reason == "the engine ended its process (exit code 1)"
 
 
