@@ -35,27 +35,23 @@ takes more."""
 LARGE_BYTES = 50_000
 """From which on calls are counted."""
 
+JUDGE = "judge fourbar-lecture-1 FILE"
 OPTIONS: dict[str, str] = {
-    "judge fourbar-lecture-1 FILE": "--step.*--target|--target.*--step",
-    "judge fourbar-lecture-1 FILE --target x": "'x' is not a number above 0",
-    "judge fourbar-lecture-1 FILE --target 0": "'0' is not a number above 0",
-    "judge fourbar-lecture-1 FILE --target -1": "'-1' is not a number above 0|No such option",
-    "judge fourbar-lecture-1 FILE --target nan": "'nan' is not a number above 0",
-    "judge fourbar-lecture-1 FILE --target inf": "'inf' is not a number above 0",
-    "judge fourbar-lecture-1 FILE --target angel=1e-3": "'angel' is no quantity; .*angle",
-    "judge fourbar-lecture-1 FILE --target angle=": "'' is not a number above 0",
-    "judge fourbar-lecture-1 FILE --target =1": "'' is no quantity",
-    "judge fourbar-lecture-1 FILE --step 0": "--step.*0",
-    "judge fourbar-lecture-1 FILE --step -1": "--step",
-    "judge fourbar-lecture-1 FILE --step nan": "--step",
-    "judge fourbar-lecture-1 FILE --step 1e300": "--step",
-    "judge fourbar-lecture-1 FILE --target 1e-3 --require rockr": "'rockr'.*rocker",
-    "judge fourbar-lecture-1 FILE --target 1e-3 --drive logd": "'logd'.*logged",
-    "judge fourbar-lecture-1 FILE --target 1e-3 --write-map nowhere/map.toml": "nowhere",
+    JUDGE: "--step.*--target|--target.*--step",
+    **{f"{JUDGE} --target {n}": f"'{n}' is not a number above 0" for n in ("x", "0", "nan", "inf")},
+    f"{JUDGE} --target -1": "'-1' is not a number above 0|No such option",
+    f"{JUDGE} --target angel=1e-3": "'angel' is no quantity; .*angle",
+    f"{JUDGE} --target angle=": "'' is not a number above 0",
+    f"{JUDGE} --target =1": "'' is no quantity",
+    f"{JUDGE} --step 0": "--step.*0",
+    **{f"{JUDGE} --step {number}": "--step" for number in ("-1", "nan", "1e300")},
+    f"{JUDGE} --target 1e-3 --require rockr": "'rockr'.*rocker",
+    f"{JUDGE} --target 1e-3 --drive logd": "'logd'.*logged",
+    f"{JUDGE} --target 1e-3 --write-map nowhere/map.toml": "nowhere",
     "judge nowhere FILE --target 1e-3": "nowhere",
-    "judge fourbar-lecture-1 FILE --target 1e-3 --map nowhere.toml": "nowhere.toml",
-    "judge fourbar-lecture-1 FILE --target 1e-3 --format pdf": "'pdf'",
-    "judge fourbar-lecture-1 FILE --target 1e-3 -o OUT.pdf": "pdf",
+    f"{JUDGE} --target 1e-3 --map nowhere.toml": "nowhere.toml",
+    f"{JUDGE} --target 1e-3 --format pdf": "'pdf'",
+    f"{JUDGE} --target 1e-3 -o OUT.pdf": "pdf",
 }
 OF_ROCKER: dict[str, str] = {
     'of = "rockr"\nkind = "angle"': "of: 'rockr' is not in scene fourbar-lecture-1; .*rocker",

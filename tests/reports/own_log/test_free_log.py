@@ -52,15 +52,15 @@ def rules(one: crankcheck.LogVerdict) -> list[str]:
     return [finding.rule for finding in one.failures]
 
 
+BACK = "only then has its driver turned back at a limit, at 0.42 s"
+
+
 @pytest.mark.parametrize(
     ("name", "engine", "seconds"),
     [
         (SWING, "mujoco", 0.3),
         ("fourbar-double-rocker-swing", "pymunk", 0.3),
-        slowly(
-            *("fourbar-double-rocker-swing", "pymunk", 1.0),
-            reason="only then has its driver turned back at a limit, at 0.42 s",
-        ),
+        slowly("fourbar-double-rocker-swing", "pymunk", 1.0, reason=BACK),
     ],
 )
 def test_a_run_that_was_logged_has_the_numbers_of_its_verification(
@@ -127,14 +127,18 @@ def test_geometry_is_that_of_the_readings_where_the_phase_has_run_away() -> None
     assert max(rows.values()) < 1e-12
 
 
-def test_a_log_that_begins_in_another_way_is_told() -> None:
+def test_a_log_that_begins_in_another_way_is_told_and_a_right_one_has_its_page() -> None:
     motion = truth()
     one = judged({"rocker_rad": motion.links["rocker"].theta + 0.1})
     assert any("does not begin as fourbar-swing is let go: rocker_rad by" in n for n in one.notes)
     later = judged({"rocker_rad": motion.links["rocker"].theta[50:] + 1e-9}, time_s=TIME_S[50:])
     assert later.verdict == "within"
     assert any("begins at t = 0.1 s" in note for note in later.notes)
-    assert not any("begin" in note for note in judged(angles(motion, "rocker")).notes)
+    right = judged(angles(motion, "crank", "rocker"))
+    assert not any("begin" in note for note in right.notes)
+    page = log_page(right, {"made": "2026-01-02"})
+    assert "geometry of rocker" in page
+    assert "free motion of fourbar-swing" in page
 
 
 def test_where_the_driver_does_not_tell_the_position_no_geometry_is_judged() -> None:
@@ -167,12 +171,6 @@ def test_rows_of_which_the_truth_is_not_known_are_left_out_and_counted() -> None
 def test_what_is_not_judged_is_told(time_s: object, asked: dict[str, object], told: str) -> None:
     with pytest.raises(CrankcheckError, match=told):
         judged({"rocker_rad": truth().links["rocker"].theta}, time_s=time_s, **asked)
-
-
-def test_its_page_is_written() -> None:
-    page = log_page(judged(angles(truth(), "crank", "rocker")), {"made": "2026-01-02"})
-    assert "geometry of rocker" in page
-    assert "free motion of fourbar-swing" in page
 
 
 def test_readings_half_a_step_before_the_start_are_read() -> None:

@@ -129,9 +129,7 @@ def test_a_log_that_begins_late_in_a_later_turn_is_the_same(judge: Judge) -> Non
 
 
 @pytest.mark.parametrize("name", ["units in brackets", "decimal commas", "names that say nothing"])
-def test_the_map_that_is_written_reads_the_log_in_the_same_way(
-    name: str, judge: Judge, tmp_path: Path
-) -> None:
+def test_the_written_map_reads_the_log_alike(name: str, judge: Judge, tmp_path: Path) -> None:
     guise = GUISES[name]
     text, mapped = guise.dress.text(guise.log(FOURBAR, 1.0)), guise.map(FOURBAR)
     written, first, again = (tmp_path / each for each in ("written.toml", "1.json", "2.json"))
@@ -142,9 +140,7 @@ def test_the_map_that_is_written_reads_the_log_in_the_same_way(
     assert one == other
 
 
-def test_a_column_that_a_map_ignores_is_ignored_by_the_map_that_is_written(
-    judge: Judge, tmp_path: Path
-) -> None:
+def test_the_map_that_is_written_ignores_what_a_map_ignores(judge: Judge, tmp_path: Path) -> None:
     text = Dress().text({**TURN, "rocker.theta_rad": TURN["rocker_deg"]})
     written = tmp_path / "written.toml"
     mapped = '[[channel]]\ncolumn = "rocker.theta_rad"\nignore = true'
@@ -296,9 +292,7 @@ def test_what_a_map_says_already_stays(judge: Judge, tmp_path: Path) -> None:
         (b"", ""),
     ],
 )
-def test_another_fault_leaves_no_form(
-    text: bytes, mapped: str, judge: Judge, tmp_path: Path
-) -> None:
+def test_other_faults_leave_no_form(text: bytes, mapped: str, judge: Judge, tmp_path: Path) -> None:
     judge(PLAIN, text, "--write-map", tmp_path / "form.toml", mapped=mapped, code=2)
     assert not (tmp_path / "form.toml").exists()
 

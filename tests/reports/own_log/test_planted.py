@@ -117,9 +117,7 @@ def test_rates_half_a_sample_late_are_told_and_the_map_that_is_told_mends_it(
 
 
 @pytest.mark.parametrize("scene", ONE_AND_ALL)
-def test_a_mean_that_is_not_late_and_samples_that_stick_are_told_of_their_column(
-    scene: str, blamed: Blamed
-) -> None:
+def test_a_mean_and_samples_that_stick_are_told_of_their_column(scene: str, blamed: Blamed) -> None:
     log = logged(LINKAGES[scene], even(LINKAGES[scene], TURNS, PER_TURN), faults.COLUMNS[scene])
     filtered, still = faults.CULPRITS[scene].filtered, faults.CULPRITS[scene].stuck
     text, columns = blamed(scene, faults.averaged(log, filtered, 21))

@@ -223,9 +223,7 @@ def test_any_names_make_a_scene(case: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("more", "ties"), [("", ""), (THIRD.format(off=0), TIED)], ids=["", "+1"])
-def test_a_parallelogram_passes_change_points_with_a_note(
-    more: str, ties: str, tmp_path: Path
-) -> None:
+def test_a_parallelogram_passes_its_change_points(more: str, ties: str, tmp_path: Path) -> None:
     text = PLATES.replace("<!-- more -->", more).replace("<!-- ties -->", ties)
     account = read_text(tmp_path, text, converge=False)
     assert "continued smoothly through the change points of C" in account.notes[-1]

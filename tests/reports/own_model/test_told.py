@@ -137,10 +137,8 @@ def test_a_line_that_ends_where_the_model_does_not_says_so(rubbing: JudgedModel)
 
 
 def test_settings_that_are_there_already_and_those_in_words_are_told(rubbing: JudgedModel) -> None:
-    for patch, told in (
-        ("", "The file has the recommended settings already."),
-        ("set in <option>: [bold]x", "Recommended:"),
-    ):
+    already = "The file has the recommended settings already."
+    for patch, told in (("", already), ("set in <option>: [bold]x", "Recommended:")):
         proposal = replace(rubbing.account.recommended, patch=patch)
         one = replace(rubbing, account=replace(rubbing.account, recommended=proposal))
         lines = printed(one)

@@ -119,9 +119,7 @@ def test_masses_and_inertias_come_from_geoms_and_what_is_fixed_to_a_body(tmp_pat
 
 
 @pytest.mark.parametrize("beside", ["main", "includer"])
-def test_includes_are_read_from_the_main_or_the_including_folder(
-    beside: str, tmp_path: Path
-) -> None:
+def test_includes_are_read_from_the_main_or_including_folder(beside: str, tmp_path: Path) -> None:
     parts = tmp_path / "parts"
     parts.mkdir()
     inner = f"<mujoco><equality>{CLOSED}</equality></mujoco>"
