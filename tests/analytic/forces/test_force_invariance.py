@@ -9,17 +9,14 @@ from __future__ import annotations
 import random
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from analytic.check import moved_scene
 from analytic.forces import kinetostatics
-from models.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.files import load_scene, shipped
 from models.forces import Forces
-from models.friction import ConstantFriction, CoulombFriction
+from models.friction import ConstantFriction, CoulombFriction, Friction
 from models.scene import Scene
-from models.tabulated import Tabulated
 from tests.analytic.forces.beside import apart, turn, unlocked
 from tests.worlds.loading import loaded, sprung
 from tests.worlds.other_way import MOVES, Change, faster, sped_up
@@ -79,37 +76,15 @@ def _expected(old: Forces, by: Change) -> Forces:
     return replace(turned, sliders=sliders, torque=couple * old.torque, friction=friction)
 
 
-CHARACTERISTICS = (
-    Constant(3.0),
-    Sine(2.0, 1.5, 0.4),
-    Polynomial((1.0, -0.5, 0.25, 2.0)),
-    Tabulated((-2.0, -0.5, 1.0, 2.0), (1.0, -1.0, 4.0, 3.0), "linear"),
-    Tabulated((-2.0, -0.5, 1.0, 2.0), (1.0, -1.0, 4.0, 3.0), "pchip"),
-    Tabulated((0.1, 0.5, 1.0), (1.0, -1.0, 4.0), "pchip", 1.3),
-)
-
-
-@pytest.mark.parametrize("own", CHARACTERISTICS, ids=lambda own: type(own).__name__)
-@pytest.mark.parametrize(("stretch", "shift"), [(1.0, 0.7), (-1.0, 0.0), (0.1, 0.0), (-3.0, 0.2)])
-def test_a_characteristic_is_carried(own: Characteristic, stretch: float, shift: float) -> None:
-    x = np.linspace(-2.0, 2.0, 41)
-    found = own.carried(-2.0, stretch=stretch, shift=shift).at(stretch * x + shift)
-    np.testing.assert_allclose(found, -2.0 * own.at(x), rtol=1e-12, atol=1e-12)
-
-
 def test_friction_grows_with_the_scene() -> None:
     """As forces and lengths do; what is over nothing stays."""
-    scene = load_scene("slider-crank-central")
-    own = {
-        "A": CoulombFriction("A", 0.1, 0.02),
-        "B": ConstantFriction("B", 3.0),
-        "C": ConstantFriction("C", 5.0),
-    }
-    scene = replace(scene, friction=own)
-    larger, faster = moved_scene.scaled(scene, 10.0).friction, sped_up(scene, 3.0).friction
-    assert larger["A"] == CoulombFriction("A", 0.1, 0.2)
-    assert larger["B"] == ConstantFriction("B", 3000.0)
-    assert larger["C"] == ConstantFriction("C", 500.0)
-    assert faster["A"] == own["A"]
-    assert faster["B"] == ConstantFriction("B", 27.0)
+
+    def rubs(radius_m: float, couple: float, force: float) -> dict[str, Friction]:
+        sizes = {"B": couple, "C": force}
+        constant = {joint: ConstantFriction(joint, size) for joint, size in sizes.items()}
+        return {"A": CoulombFriction("A", 0.1, radius_m), **constant}
+
+    scene = replace(load_scene("slider-crank-central"), friction=rubs(0.02, 3.0, 5.0))
+    assert moved_scene.scaled(scene, 10.0).friction == rubs(0.2, 3000.0, 500.0)
+    assert sped_up(scene, 3.0).friction == rubs(0.02, 27.0, 45.0)
     assert moved_scene.mirrored(scene).friction == moved_scene.moved(scene, (1.0, 0.0)).friction
