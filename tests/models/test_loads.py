@@ -349,21 +349,19 @@ RUBBING_FAULTS = {
     "two kinds": ("mu = 0.1", "mu = 0.1\ntorque_n_m = 1.0", "friction.B: found mu and torque_n_m"),
     "no kind": ("torque_n_m = 0.2", "", "friction.A: found none of them; give one of mu"),
     "negative torque": ("torque_n_m = 0.2", "torque_n_m = -1.0", "friction.A.torque_n_m: found -1"),
-    "no joint": ("friction.B", "friction.Q", "friction.Q: no joint of two bodies has that name; "
-                 "use one of A, B, C, piston"),
+    "no joint": (
+        "friction.B", "friction.Q",
+        "friction.Q: no joint of two bodies has that name; use one of A, B, C, piston"),
     "force in a pin": ("torque_n_m = 0.2", "force_n = 0.2", "friction.A.force_n: belongs to a sl"),
     "torque in a slider": (
-        "force_n = 3.0", "torque_n_m = 3.0", "friction.piston.torque_n_m: belongs to a pin",
-    ),
+        "force_n = 3.0", "torque_n_m = 3.0", "friction.piston.torque_n_m: belongs to a pin"),
     "radius in a slider": (
-        "force_n = 3.0", "mu = 0.1\nradius_m = 0.01", "friction.piston.radius_m: belongs to a pin",
-    ),
+        "force_n = 3.0", "mu = 0.1\nradius_m = 0.01", "friction.piston.radius_m: belongs to a pin"),
     "unknown key": ("radius_m", "radus_m", "friction.B.radus_m: unknown key; did you mean r"),
     "no table": ("[friction.A]\ntorque_n_m = 0.2", "[friction]\nA = 0.2", "friction.A: found 0.2"),
     "a pin of three": (
         "[sliders", 'door = { bar = ["B", "E"], length_m = 0.3 }\n[sliders',
-        "friction.B: 3 bodies meet at B",
-    ),
+        "friction.B: 3 bodies meet at B"),
 }  # fmt: skip
 
 

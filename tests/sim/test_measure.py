@@ -129,10 +129,8 @@ FOURBAR = acted_on(
 )
 SLIDERS = (
     acted_on(
-        load_scene("slider-crank-offset"),
-        SlideSpring("along", 300.0, 3.0, 0.1, "C"),
-        LineSpring("block", 20.0, 0.0, 0.0, ("C", "A")),
-    ),
+        load_scene("slider-crank-offset"), SlideSpring("along", 300.0, 3.0, 0.1, "C"),
+        LineSpring("block", 20.0, 0.0, 0.0, ("C", "A"))),
     acted_on(
         load_scene("slider-crank-excel-210"),  # a block without mass
         SlideSpring("along", 300.0, 3.0, 0.1, "C"),
@@ -140,7 +138,7 @@ SLIDERS = (
     ),
     acted_on(load_scene("slotted-lever"), SlideSpring("along", 300.0, 3.0, 0.1, "B")),
     acted_on(load_scene("shaper"), SlideSpring("ram", 300.0, 3.0, 0.1, "F")),
-)
+)  # fmt: skip
 """Springs along lines of the ground and of a link, of blocks with and without mass, of a link."""
 
 

@@ -484,8 +484,7 @@ FAULTS: Mapping[str, tuple[str, str, Fault, set[str]]] = {
     "none after all": (
         "EC82", "all forces are NaN", of_forces(lambda f: f.each_series(lambda x: x * np.nan)),
         {"EC85", "EC86"}),
-    "no pins": (
-        "EC82", "pins are {}", of_forces(lambda f: replace(f, pins={})), {"EC83", "EC84"}),
+    "no pins": ("EC82", "pins are {}", of_forces(lambda f: replace(f, pins={})), {"EC83", "EC84"}),
     "torque's sign": (
         "EC83", "crank: a moment of", of_forces(lambda f: replace(f, torque=-f.torque)),
         {"EC85", "EC86"}),
@@ -495,8 +494,7 @@ FAULTS: Mapping[str, tuple[str, str, Fault, set[str]]] = {
         "EC83", "rocker: ", _last_pin(lambda one, two: (_in_frame(one), _in_frame(two))),
         {"EC84", "EC85", "EC86"}),
     "a step late": ("EC84", "is that of +1.00 steps", of_forces(_a_step_late), {"EC85"}),
-    "half a step late": (
-        "EC84", "is that of -0.50 steps", of_forces(_half_a_step_late), {"EC85"}),
+    "half a step late": ("EC84", "is that of -0.50 steps", of_forces(_half_a_step_late), {"EC85"}),
     "without loads": (
         "EC85", "a force over time in the ground's frame on rocker",
         of_exudyn(_with_scene(_without_loads)), {"EC94"}),
@@ -522,8 +520,8 @@ FAULTS: Mapping[str, tuple[str, str, Fault, set[str]]] = {
         "EC92", "a spring between a point and a slider: the body swings about",
         of_springs(_elsewhere), set()),
     "leaking": (
-        "EC93", "of the energy that goes back and forth is gained or lost",
-        meddling(_damped(0.5)), {"EC94"}),
+        "EC93", "of the energy that goes back and forth is gained or lost", meddling(_damped(0.5)),
+        {"EC94"}),
     "deaf to its speed": (
         "EC94", "a torque over the angular velocity of its link: after", of_loads(_deaf_load),
         set()),

@@ -161,11 +161,9 @@ FORMS = {
     "larger than": PLAIN.replace('name="C"', 'name="C > > />"'),
     "two options": PLAIN.replace("<worldbody>", '<option integrator="Euler"/><worldbody>'),
     "a flag": PLAIN.replace(
-        'gravity="0 0 0"/>', 'gravity="0 0 0"><flag energy="enable"/></option>'
-    ),
+        'gravity="0 0 0"/>', 'gravity="0 0 0"><flag energy="enable"/></option>'),
     "two equalities": PLAIN.replace(
-        "<equality>", '<equality><connect body1="crank" anchor="0 0 0"/></equality><equality>'
-    ),
+        "<equality>", '<equality><connect body1="crank" anchor="0 0 0"/></equality><equality>'),
     "settings": PLAIN.replace('name="C"', 'name="C" solref = "0.03 1" solimp=\'0.9 0.95 0.001\''),
     "a class": PLAIN.replace(
         "</default>",
@@ -174,7 +172,7 @@ FORMS = {
     "broken tag": PLAIN.replace('body1="coupler"', '\n   body1="coupler"\n'),
     "letters": PLAIN.replace('model="four-bar"', 'model="vierg\u00e9lenk \u2028 \x85"'),
     "recommended already": planted(),
-}
+}  # fmt: skip
 
 
 def read(path: Path, text: str) -> ReadModel:
