@@ -188,7 +188,7 @@ def at_nodes(state: State, of: str) -> Array:
     return np.array([getattr(state, of)[name] for name in BEAMED.bodies("coupler")])
 
 
-def test_the_middle_is_bent_as_the_theory_has_it(state: State) -> None:
+def test_an_engines_beam_is_bent_as_the_theory_has_it(state: State) -> None:
     motion = DrivenElasticMotion(fourbar(), 1.0, REFERENCE, "periodic", stiffened=True)
     way = nodes(state, "position")
     first, last = way[0], way[-1]
@@ -227,7 +227,7 @@ def test_a_straight_beam_starts_without_any(state: State) -> None:
     assert np.ptp(at_nodes(state, "theta")) > 1e-4
 
 
-def test_it_follows_where_the_frame_of_the_link_lies() -> None:
+def test_an_engines_beam_follows_where_the_frame_of_the_link_lies() -> None:
     scene, (c, s) = fourbar(), 0.375 * np.array([np.cos(0.9), np.sin(0.9)])
     points = {"B": (0.4, -0.3), "C": (0.4 + 2.0 * c, -0.3 + 2.0 * s)}
     coupler = replace(scene.links["coupler"], points=points, centre_m=(0.4 + c, -0.3 + s))
