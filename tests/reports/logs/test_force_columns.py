@@ -57,16 +57,13 @@ def test_a_log_that_we_write_is_within_and_holds_every_force(frame: pd.DataFrame
     assert not [text for text in verdict.not_judged if "reaction" in text]
 
 
-def test_so_is_a_log_of_forces_of_steps() -> None:
+def test_so_are_those_of_forces_of_steps_and_of_joints_that_are_solved_for() -> None:
     log = ran("pymunk")
     assert np.isnan(log["torque_n_m"][0])
     assert _judged(log).verdict == "within"
-
-
-def test_so_is_one_of_joints_that_are_solved_for_which_starts_as_those_may() -> None:
     log = ran("exudyn")
     assert _judged(log).verdict == "within"
-    log["C_x_m"] += 1e-6 * np.sin(log["time_s"])  # as what is integrated may be
+    log["C_x_m"] += 1e-6 * np.sin(log["time_s"])  # as what is integrated may be, and starts
     assert rules(_judged(log)) == {"CC116"}
 
 
@@ -160,11 +157,6 @@ def test_bad_columns_are_refused(log: dict[str, float], words: str) -> None:
         understood(columns_of(pd.DataFrame(rows), "log"), SCENE, forces=True)
 
 
-def test_at_the_logged_angle_there_are_no_forces(frame: pd.DataFrame) -> None:
-    with pytest.raises(CrankcheckError, match="the geometry alone is judged"):
-        _judged(frame, drive="logged")
-
-
 @pytest.mark.parametrize("name", ["B_fz_n", "torque_deg", "normal_n", "C_fx_n_m", "time_s"])
 def test_other_columns_are_none(name: str) -> None:
     assert not force_names.names_force(name, SCENE)
@@ -215,7 +207,11 @@ def test_milli_and_mega_are_told_by_the_size_of_the_letter(column: str, one: flo
     assert force_names.force_meaning(column, force_names.force_places(SCENE))[1] == one
 
 
-def test_a_first_row_that_only_some_forces_have_is_refused(frame: pd.DataFrame) -> None:
+def test_forces_at_a_logged_angle_and_of_a_part_of_a_row_are_refused(
+    frame: pd.DataFrame,
+) -> None:
+    with pytest.raises(CrankcheckError, match="the geometry alone is judged"):
+        _judged(frame, drive="logged")
     some = frame.copy()
     some.loc[0, "torque_n_m"] = np.nan
     with pytest.raises(CrankcheckError, match="row 0, column 'torque_n_m': found nan; fill it"):
