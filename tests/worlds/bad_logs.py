@@ -223,10 +223,12 @@ def cut_short(make: Callable[[Path], object], path: Path) -> None:
 
 
 PARQUET: dict[str, tuple[Made, str]] = {
-    "nested": (partial(table, rocker_deg=[[1.0, 2.0]] * 61), r"row 1, .* found .*1\.0.*no number"),
+    "nested": (
+        partial(table, rocker_deg=[[1.0, 2.0]] * 61),
+        r"row 1, column 'rocker_deg': found .*1\.0.*no number"),
     "a table in a column": (
-        partial(table, rocker_deg=[{"a": 1.0}] * 61), "row 1, column 'rocker_deg': found .*, no nu",
-    ),
+        partial(table, rocker_deg=[{"a": 1.0}] * 61),
+        "row 1, column 'rocker_deg': found .*, no number"),
     "text": (partial(table, rocker_deg=["x"] * 61), "row 1, column 'rocker_deg': found 'x', no nu"),
     "truths": (partial(table, rocker_deg=[True] * 61), "column 'rocker_deg': found True, no num"),
     "nulls": (partial(table, rocker_deg=[1.0, None] * 30 + [2.0]), "row 2, .*the cell is empty"),

@@ -284,7 +284,7 @@ def gone(group: int) -> bool:
 
 GROUP = "os.killpg(os.getpgid(0), signal.SIGINT)"
 ALONE = "os.kill(os.getpid(), signal.SIGTERM)"
-TWICE = "two seconds: signals are in tests/reports/workers/test_programs.py as well"
+TWICE = "two seconds: signals are in tests/reports/workers/test_isolated.py as well"
 
 
 @posix

@@ -154,7 +154,7 @@ def test_what_is_not_damaged_or_of_another_format_is_left_alone(
         assert swept(store) == 0
     else:
         anew = "which reads format 2; move it away, and make it anew: crankcheck sweep"
-        assert re.search(f"^.*{anew}.*$", refusal(swept, store))  # one line
+        assert re.fullmatch(f".*{anew}.*", refusal(swept, store))  # one line
     assert files(store) == before
     assert capsys.readouterr().err == ""
 

@@ -105,7 +105,9 @@ def test_what_was_raised_comes_with_the_place_where_it_was() -> None:
     assert odd == Lost("crashed", "OddError: 1 and 2")
     assert strange == Lost("crashed", "StrangeError: of a module that is there alone")
     assert odd.error is strange.error is None, "it cannot travel"
-    assert isolated.call(time.sleep, 0.0) == Lost("crashed", "the sweep was ended")
+    (unused := Isolated[None](Limits())).close()
+    for closed in (isolated, unused):
+        assert closed.call(time.sleep, 0.0) == Lost("crashed", "the sweep was ended")
 
 
 def test_a_child_that_does_not_start_in_time_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
