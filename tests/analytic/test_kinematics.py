@@ -102,7 +102,7 @@ def test_bad_samples_are_refused(samples: list[float], said: str) -> None:
 
 
 def test_rates_in_toggle_are_uncertain_and_silent() -> None:
-    """At both ends of the reachable range: positions are known, rates are not; no warning."""
+    """At both ends of the range: positions are known, rates not; no warning. Beyond is an error."""
     scene = load_scene("fourbar-double-rocker")
     ends = np.array(reach(scene)[-1])
     motion = solve_driven(scene, ends, np.ones(2), np.zeros(2))

@@ -88,8 +88,8 @@ def test_ends_of_the_range_can_be_solved_and_what_is_beyond_cannot() -> None:
     for lengths in SWINGING:
         scene = fourbar(*lengths)
         for low, high in reach(scene):
-            motion = solve_driven(scene, np.array([low, high]), np.ones(1), np.zeros(1))
-            assert (motion.conditioning["C"] < 1e-6).all()
+            motion = solve_driven(scene, np.linspace(low, high, 3), np.ones(1), np.zeros(1))
+            assert (motion.conditioning["C"][[0, 2]] < 1e-6).all()
             for beyond in (low - 1e-9, high + 1e-9):
                 with pytest.raises(ReachError):
                     solve_driven(scene, np.array([beyond]), np.ones(1), np.zeros(1))

@@ -171,10 +171,15 @@ def test_the_error_is_nothing_in_the_precision_points_and_has_the_sign_of_the_le
     assert np.max(np.abs(at)) < 1e-5
     assert error.rms == pytest.approx(math.sqrt(float(np.mean(error.error**2))), rel=2e-3)
     assert error.largest >= np.max(np.abs(error.error))
-    # E = f - F: a shorter output way, as of a function half a percent smaller, has a smaller E.
-    less = replace(proposal.task, function=GivenFunction.of_callable(lambda x: 0.995 * x**1.6))
-    assert less.y_ends[0] == pytest.approx(0.995)
-    lowered = replace(proposal, task=less)
+    # E = f - F: of the same mechanism, a function that goes less far has a smaller E.
+    task, way = proposal.task, proposal.task.output_way(error.x)
+    shorter = replace(proposal, task=replace(task, output_range=0.995 * task.output_range))
+    less = structural_error(shorter, examined).error - error.error
+    np.testing.assert_allclose(less, -0.005 * way, atol=1e-12)
+    # One that is half a percent smaller all over goes as far in the scale of its own.
+    lower = replace(task, function=GivenFunction.of_callable(lambda x: 0.995 * x**1.6))
+    assert lower.y_ends[0] == pytest.approx(0.995)
+    lowered = replace(proposal, task=lower)
     np.testing.assert_allclose(structural_error(lowered, examined).error, error.error, atol=1e-12)
 
 
@@ -304,7 +309,7 @@ def test_what_is_no_task_is_refused() -> None:
     refused("a whole family of mechanisms meets them", function=line, points=5)
     ranges = {"output_range": math.pi / 2, "input_range_rad": math.pi / 3}
     start = math.radians(30)
-    refused("no fourbar meets the 4 precision", points=4, input_start_rad=start, **ranges)
+    refused("no fourbar meets the 4 precision points", points=4, input_start_rad=start, **ranges)
 
 
 def test_a_table_or_a_python_function_is_refused_where_it_is_none_or_too_short() -> None:

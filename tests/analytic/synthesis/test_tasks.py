@@ -167,13 +167,13 @@ def test_slopes_and_the_largest_clearance_of_a_central_slider_crank_are_known() 
     assert measured == ["ground O2 x", "ground O2 y", "crank A x", "rod B x"]  # one of each bar
 
 
-TASKS = [("coupler", "three-positions"), ("quick-return", "whitworth"), ("coupler", "driving-dyad")]
+TOLD = [("coupler", "three-positions"), ("quick-return", "whitworth"), ("coupler", "driving-dyad")]
 MORE = "of more dimensions and mechanisms"
 
 
 @pytest.mark.parametrize(
     ("kind", "name", "count"),
-    [*((*task, 40) for task in TASKS[:2]), *(slowly(*task, 200, reason=MORE) for task in TASKS)],
+    [*((*task, 40) for task in TOLD[:2]), *(slowly(*task, 200, reason=MORE) for task in TOLD)],
 )
 def test_a_monte_carlo_stays_within_the_worst_case_and_comes_near(
     kind: str, name: str, count: int
