@@ -141,7 +141,7 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "held twice": (planted(*tied(AGAIN)), "= -1; one driver needs mobility 1"),
 }  # fmt: skip
 LATE = "a triad that does not turn"
-"""The reach of a joint is told of `test_public_models` too, and a triad takes its time."""
+"""The reach of a joint is told of public models too, and a triad takes its time."""
 
 
 @pytest.mark.parametrize("name", few(REFUSED, REFUSED.keys() - {LATE}, "a triad takes its time"))
