@@ -9,14 +9,17 @@ from __future__ import annotations
 import random
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from analytic.check import moved_scene
 from analytic.forces import kinetostatics
+from models.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.files import load_scene, shipped
 from models.forces import Forces
 from models.friction import ConstantFriction, CoulombFriction, Friction
 from models.scene import Scene
+from models.tabulated import Tabulated
 from tests.analytic.forces.beside import apart, turn, unlocked
 from tests.worlds.loading import loaded, sprung
 from tests.worlds.other_way import MOVES, Change, faster, sped_up
@@ -74,6 +77,22 @@ def _expected(old: Forces, by: Change) -> Forces:
     }
     friction = {n: (force if n in sliders else couple) * one for n, one in old.friction.items()}
     return replace(turned, sliders=sliders, torque=couple * old.torque, friction=friction)
+
+
+ROWS = (-2.0, -0.5, 1.0, 2.0), (1.0, -1.0, 4.0, 3.0)
+CHARACTERISTICS = (
+    Constant(3.0), Sine(2.0, 1.5, 0.4), Polynomial((1.0, -0.5, 0.25, 2.0)),
+    Tabulated(*ROWS, "linear"), Tabulated(*ROWS, "pchip"),
+    Tabulated((0.1, 0.5, 1.0), (1.0, -1.0, 4.0), "pchip", 1.3),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("own", CHARACTERISTICS, ids=lambda own: type(own).__name__)
+@pytest.mark.parametrize(("stretch", "shift"), [(1.0, 0.7), (-1.0, 0.0), (0.1, 0.0), (-3.0, 0.2)])
+def test_a_characteristic_is_carried(own: Characteristic, stretch: float, shift: float) -> None:
+    x = np.linspace(-2.0, 2.0, 41)
+    found = own.carried(-2.0, stretch=stretch, shift=shift).at(stretch * x + shift)
+    np.testing.assert_allclose(found, -2.0 * own.at(x), rtol=1e-12, atol=1e-12)
 
 
 def test_friction_grows_with_the_scene() -> None:

@@ -139,6 +139,18 @@ def test_a_fault_in_friction_makes_them_disagree() -> None:
         power.power_balance(scene, solve(scene, time_s), found.torque)
 
 
+def test_with_all_but_no_coefficient_the_forces_are_all_but_those_without_friction() -> None:
+    for number in range(0, 40, 8):
+        scene, _ = rubbed_mechanism(number)
+        time_s = np.linspace(0.01, 1.0, 7) * scene.driver.law.period_s
+        bare = kinetostatics.forces(replace(scene, friction={}), time_s)
+        for mu, off in ((0.0, 1e-13), (1e-9, 1e-6)):
+            laws = {j: CoulombFriction(j, mu, 0.0 if j in scene.sliders else 0.05)
+                    for j in scene.friction}  # fmt: skip
+            found = kinetostatics.forces(replace(scene, friction=laws), time_s)
+            assert apart(bare, replace(found, friction={})) < off, (number, mu)
+
+
 def test_a_joint_that_does_not_move_may_rub_either_way() -> None:
     """At the inner dead centre the piston stands: its friction is taken as 0, bounded by mu N."""
     scene = press(piston=ConstantFriction("piston", 50.0))

@@ -324,6 +324,8 @@ def test_sliders_have_the_solutions_that_trying_all_signs_finds(m: int) -> None:
 def test_where_they_contract_substitution_leads_to_the_same(gain: float) -> None:
     system = drawn(100, 4, gain, pins=True, seed=1)
     inside = np.all(weights(system.gains()) > 0.0, axis=1)
+    radius = np.abs(np.linalg.eigvals(system.gains())).max(axis=1)
+    np.testing.assert_array_equal(inside, radius < 1.0)
     system = system.at(inside)
     assert inside.sum() > 20
     found = solve_coulomb(system)
