@@ -69,26 +69,36 @@ def native_springs(
 ) -> dict[str, NativeSpring]:
     """The springs of a scene between its bodies in the space, by name, the ground among them.
 
-    One along a line hangs on a place of it ``far_m`` behind the slider, so far that the slider
+    One between bodies that both move as they are driven, or not at all, is left out: pymunk takes
+    none, and its force does not depend on the steps. One along a line hangs on a place of it ``far_m`` behind the slider, so far that the slider
     never comes there.
     """
     slides = {slide.slider.name: slide for slide in joints(scene).slides}
     springs = {}
     for name, spring in scene.springs.items():
         if isinstance(spring, PinSpring):
-            springs[name] = _in_pin(spring, made)
+            own = _in_pin(spring, made)
         elif isinstance(spring, LineSpring):
-            springs[name] = _between(spring, line_ends(scene, spring), made, centre)
+            own = _between(spring, line_ends(scene, spring), made, centre)
         else:
             slide = slides[spring.slider]
             behind, ends = _behind(scene, slide, state, far_m)
             block = spring.slider if isinstance(slide, Slot) else None
-            springs[name] = _between(spring, ends, made, centre, behind, block)
+            own = _between(spring, ends, made, centre, behind, block)
+        if own is not None:
+            springs[name] = own
     return springs
 
 
-def _in_pin(spring: PinSpring, made: Mapping[str, pymunk.Body]) -> NativeSpring:
+def _is_driven(*bodies: pymunk.Body) -> bool:
+    """Whether no body moves freely."""
+    return all(body.body_type != pymunk.Body.DYNAMIC for body in bodies)
+
+
+def _in_pin(spring: PinSpring, made: Mapping[str, pymunk.Body]) -> NativeSpring | None:
     first, second = spring.bodies
+    if _is_driven(made[first], made[second]):
+        return None
     turns = whole_turns(spring, made[second].angle - made[first].angle)
     # Chipmunk counts the angle of its first body against its second.
     own = pymunk.DampedRotarySpring(
@@ -104,8 +114,10 @@ def _between(
     centre: Mapping[str, Point],
     q_at_zero: float = 0.0,
     block: str | None = None,
-) -> NativeSpring:
+) -> NativeSpring | None:
     (first, here), (second, there) = ends
+    if _is_driven(made[first], made[second]):
+        return None
     own = pymunk.DampedSpring(
         made[first],
         made[second],
