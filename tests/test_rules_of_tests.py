@@ -1,4 +1,4 @@
-"""What holds of the tests themselves: no verdict by a clock, slow ones for a reason, worlds listed.
+"""What holds of the tests themselves: no verdict by a clock, slow ones for a reason, names once.
 
 A verdict must be the same on a machine of any speed. What is meant by "at once" or "bounded" is
 held by counts (calls, bytes, steps); seconds stand in `benchmarks/`, as ratios.
@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import pytest
@@ -79,6 +80,28 @@ def test_what_is_slow_says_why() -> None:
         if bare.search(line)
     ]
     assert not faults, "\n".join(["write @slow(reason) of tests.worlds.tiers:", *faults])
+
+
+def given_twice(body: Sequence[ast.stmt]) -> list[str]:
+    """Names of a module or class that a later definition or assignment replaces in silence."""
+    names: Counter[str] = Counter()
+    within: list[str] = []
+    for each in body:
+        if isinstance(each, ast.FunctionDef | ast.ClassDef):
+            names[each.name] += 1
+            within += given_twice(each.body) if isinstance(each, ast.ClassDef) else []
+        elif isinstance(each, ast.Assign | ast.AnnAssign):
+            targets = each.targets if isinstance(each, ast.Assign) else [each.target]
+            bound = [x for target in targets for x in ast.walk(target) if isinstance(x, ast.Name)]
+            names.update({x.id for x in bound if isinstance(x.ctx, ast.Store)})
+    return [name for name, count in names.items() if count > 1] + within
+
+
+def test_no_module_gives_a_name_twice() -> None:
+    text = "A = 1\nB: int = 2\nA, C = 3, 4\nB += 1\nclass D:\n def t(): 0\n def t(): 0\ndef C(): 0"
+    assert given_twice(ast.parse(text).body) == ["A", "C", "t"]
+    found = {path: given_twice(ast.parse(path.read_text()).body) for path in TESTS.rglob("*.py")}
+    assert not {path: names for path, names in found.items() if names}
 
 
 def test_the_page_of_the_worlds_names_every_world() -> None:
