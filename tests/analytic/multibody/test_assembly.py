@@ -112,7 +112,18 @@ def test_beside_a_limit_a_slow_driver_moves_the_others_fast() -> None:
     assert start.omega[slow.driver.link] == pytest.approx(-0.056, rel=1e-6)
 
 
+FLAT = THESIS.replace("0.15", "0.25").replace("90.0", "0.0")
+for bar, length_m in (('"D", "C"', 0.25), ('"B", "C"', 1.0)):
+    FLAT = FLAT.replace(f"[{bar}], length_m = 0.75", f"[{bar}], length_m = {length_m}")
 REFUSED = {
+    "change point": (
+        FLAT.replace("39.0", "0.0").replace("124.0", "0.0"),
+        "starts in a change point",
+    ),
+    "rigid": (
+        ROTOR.replace("[0.0, 0.0] }", "[0.0, 0.0], B = [0.5, 0.0] }"),
+        "nothing of it can move",
+    ),
     "far": (
         THESIS.replace("39.0", "50.0"),
         r"coupler is 50 deg.* open there by 10\.9 deg: with dr",
