@@ -262,6 +262,15 @@ def test_a_crank_out_of_range_leaves_a_note_and_no_geometry(
     assert pure(errors, "drive") == pytest.approx(2.0)
 
 
+def test_pure_numbers_do_not_depend_on_the_size_of_the_scene(
+    fourbar: Scene, errors_of: Find
+) -> None:
+    bump = turned_link("coupler", lambda t: 1e-4 * np.sin(7.0 * t))
+    small, large = (errors_of(scene, bump) for scene in (fourbar, scaled(fourbar, 10.0)))
+    for name in ("angle", "position", "gap", "velocity"):
+        assert pure(large, name) == pytest.approx(pure(small, name), rel=1e-6, abs=1e-12)
+
+
 CHANGES: dict[str, Callable[[Scene], Scene]] = {
     "none": lambda scene: scene,
     "rotated by 0.7 rad": lambda scene: rotated(scene, 0.7),

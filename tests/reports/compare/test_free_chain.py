@@ -46,7 +46,7 @@ def test_an_exact_run_has_no_error_and_keeps_its_energy() -> None:
     assert found.run.drive == "free"
     np.testing.assert_array_equal(found.time_s, 5e-3 * np.arange(401))
     assert found.place_until(2.0) < 1e-14
-    assert max(found.lean_rad.max(), found.gap_m.max(), found.energy_drift) < 1e-14
+    assert np.max([found.lean_rad.max(), found.gap_m.max(), found.energy_drift]) < 1e-14
     assert found.left is None
 
 

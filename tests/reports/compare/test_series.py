@@ -39,7 +39,7 @@ def with_one(at: int, value: float) -> Array:
     ],
     ids=["whole turns at the start", "wrapped", "first sample", "one sample", "last sample"],
 )
-def test_whole_turns_at_a_start_are_no_error(angle: Array, reference: Array, error: float) -> None:
+def test_whole_turns_are_errors_but_at_starts(angle: Array, reference: Array, error: float) -> None:
     assert size(angle_error(angle, reference)).maximum == pytest.approx(error)
 
 

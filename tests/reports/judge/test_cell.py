@@ -111,7 +111,7 @@ def test_what_can_not_be_compared_says_why(fourbar: Scene, monkeypatch: pytest.M
         raise ReachError("the driver is out of reach")
 
     monkeypatch.setattr(cells, "compare", no_reference)
-    found = check(of_turns(fourbar))
+    found = check(of_turns(fourbar, converge=True))
     assert (found.verdict, found.status) == ("out", "crashed")
     assert "the driver is out of reach" in found.failures[0].text
 

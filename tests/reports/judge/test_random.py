@@ -130,10 +130,10 @@ def unfounded(found: list[Driven]) -> tuple[list[str], int]:
             setting = re.match(r"Tried at the same step: sweep --set mujoco\.(\w+)=(\S+) ", told)
             if setting:
                 after = shares(checked(one, "mujoco", **{setting[1]: setting[2]}))[rule]
-                founded = HELPS * after <= worst
+                sound = HELPS * after <= worst
             else:
-                founded = told.startswith("Nothing tried at the same step lowers the error threefo")
-            texts += [] if founded else [f"{told}\n{one.text}"]
+                sound = told.startswith("Nothing tried at the same step lowers the error threefold")
+            texts += [] if sound else [f"{told}\n{one.text}"]
     return texts, count
 
 

@@ -67,7 +67,7 @@ def test_no_default_grows_beyond_the_plainly_wrong_or_falls_below_rounding(fourb
     assert found["angle"] == found["position"] == pytest.approx(2e-2)
     assert found["velocity"] == pytest.approx(5e-2)
     assert found["acceleration-differenced"] == pytest.approx(0.5, rel=1e-3)
-    assert max(found.values()) < 1.0
+    assert all(number < 1.0 for number in found.values())
     tiny = numbers(fourbar, step_rad=1e-7)
     assert tiny["velocity"] >= 1e-3 * 1e-7  # the share of an acceleration, over a step
     assert tiny["angle"] >= 1e-11

@@ -113,7 +113,7 @@ def test_a_value_that_is_held_ends_with_0_and_one_that_is_not_with_1() -> None:
         ([*LINE, "--at", "1e-3", "-o", "x"], ["--at and -o"]),
         (
             ["stability", "coarse-step", "--elastic"],
-            ["no elastic link in it; those are elastic-th"],
+            ["no elastic link in it; those are elastic-thick"],
         ),
         (["stability", "--free", "--elastic"], ["no case is of both"]),
         (["stability", "--engine", "mujocco"], ["did you mean mujoco"]),
