@@ -235,7 +235,8 @@ def test_interpolation_without_overshoot_worked_by_hand() -> None:
     assert spline(np.array([0.5, 1.5, 3.0]), x, y, slope) == pytest.approx(middles)
     x, y = np.array([0.0, 1.0, 2.0, 3.0]), np.array([0.0, 1.0, -1.0, 0.0])
     assert slopes(x, y, closed=True)[[0, -1]].tolist() == [1.0, 1.0]  # it goes on smoothly
-    assert slopes(x, y, closed=False)[0] != 1.0
+    assert slopes(x, y, closed=False) == pytest.approx([2.5, 0.0, 0.0, 2.5])  # (3 1 + 2) / 2
+    assert slopes(x, np.array([0.0, 1.0, -4.0, 0.0]), closed=False)[0] == 3.0  # (3 1 + 5) / 2 is 4
 
 
 def test_interpolation_rises_only_where_its_table_rises() -> None:

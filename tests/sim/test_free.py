@@ -11,6 +11,7 @@ import pytest
 
 from analytic.free.window_chain import ChainMotion
 from models.errors import EngineError
+from models.files import load_scene
 from models.laws import ConstantSpeed, Oscillating
 from models.mjcf_options import has_control
 from models.motion import State
@@ -164,6 +165,7 @@ def test_a_free_crank_without_mass_is_unsupported_and_steps_too_long_are_refused
     result = run(light, start_of(Chain(1)), name, dt_s=DT_S, steps=10, drive="free")
     assert result.status == "unsupported"
     assert "rocker0: mass_kg 0" in result.reason
+    assert ran(Chain(1), name, drive="prescribed", steps=10).energy is None  # which nothing keeps
     with pytest.raises(EngineError, match=r"dt: 0\.5 s leaves 4 steps in a period of 2\.006 s"):
         ran(Chain(1), name, dt_s=0.5)
 
@@ -237,3 +239,13 @@ def test_the_energy_of_a_run_is_that_of_the_closed_form_at_the_instants_of_the_v
     early = 9.81 * (height - 0.5 * np.sin(turning.at(result.motion.time_s)[0]))
     if result.velocity_time_s[0] != 0.0:  # the heights of the positions' own instants would be off
         assert np.abs(early).max() > 10.0 * offs[1]
+
+
+def test_a_slider_crank_that_coasts_keeps_the_energy_of_its_links_and_block() -> None:
+    scene = load_scene("slider-crank-offset")
+    assert max(slider.mass_kg for slider in scene.sliders.values()) > 0.0
+    result = runs.ran(scene, "mujoco", dt_s=1e-4, steps=7000, every=10, drive="free")
+    total_j, crank = result.energy.total_j, result.motion.links[scene.driver.link]
+    assert np.abs(total_j / total_j[0] - 1.0).max() < 1e-5
+    assert np.ptp(crank.omega) > 0.3 * np.abs(crank.omega).max()
+    assert np.ptp(crank.theta) > 2.0 * np.pi

@@ -8,6 +8,7 @@ from dataclasses import replace
 from types import ModuleType
 from typing import Any
 
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 import pytest
 
@@ -16,6 +17,7 @@ from analytic.free.machine import Machine
 from analytic.kinematics import chunks, solve
 from models.errors import EngineError
 from models.files import load_scene, shipped
+from models.mjcf import build
 from models.scene import GROUND, Scene
 from models.spring_ends import line_ends, whole_turns
 from models.springs import LineSpring, PinSpring, SlideSpring
@@ -59,9 +61,10 @@ def test_exact_poses_give_the_exact_motion_without_gaps(name: str, fake_engine: 
 @pytest.mark.parametrize(("name", "body", "key", "by", "open_by"), [
     ("fourbar-lecture-1", "rocker", "origin", [3e-4, 4e-4], {"C": 5e-4, "D": 5e-4, "B": 0.0}),
     ("slider-crank-excel-350", "rod", "origin", [3e-4, -4e-4], {"C": 4e-4, "B": 5e-4}),
+    ("fourbar-lecture-1", "rocker", "theta", 1e-3, {"C": 0.8e-3}),  # at 0.2 m, of 0.25 m
     ("scotch-yoke", "yoke", "theta", 1e-5, {"Y": 1e-5}),
     ("scotch-yoke", "block B", "theta", -2e-5 + 4 * np.pi, {"B": 2e-5}),
-], ids=["between copies", "from a line, not along it", "of a turn", "of turns"])  # fmt: skip
+], ids=["of copies", "from a line, not along it", "of an arm", "of a turn", "of turns"])  # fmt: skip
 def test_a_gap_is_the_largest_distance_of_what_is_joined(
     name: str, body: str, key: str, by: Any, open_by: dict[str, float], fake_engine: ModuleType
 ) -> None:
@@ -70,10 +73,47 @@ def test_a_gap_is_the_largest_distance_of_what_is_joined(
     poses = exact(scene, fake_engine)
     own = poses.bodies[body]
     moved = replace(own, **{key: getattr(own, key) + np.array(by)})
-    found = gaps(scene, replace(poses, bodies={**poses.bodies, body: moved}))
+    wrong = replace(poses, bodies={**poses.bodies, body: moved})
+    found = gaps(scene, wrong)
     for joint, size in open_by.items():
-        size_m = size * scene.longest_m if key == "theta" else size
-        np.testing.assert_allclose(found[joint], size_m, rtol=1e-6, atol=1e-15)
+        size_m, rtol = (size * scene.longest_m, 1e-6) if key == "theta" else (size, 1e-9)
+        np.testing.assert_allclose(found[joint], size_m, rtol=rtol, atol=1e-15)
+    if key == "theta" and body in scene.links:
+        off = motion(scene, wrong).links[body].theta - motion(scene, poses).links[body].theta
+        np.testing.assert_allclose(off, by, rtol=1e-9, atol=1e-15)
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_joint_coordinates_give_the_places_and_rates_that_mujoco_has(name: str) -> None:
+    """At arbitrary coordinates; accelerations are the rates of the velocities."""
+    scene = load_scene(name)
+    model = mujoco.MjModel.from_xml_string(build(scene, start_of(scene)))
+    data, speed = mujoco.MjData(model), np.empty(6)
+    q, rate, push = np.random.default_rng(5).normal(size=(3, 6, model.nv))
+    limbs, h = plan(scene, start_of(scene)).limbs, 1e-4
+    found = body_poses(limbs, q, rate, push)
+    before, after = (
+        body_poses(limbs, q + s * rate + s**2 / 2 * push, rate + s * push, push) for s in (-h, h)
+    )
+    for row in range(len(q)):
+        data.qpos[:], data.qvel[:] = q[row], rate[row]
+        mujoco.mj_forward(model, data)
+        for body, pose in found.items():
+            number = model.body(body).id
+            turn = data.xmat[number].reshape(3, 3)
+            place = [*pose.origin[row], np.cos(pose.theta[row]), np.sin(pose.theta[row])]
+            held = [*data.xpos[number][:2], turn[0, 0], turn[1, 0]]
+            np.testing.assert_allclose(place, held, rtol=1e-7, atol=1e-13)
+            mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, number, speed, 0)
+            rates = [pose.omega[row], *pose.velocity[row]]
+            np.testing.assert_allclose(rates, speed[[2, 3, 4]], rtol=1e-7, atol=1e-12)
+    for body, pose in found.items():
+        velocity, omega = (
+            (getattr(after[body], key) - getattr(before[body], key)) / (2.0 * h)
+            for key in ("velocity", "omega")
+        )
+        np.testing.assert_allclose(pose.origin_acceleration, velocity, rtol=1e-5, atol=1e-6)
+        np.testing.assert_allclose(pose.alpha, omega, rtol=1e-8)
 
 
 @pytest.mark.parametrize("off_rad", [0.0, 0.3])

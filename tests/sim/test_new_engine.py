@@ -97,6 +97,8 @@ def test_it_is_known_to_every_command_without_anything_to_copy(tmp_path: Path) -
     for name, (code, output) in told.items():
         assert code == SAID[name][0], output
         assert all(part in output for part in SAID[name][1]), (name, output)
+    for name in ("tune", "misspelt"):
+        assert told[name][1] == SAID[name][1][0]  # that alone
     assert "knob" not in told["advise"][1]
     page, summary = ((tmp_path / name).read_text() for name in ("page.html", "summary.md"))
     assert "fake 1.0" in page

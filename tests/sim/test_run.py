@@ -290,6 +290,8 @@ def test_timing_repeats_and_says_whether_it_logged(name: str) -> None:
     assert (len(bare.walls_s), bare.logged, logged.logged) == (3, False, True)
     assert 0.0 < bare.best.wall_s <= bare.median.wall_s
     assert bare.best.steps == 200
+    free = time_run(FOURBAR, start, name, dt_s=1e-3, steps=100, repeats=2, drive="free")
+    assert free.best.us_per_step == pytest.approx(1e6 * min(free.walls_s) / 100)
 
 
 def test_the_collector_is_off_while_timing_and_as_before_afterwards(

@@ -183,13 +183,14 @@ def test_what_it_can_not_be_given_is_refused_with_the_reason() -> None:
 
 
 def test_a_table_that_ends_too_soon_is_told_without_exudyns_words_about_it() -> None:
+    table = "loads.short: over the time [s] the table"
     for from_s, until_s, status, said in (
-        (0.0, 0.05, "diverged", "stopped after 0.05 s: loads.short: over the time [s] the table"),
-        (1.0, 2.0, "unsupported", "the table goes from 1 to 2, and 0 is asked for"),
+        (0.0, 0.05, "diverged", f"stopped after 0.05 s: {table}"),
+        (1.0, 2.0, "unsupported", f"{table} goes from 1 to 2, and 0 is asked for"),
     ):
         short = Load("short", "rocker", None, Tabulated((from_s, until_s), (1.0, 2.0)))
         done = ran(acted_on(FOURBAR, short), ENGINE, dt_s=1e-3, steps=100, well=False)
-        assert (done.status, said in done.reason) == (status, True)
+        assert (done.status, done.reason.startswith(said)) == (status, True)
 
 
 @pytest.mark.parametrize("name", ["fourbar-lecture-1", "shaper", "slotted-lever"])

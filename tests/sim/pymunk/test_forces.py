@@ -142,7 +142,8 @@ def test_weights_are_shared_as_levers_say_and_angles_that_are_lost_spoil_no_othe
         for hinge, upwards in zip(hinges, (2.0, 4.0, 1.0, -1.0), strict=True):
             np.testing.assert_allclose(pushes.hinges[hinge][:2], [[0.0, upwards]] * 2, atol=1e-12)
             assert np.isnan(pushes.hinges[hinge][2]).all()
-        np.testing.assert_allclose(pushes.torque[:2], 0.0, atol=1e-12)
+        assert pushes.spare == 0
+        np.testing.assert_allclose(pushes.torque[: 2 if driven else 3], 0.0, atol=1e-12)
 
 
 def test_of_redundant_links_the_torque_alone_is_given() -> None:
