@@ -64,7 +64,7 @@ def test_exact_poses_give_the_exact_motion_without_gaps(name: str, fake_engine: 
     ("fourbar-lecture-1", "rocker", "theta", 1e-3, {"C": 0.8e-3}),  # at 0.2 m, of 0.25 m
     ("scotch-yoke", "yoke", "theta", 1e-5, {"Y": 1e-5}),
     ("scotch-yoke", "block B", "theta", -2e-5 + 4 * np.pi, {"B": 2e-5}),
-], ids=["of copies", "from a line, not along it", "of an arm", "of a turn", "of turns"])  # fmt: skip
+], ids=["of copies", "from a line, not along", "of an arm", "of a turn", "of turns"])  # fmt: skip
 def test_a_gap_is_the_largest_distance_of_what_is_joined(
     name: str, body: str, key: str, by: Any, open_by: dict[str, float], fake_engine: ModuleType
 ) -> None:
