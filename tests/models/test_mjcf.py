@@ -127,6 +127,20 @@ def test_the_loop_of_a_fourbar_closes_at_any_pin_but_the_drivers(close: str) -> 
     assert apart(model, data) < 1e-12
 
 
+def test_three_links_at_one_pin_are_tied_twice() -> None:
+    scene = load_scene("sixbar-watt")
+    rocker, rod = scene.links["rocker"], scene.links["rod"]
+    bar = {p: xy for p, xy in rocker.points.items() if p != "E"}
+    at_c = {p.replace("E", "C"): xy for p, xy in rod.points.items()}
+    links = {**scene.links, "rocker": replace(rocker, points=bar), "rod": replace(rod, points=at_c)}
+    scene = replace(scene, links=links, ground={**scene.ground, "G": (0.5, 0.2)})
+    planned = plan(scene, start_of(scene))
+    ties = [c for c in planned.closures if c.point == "C"]
+    freedoms = [f.name for limb in planned.limbs for f in limb.freedoms]
+    assert len(ties) + sum(name.endswith(".C") for name in freedoms) == len(planned.closures) == 2
+    assert apart(*assembled(build(scene, start_of(scene)))) < 1e-12
+
+
 def test_the_same_scene_gives_the_same_text() -> None:
     text = built("shaper")
     assert text == built("shaper")

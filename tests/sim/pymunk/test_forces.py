@@ -70,7 +70,7 @@ def misses(found: Forces, exact: Forces, longest_m: float) -> dict[str, Array]:
 
 @pytest.mark.parametrize("name", [
     "fourbar-lecture-1",
-    "sixbar-stephenson",  # a pin of three bodies
+    "sixbar-stephenson",  # two loops
     "slider-crank-excel-350",  # a block without mass, on a rail
     "slider-crank-offset",  # one with mass, in a groove
     "scotch-yoke",  # a gear on a moving guide
