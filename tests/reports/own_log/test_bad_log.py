@@ -45,8 +45,8 @@ OPTIONS: dict[str, str] = {
     f"{JUDGE} --target =1": "'' is no quantity",
     f"{JUDGE} --step 0": "--step.*0",
     **{f"{JUDGE} --step {number}": "--step" for number in ("-1", "nan", "1e300")},
-    f"{JUDGE} --target 1e-3 --require rockr": "'rockr'.*rocker",
-    f"{JUDGE} --target 1e-3 --drive logd": "'logd'.*logged",
+    f"{JUDGE} --target 1e-3 --require rockr": "--require 'rockr': neither a q.*rocker",
+    f"{JUDGE} --target 1e-3 --drive logd": "--drive 'logd'.*logged",
     f"{JUDGE} --target 1e-3 --write-map nowhere/map.toml": "nowhere",
     "judge nowhere FILE --target 1e-3": "nowhere",
     f"{JUDGE} --target 1e-3 --map nowhere.toml": "nowhere.toml",
@@ -124,7 +124,7 @@ def cases() -> Iterator[tuple[str, Case]]:
     lever = bad_logs.HEADER.replace("crank_deg", "lever_deg")
     swinging = bad_logs.text(*bad_logs.ROWS, header=lever)
     fitted, words = "judge tangent FILE --drive fitted", "driver of tangent has no constant speed"
-    yield "fitted to a lever that swings", Case(swinging, words, fitted)
+    yield "fitted to a lever that swings", Case(swinging, f"--drive fitted: the {words}", fitted)
     yield "another ending", Case(right, "found '.docx'; use .csv, .tsv", name="log.docx")
     yield "no ending", Case(right, "found no ending; use .csv", name="log")
 

@@ -56,8 +56,8 @@ def test_a_healthy_log_is_within_in_all_guises_at_once(scene: str, judge: Judge)
 def test_the_plain_log_of_every_linkage_is_within(scene: str, judge: Judge) -> None:
     linkage = LINKAGES[scene]
     log = logged(linkage, even(linkage, 1.5, PER_TURN), COLUMNS[scene])
-    result = judge(scene, Dress().text(log), target=("--target", "1e-6"))
-    assert "WITHIN TOLERANCE" in result.output
+    for target in (("--step", "0.001"), ("--target", "1e-6")):
+        assert "WITHIN TOLERANCE" in judge(scene, Dress().text(log), target=target).output
 
 
 def _as_parquet(log: Log, path: Path) -> None:
