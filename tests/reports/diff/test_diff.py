@@ -137,13 +137,20 @@ def test_a_scene_that_changed_is_told_and_not_compared(stored: Copy, diff: Run) 
     assert diff(old, new, strict=True)[0] == 1
 
 
-def test_missing_cells_are_told_and_count_when_strict(stored: Copy, diff: Run) -> None:
+def test_missing_cells_and_facts_are_told_and_cells_count_when_strict(
+    stored: Copy, diff: Run, capsys: pytest.CaptureFixture[str]
+) -> None:
     old, new = stored("old"), stored("new", drop=(3,))
     missing = "fourbar-lecture-1, pymunk as-shipped, 90 steps a turn"
     for strict, words in ((False, missing), (True, "NOT WHOLE (--strict)")):
         code, shown = diff(old, new, strict=strict)
         assert code == strict
         assert words in shown
+    assert capsys.readouterr().err == ""
+    (new / "verify.json").unlink()
+    for other in (old, new):  # each folder is told of once
+        diff(other, new)
+        assert capsys.readouterr().err.count(f"crankcheck: {new}: no verify.json") == 1
 
 
 def test_versions_of_one_store_are_compared(store: Copy, diff: Run) -> None:

@@ -129,6 +129,7 @@ def test_a_long_log_is_thinned_and_the_turn_of_its_spike_is_drawn_by_itself() ->
     assert curve.whole.error.size < 1_100
     assert curve.largest == pytest.approx(0.5)
     assert curve.near.error[curve.near.worst] == pytest.approx(0.5)
+    assert curve.near.is_thinned  # a turn has a thousand rows
     span = curve.near.time_s[[0, -1]] - motion.time_s[31_234]
     assert span == pytest.approx([-TURN_S / 2, TURN_S / 2], rel=0.01)
 
@@ -250,7 +251,7 @@ def slid(name: str, point: str, *links: str) -> tuple[LoggedBodies, Motion]:
     scene = load_scene(name)
     motion = motion_of(scene)
     columns = {f"{link}_deg": angles(motion)[f"{link}_deg"] for link in links}
-    columns[f"{point}_slider_displacement_mm"] = 1e3 * motion.sliders[point].displacement + 1.0
+    columns[f"{point}_displacement_mm"] = 1e3 * motion.sliders[point].displacement + 1.0
     return log_of(columns, scene), motion
 
 

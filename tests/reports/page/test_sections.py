@@ -58,7 +58,7 @@ def sentences(*rows: list[Row]) -> dict[str, str]:
 def test_the_verdict_counts_what_is_judged() -> None:
     shipped, out = line("a", "as-shipped", [2.0] * 4), line("b", "tuned", [2.0, 1e-3, 1e-3, 1e-3])
     for rows, level, told in (
-        ([TUNED, shipped], "within", "Within tolerance: all 4 tuned cells of mujoco.$"),
+        ([TUNED, shipped], "within", r"Within tolerance: all 4 tuned cells of mujoco\.$"),
         ([TUNED, out], "out", r"Out of tolerance: 1 of 8 tuned cells of mujoco.*b \(1\)"),
         ([shipped], "none", "No verdict"),
     ):
@@ -91,7 +91,7 @@ def test_what_reaches_nothing_and_what_fails_is_said() -> None:
     assert (row.finest, row.worst_scene) == (math.inf, "b")
 
 
-def test_engines_stand_side_by_side_for_each_target_and_the_cheapest_is_named() -> None:
+def test_engines_stand_side_by_side_with_the_cheapest_and_a_steadier_choice_named() -> None:
     other = line("a", "tuned", second_order(1e-1), engine="pymunk")
     found = build_recommendation(report_of(TUNED, other)).words["rows"]
     told = [(row["one"].target, row["one"].best.engine, row["cheapest"]) for row in found]
@@ -100,6 +100,10 @@ def test_engines_stand_side_by_side_for_each_target_and_the_cheapest_is_named() 
     assert found[3]["one"].reason  # 1.6e-3 is the best of it
     alone = build_recommendation(report_of(TUNED)).words["rows"]
     assert not any(row["cheapest"] for row in alone)
+    wild = report_of(TUNED, line("a", "wild", [1e-4, *[math.inf] * 3]))
+    every = build_recommendation(wild).words["rows"]
+    told = [(row["one"].best.variant, row["steadier"]) for row in every]
+    assert told == [("wild", False), ("tuned", True)] * 3 + [("tuned", False)]
 
 
 def test_without_times_nothing_is_recommended_and_that_is_said() -> None:
@@ -201,6 +205,7 @@ def test_forces_are_told_at_the_finest_step_with_a_program_where_they_were_asked
     report = report_of(asked)
     section = build_forces(report)
     (told,) = section.words["rows"]
+    assert told["engine"] == "mujoco"
     assert (told["steps"], told["reaction"], told["reaction_scene"]) == (720, 2e-2, "b")
     assert (told["torque"], told["torque_scene"]) == (4e-2, "b")
     assert "4.0e-2" in render(report, [section])
