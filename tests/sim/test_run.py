@@ -309,6 +309,10 @@ def test_the_collector_is_off_while_timing_and_as_before_afterwards(
     assert seen
     assert not any(seen)
     assert gc.isenabled()
+    held = replace(own, drives=("prescribed",))
+    with pytest.raises(EngineError, match="free"):
+        time_run(FOURBAR, start_of(FOURBAR), held, drive="free", **given)
+    assert gc.isenabled()
 
 
 SCENE = double_parallelogram("double-parallelogram", source="test")
