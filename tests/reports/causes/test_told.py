@@ -235,8 +235,8 @@ def test_causes_are_found_of_the_geometry_at_the_logged_crank() -> None:
     truth = AtCrank(SCENE, time_s=plain.time_s, crank_rad=crank)
     motion = truth.at(plain.time_s)
     wrong = {"crank_a": crank, "rocker_a": motion.links["coupler"].theta}
-    found = causes(replace(plain.of(motion).put(wrong).case, truth=truth))
-    assert by_name(found) == {"misnamed": ("rocker_a",)}
+    (cause,) = causes(replace(plain.of(motion).put(wrong).case, truth=truth))
+    assert (cause.name, cause.columns) == ("misnamed", ("rocker_a",))
 
 
 def test_a_channel_without_a_limit_is_not_judged() -> None:

@@ -266,8 +266,8 @@ def test_the_patched_file_runs_as_the_line_recommended(tmp_path: Path) -> None:
     account = read_text(tmp_path, text, converge=False, turns=0.3)
     own = read_model(tmp_path / "model.xml", "A")
     advised = advice(own.planar.model, account.dt_s, Advised())
+    recommended = line(account, "recommended")  # before the file is another one
     better = patched(text.encode(), [0], 1, advised)
-    again = read_text(tmp_path, better, converge=False, turns=0.3)
-    recommended, written = line(account, "recommended"), line(again, "as-written")
+    written = line(read_text(tmp_path, better, converge=False, turns=0.3), "as-written")
     for quantity in ("angle", "gap", "acceleration"):
         assert written.errors.worst(quantity) == recommended.errors.worst(quantity)

@@ -251,7 +251,7 @@ def test_what_is_let_go_is_drawn_from_its_start_on(write: Write) -> None:
     graphs = drawn_graphs(of, "chords", 100, graph_log(log, None, of))
     assert graphs.own_part(0) < 1e-9
     assert graphs.span.end == 0.5
-    assert graphs.off(graphs.reference, 1) < 0.01
+    assert graphs.off(graphs.reference, 1) < 0.009
     late = write(time_s=t[100:], rocker_theta_rad=of.exact(0, np.minimum(t[100:], 0.5)))
     with pytest.raises(CrankcheckError, match=r"those from 0 s to 0\.5 s"):
         graph_log(late, None, of)
