@@ -269,7 +269,10 @@ def test_what_is_not_followed_is_named(scene: Scene, says: str) -> None:
 
 
 def test_times_beyond_the_end_and_endless_ones_are_refused() -> None:
-    for until_s, at_s, words in ((0.4, 0.5, r"up to 0\.4 s"), (1e4, 0.0, "50000 are the most")):
+    for until_s, at_s, words in (
+        (0.4, 0.5, r"followed up to 0\.4 s"),
+        (1e4, 0.0, "50000 are the most"),
+    ):
         motion = driven(fourbar(), Polynomials(4), "quasi-static", until_s)
         with pytest.raises(CrankcheckError, match=words):
             motion.at(np.array([at_s]))

@@ -165,11 +165,13 @@ KINKED = scene(
 @pytest.mark.parametrize(
     ("let_go", "words"),
     [
-        (lambda: release(PULSE, 1.0), "coupler bends or stretch"),
-        (lambda: release_multibody(PULSE, 1.0, near=assembled(PULSE)), "coupler bends or stretch"),
+        (lambda: release(PULSE, 1.0), "coupler bends or stretches"),
+        (lambda: release_multibody(PULSE, 1.0, near=assembled(PULSE)),
+         "coupler bends or stretches"),
         (lambda: release_elastic(load_scene("fourbar-elastic"), 0.1), "after no period"),
         (lambda: release_elastic(PULSE, -1.0), "free for -1 s"),
-        (lambda: release_elastic(PULSE, 0.1, Modes(1)).at(np.array([0.2])), r"up to 0\.1 s"),
+        (lambda: release_elastic(PULSE, 0.1, Modes(1)).at(np.array([0.2])),
+         r"integrated up to 0\.1 s"),
         (lambda: release_elastic(KINKED, 0.1, Modes(1)).at(np.zeros(1)),
          r"loads\.stop is not smooth over the motion"),
     ],
@@ -345,8 +347,8 @@ LONG = FourierSum(0.0, (0.1,), (0.0,), 1.5 * TURN_S)
 @pytest.mark.parametrize(
     ("load", "words"),
     [
-        (Load("kick", "rocker", None, Pulse(0.1, 0.3)), "not go evenly on from turn to turn"),
-        (Load("kick", "rocker", None, LONG), "not go evenly on from turn to turn"),
+        (Load("kick", "rocker", None, Pulse(0.1, 0.3)), "does not go evenly on from turn to turn"),
+        (Load("kick", "rocker", None, LONG), "does not go evenly on from turn to turn"),
         (Load("controller-speed", "rocker", None, FourierSum(0.1, (), (), 1.0)),
          "controller-speed has the name"),
     ],
