@@ -57,7 +57,7 @@ def test_the_plain_log_of_every_linkage_is_within(scene: str, judge: Judge) -> N
     linkage = LINKAGES[scene]
     log = logged(linkage, even(linkage, 1.5, PER_TURN), COLUMNS[scene])
     for target in (("--step", "0.001"), ("--target", "1e-6")):
-        assert "WITHIN TOLERANCE" in judge(scene, Dress().text(log), target=target).output
+        assert "WITHIN TOLERANCE" in judge(scene, Dress().text(log), target=target).stdout
 
 
 def _as_parquet(log: Log, path: Path) -> None:
@@ -92,13 +92,13 @@ def test_what_is_not_of_the_scene_is_left_out_and_listed(judge: Judge) -> None:
     lines = Dress().text(TURN).decode().splitlines()
     more = [f"{line},ok,,torque {n}\n" for n, line in enumerate(lines)]
     more[0] = f"{lines[0]},state,empty,motor current [A]\n"
-    told = judge(PLAIN, "".join(more).encode()).output
+    told = judge(PLAIN, "".join(more).encode()).stdout
     assert all(column in told for column in ("state", "empty", "motor current [A]"))
 
 
 def test_what_a_log_lacks_is_not_judged_unless_it_is_required(judge: Judge) -> None:
     log = Dress().text(logged(FOURBAR, even(FOURBAR, 1.0, PER_TURN), SHORT[1:2]))
-    told = judge(PLAIN, log).output
+    told = judge(PLAIN, log).stdout
     assert "not judged" in told.lower()
     assert "coupler" in told
     for name in ("coupler", "C"):
@@ -110,7 +110,7 @@ def test_what_a_log_lacks_is_not_judged_unless_it_is_required(judge: Judge) -> N
 def test_another_speed_and_start_are_fitted(scene: str, linkage: Linkage, judge: Judge) -> None:
     moved = replace(linkage, speed_rad_s=9.3, start_deg=linkage.start_deg + 2.0)
     log = Dress().text(logged(moved, uneven(moved, 1.0, PER_TURN), COLUMNS[scene]))
-    assert "9.3" in judge(scene, log, "--drive", "fitted").output
+    assert "9.3" in judge(scene, log, "--drive", "fitted").stdout
 
 
 def test_a_crank_that_turns_as_it_likes_is_taken_as_it_is_logged(judge: Judge) -> None:
@@ -267,7 +267,7 @@ def test_the_map_of_names_that_say_nothing_is_a_form_that_reads_the_log(
     times: str, angle: str, lacks: list[str], judge: Judge, tmp_path: Path
 ) -> None:
     path, text = tmp_path / "form.toml", two(times, angle)
-    told = " ".join(judge(PLAIN, text, "--write-map", path, target=()).output.split())
+    told = " ".join(judge(PLAIN, text, "--write-map", path, target=()).stdout.split())
     form = path.read_text(encoding="utf-8")
     for one in (TIMES, THING):
         assert (one in told) == (one in form) == (one in lacks)

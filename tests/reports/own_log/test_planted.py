@@ -51,7 +51,7 @@ def blamed(judge: Judge, tmp_path: Path) -> Blamed:
 
     def run(scene: str, log: Log, mapped: str = "") -> tuple[str, list[str]]:
         file = tmp_path / "judged.json"
-        told = judge(scene, Dress().text(log), "--json", file, mapped=mapped, code=1).output
+        told = judge(scene, Dress().text(log), "--json", file, mapped=mapped, code=1).stdout
         (cause,) = json.loads(file.read_text(encoding="utf-8"))["causes"]
         assert cause["text"][:40] in " ".join(told.split())
         assert "none that is known" not in told
