@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.files import load_scene
 from models.friction import ConstantFriction, Friction
 from models.laws import Law
@@ -15,7 +16,7 @@ from models.loads import Load
 from models.motion import State
 from models.scene import Scene
 from models.springs import Spring
-from sim.engine import Engine, Run, Settings
+from sim.engine import Engine, Poses, Run, Settings
 from sim.registry import engine
 from sim.run import run
 from sim.settings import resolved
@@ -45,6 +46,11 @@ def driven_by(law: Law, scene: str = "fourbar-lecture-1") -> Scene:
 
 def tuned(name: str, settings: Settings | None = None) -> Settings:
     return resolved(engine(name).profiles["tuned"], settings)
+
+
+def all_series(poses: Poses) -> Array:
+    """All that is logged of all bodies, accelerations too; a row per sample."""
+    return np.column_stack([each for body in poses.bodies.values() for each in vars(body).values()])
 
 
 def opened(

@@ -22,14 +22,13 @@ from models.loads import Load
 from models.scene import Scene
 from models.tabulated import Tabulated
 from reports.contract.clauses.reactions import named
-from reports.contract.subject import numbers
 from sim.engine import Settings
 from sim.exudyn.engine import ENGINE
 from sim.force_recipes import force_recipe
 from tests.sim.test_force_recipes import printed
 from tests.worlds import runs
 from tests.worlds.loading import loaded_mechanism
-from tests.worlds.runs import acted_on, ran, rubbing, start_of, tuned
+from tests.worlds.runs import acted_on, all_series, ran, rubbing, start_of, tuned
 from tests.worlds.tiers import few, slowly
 
 FOURBAR = load_scene("fourbar-lecture-1")
@@ -110,7 +109,7 @@ def test_the_motion_is_the_same_to_the_bit_and_two_stretches_are_one(settings: S
     scene = load_scene("fourbar-double-rocker")
     plain, whole, parts = (opened(scene, settings=settings) for _ in range(3))
     moved, log = plain.record(90, 3).poses, whole.record_forces(90, 3)
-    np.testing.assert_array_equal(numbers(moved), numbers(log.poses))
+    np.testing.assert_array_equal(all_series(moved), all_series(log.poses))
     parts.record_forces(30, 3)
     later = parts.record_forces(60, 3).forces.torque
     np.testing.assert_allclose(later, log.forces.torque[10:], rtol=1e-7)

@@ -32,7 +32,7 @@ from sim.run import run
 from tests.worlds import runs
 from tests.worlds.equilibrium import left_over
 from tests.worlds.loading import loaded_mechanism
-from tests.worlds.runs import acted_on, ran, rubbing, start_of
+from tests.worlds.runs import acted_on, all_series, ran, rubbing, start_of
 from tests.worlds.tiers import few
 
 STEPS = 720
@@ -72,6 +72,14 @@ def test_forces_are_those_of_the_reference_and_of_each_bodys_equilibrium(name: s
     assert max(force, moment / scene.longest_m) < 1e-9
     reaction, torque = worst_of(scene, log.forces)
     assert max(reaction, torque) < WITHIN.get(name, 1e-4)
+
+
+def test_forces_change_nothing_of_the_motion() -> None:
+    """Nor of accelerations, which the contract leaves open."""
+    alone, beside = (opened(load_scene("whitworth")) for _ in range(2))
+    plain, log = alone.record(60, 3).poses, beside.record_forces(60, 3)
+    np.testing.assert_array_equal(all_series(plain), all_series(log.poses))
+    assert len(log.forces.time_s) == len(plain.time_s) == 21
 
 
 @pytest.mark.parametrize("close", ["B", "C", "D"])

@@ -19,13 +19,12 @@ from models.hard import double_parallelogram
 from models.loads import Load
 from models.scene import GROUND, Scene
 from reports.contract.clauses.reactions import named
-from reports.contract.subject import numbers
 from sim.engine import Drive, Run
 from sim.momentum_balance import Hinge, MomentumGain, joint_pushes
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.spoiler import SPOILER
 from sim.run import run
-from tests.worlds.runs import acted_on, opened, ran, rubbing, start_of
+from tests.worlds.runs import acted_on, all_series, opened, ran, rubbing, start_of
 
 START = 4
 """The samples that the start takes: of the first there are no forces, in the next two the joints
@@ -83,13 +82,13 @@ def test_forces_are_the_reference_s_to_the_second_order(name: str) -> None:
 
 def test_the_motion_is_that_of_a_run_without_forces_to_the_bit() -> None:
     scene = load_scene("slider-crank-offset")
-    for drive in ("servo", "free"):
+    for drive in ("prescribed", "servo", "free"):
         one, other = (opened(scene, ENGINE, dt_s=1e-3, drive=drive) for _ in range(2))
         for every in (3, 1):
             told, alone = other.record_forces(10, every), one.record(10, every)
             assert alone.forces is None
             np.testing.assert_array_equal(told.forces.time_s, told.poses.time_s)
-            np.testing.assert_array_equal(numbers(told.poses), numbers(alone.poses))
+            np.testing.assert_array_equal(all_series(told.poses), all_series(alone.poses))
 
 
 def test_no_step_leads_to_the_first_sample_and_it_has_no_forces() -> None:
