@@ -40,19 +40,20 @@ def press(**friction: CoulombFriction | ConstantFriction) -> Scene:
     return replace(parse_scene(PRESS, "press"), friction=friction)
 
 
-@pytest.mark.parametrize("phi_deg", [20.0, 75.0, 90.0, 140.0])
+@pytest.mark.parametrize("phi_deg", [20.0, 75.0, 90.0, 140.0, 200.0, 330.0])
 @pytest.mark.parametrize("mu", [0.0, 0.1, 0.4])
 def test_a_slider_rubs_as_the_textbook_has_it(phi_deg: float, mu: float) -> None:
     """With the rod's lean psi and its force S along it: S cos psi = F + mu S sin psi, so
-    S = F / (cos psi - mu sin psi), and the torque is S r sin(phi + psi)."""
+    S = F / (cos psi - mu sin psi), and the torque is S r sin(phi + psi); past 180 deg psi < 0."""
     phi = math.radians(phi_deg)
     psi = math.asin(0.1 * math.sin(phi) / 0.3)
     rod = 1000.0 / (math.cos(psi) - mu * math.sin(psi))
     scene = press(piston=CoulombFriction("piston", mu))
     found = kinetostatics.forces(scene, at(scene, phi))
     assert found.torque[0] == pytest.approx(rod * 0.1 * math.sin(phi + psi), rel=1e-12)
-    assert abs(found.sliders["piston"].normal[0]) == pytest.approx(rod * math.sin(psi), rel=1e-12)
-    assert found.friction["piston"][0] == pytest.approx(mu * rod * math.sin(psi), rel=1e-12)
+    thrust, slider = rod * math.sin(psi), found.sliders["piston"]
+    assert (abs(slider.normal[0]), slider.moment[0]) == pytest.approx((abs(thrust), 0.0), rel=1e-12)
+    assert found.friction["piston"][0] == pytest.approx(mu * thrust, rel=1e-12)
 
 
 @pytest.mark.parametrize("phi_deg", [20.0, 75.0, 140.0])
