@@ -97,18 +97,24 @@ def test_ascii_is_escaped_and_a_cut_import_is_no_missing_engine(ended: dict[str,
     assert r"\u0110\u1ed9ng" in output
 
 
-def test_a_fault_of_crankcheck_asks_to_be_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    long = "division " * 50
+LONG = "division " * 50
 
+
+@pytest.mark.parametrize(
+    ("text", "shown"), [(LONG, LONG[:300]), ("a\nb", "a")], ids=["long", "of two lines"]
+)
+def test_a_fault_of_crankcheck_asks_to_be_reported(
+    text: str, shown: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def fault(*_: object) -> object:
-        raise ZeroDivisionError(f"{long}\nby zero")
+        raise ZeroDivisionError(text)
 
     monkeypatch.setattr("reports.cli.commands.listing.scenes", fault)
     monkeypatch.setenv("CRANKCHECK_TRACEBACK", "")
     result = crank("scenes")
     assert result.exit_code == 70
     (line,) = result.stderr.splitlines()
-    said = f"crankcheck: internal error: ZeroDivisionError: {long[:300]}; please report"
+    said = f"crankcheck: internal error: ZeroDivisionError: {shown}; please report"
     assert line.startswith(said)
     assert "--traceback" in line
     assert "Traceback" in crank("--traceback", "scenes").stderr

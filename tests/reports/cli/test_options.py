@@ -17,7 +17,7 @@ LEAST = {
     "history mujoco 1 2": ("run_history", changes.HistoryRequest("mujoco", ["1", "2"])),
     "selftest": ("selftest", checking.SelftestRequest()),
     "sweep -o out": ("sweep", measuring.SweepRequest(Path("out"))),
-    "tune a --engine b --target 1": ("run_tune", measuring.TuneRequest(["a"], "b", 1.0)),
+    "tune a b --engine c --target 1": ("run_tune", measuring.TuneRequest(["a", "b"], "c", 1.0)),
     "advise --dt 1 --speed 2 --target 3": ("run_advise", measuring.AdviseRequest(1.0, 2.0, 3.0)),
     "stability": ("stability", measuring.StabilityRequest()),
     "solve a": ("run_solve", showing.SolveRequest("a")),

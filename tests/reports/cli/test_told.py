@@ -67,6 +67,7 @@ TOLD = {
     # cos phi = (0.25^2 + 0.3^2 - 0.4^2) / (2 0.25 0.3).
     "polygon fourbar-lecture-1 --at-deg 90": "velocity polygon, 0.01 m/s to the mm"
     " | v_BA 1 100.00 180.000 known v_CB 0.3314317 33.14 -69.218 by crossing, perpendicular to BC"
+    " v_CD"
     " | a^n_BA 10 50.00 -90.000 known a^n_CB 0.439388 2.20 -159.218 known"
     " a^t_CB 5.074453 25.37 110.782 by crossing, perpendicular to BC"
     " a^n_CD 4.373274 21.87 -70.651 known a^t_CD",
