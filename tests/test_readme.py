@@ -77,7 +77,7 @@ def test_the_readme_counts_all_faults_that_are_planted_and_hard_cases_that_run_u
     driven = sum(not case.free and not case.elastic for case in CATALOGUE.values())
     counts = (
         f"plants {motions} faults",
-        f"{motions} of {motions} faults caught by the named rule",
+        f" {motions} of {motions} faults caught by the named rule ",
         f"plants {of['forces']} faults of force",
         f"plants {of['free']} faults of dynamics",
         f"`selftest --elastic` plants {of['elastic']} faults",

@@ -88,8 +88,8 @@ def test_it_installs_one_name_and_but_for_our_names_the_code_of_the_checkout(whe
     assert {"crankcheck/py.typed", "crankcheck/models/scenes/kinematics/shaper.toml"} <= set(files)
     changed = [name for name, path in files.items() if code[name] != path.read_bytes()]
     assert len(changed) > 100
-    for name in changed:
-        before = files[name].read_bytes()
+    for name, path in files.items():
+        before = path.read_bytes()
         assert re.sub(rb"\bfrom crankcheck\.(?!__)", b"from ", code[name]) == before, name
 
 
