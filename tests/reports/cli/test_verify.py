@@ -190,13 +190,6 @@ def against(tmp_path: Path) -> Verify:
     return run
 
 
-def plant(folder: Path, column: str, factor: float) -> None:
-    """Make an error of a stored run so many times as large."""
-    cells = pd.read_csv(folder / "verify.csv")
-    cells[column] *= factor
-    cells.to_csv(folder / "verify.csv", index=False)
-
-
 def test_a_run_as_good_as_its_baseline_ends_with_0_unless_it_is_out_of_tolerance(
     against: Verify, tmp_path: Path
 ) -> None:
