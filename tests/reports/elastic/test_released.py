@@ -172,14 +172,15 @@ def test_what_rings_is_let_go_for_a_few_swings_of_it_unless_more_is_asked_for() 
 
 
 def test_what_starts_straight_is_off_by_its_fast_waves_too(checked: Checked) -> None:
-    def limit(step: float, *, straight: bool) -> float:
+    def limit(step: float, *, straight: bool, of: str = "segments") -> float:
         facts = replace(checked.errors.elastic, straight=straight, segments=16, slender=0.0)
         errors = replace(checked.errors, step_rad=step, elastic=facts)
-        return limits(scene(PULSE), errors, {})["segments"].number
+        return limits(scene(PULSE), errors, {})[of].number
 
     even = limit(1e-3, straight=False)
     assert even / limit(5e-4, straight=False) == pytest.approx(4.0)
     assert limit(1e-3, straight=True) > 3.0 * even
+    assert limit(1e-3, straight=True, of="gap") == limit(1e-3, straight=False, of="gap")
     # The power 4/3 of the step, up to the waves that so many segments have.
     assert limit(1e-3, straight=True) / limit(5e-4, straight=True) == pytest.approx(2.5, abs=0.5)
 

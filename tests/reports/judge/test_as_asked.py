@@ -18,7 +18,7 @@ from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.compare.asked import not_asked_for
 from reports.compare.errors import Error
-from reports.compare.uneven import uneven
+from reports.compare.uneven import uneven, unevenly_turned
 from reports.judge.cell import Cell, CellRunner, examined
 from reports.judge.rules import RULES
 from reports.judge.too_good import LEAST, too_good
@@ -84,12 +84,22 @@ def test_every_word_of_a_run_is_held_to_the_request(field: str, name: str) -> No
     assert field != "profile" or texts == ["profile: asked for 'tuned', the run has 'another'"]
 
 
+C_M = 0.37885
+"""How far the pin is from the origin at the start, which is more than the longest link."""
+
+
 @pytest.mark.parametrize("size", [2e-9, 1e-3])
 @pytest.mark.parametrize(
-    ("kind", "body", "place"),
-    [("links", "rod", "theta"), ("points", "C", "position"), ("sliders", "C", "displacement")],
+    ("kind", "body", "place", "share", "unit"),
+    [
+        ("links", "rod", "theta", 1.0, "rad"),
+        ("points", "C", "position", 2**0.5 / C_M, "L"),  # along both axes
+        ("sliders", "C", "displacement", 1.0 / C_M, "L"),
+    ],
 )
-def test_a_body_begun_elsewhere_is_named(kind: str, body: str, place: str, size: float) -> None:
+def test_a_body_begun_elsewhere_is_named(
+    kind: str, body: str, place: str, share: float, unit: str, size: float
+) -> None:
     def moved(*args: Any, **options: Any) -> Run:
         done = run(*args, **options)
         own = getattr(done.motion, kind)
@@ -97,7 +107,7 @@ def test_a_body_begun_elsewhere_is_named(kind: str, body: str, place: str, size:
         return replace(done, motion=replace(done.motion, **{kind: {**own, body: off}}))
 
     found = said(cell("slider-crank-offset", "pymunk", converge=False), moved)
-    assert f"start: {kind[:-1]} {body} begins" in found
+    assert f"start: {kind[:-1]} {body} begins {share * size:.2g} {unit} off" in found
 
 
 @pytest.mark.parametrize("name", [name for name in ENGINES if integrates(name)])
@@ -148,7 +158,15 @@ def test_the_bodies_that_a_four_bar_moves_unevenly_are_all_but_its_crank() -> No
     found = uneven_in(FOURBAR)
     assert set(found) == {("link", "coupler"), ("link", "rocker"), ("point", "C")}
     assert all(0.05 < far <= 1.0 for far in found.values())
+    assert unevenly_turned(FOURBAR, found) == set(found)
     assert uneven_in(FOURBAR, slice(12)) == {}  # a short stretch says nothing
+
+
+def test_the_rates_of_sliders_on_links_that_turn_evenly_are_even() -> None:
+    yoke = load_scene("scotch-yoke")
+    found = uneven_in(yoke)
+    assert set(found) == {("slider", "Y"), ("slider", "B")}
+    assert unevenly_turned(yoke, found) == set()
 
 
 def test_nothing_of_a_parallelogram_moves_unevenly() -> None:
@@ -180,6 +198,19 @@ def test_no_body_of_a_shipped_scene_comes_near_what_is_too_good(each: str) -> No
         adapter = engine(name)
         placing = adapter.placing(resolved(adapter.profiles[profile], None))
         assert too_good(replace(errors, uneven=wide), placing, adapter.order) == []
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_a_widest_gap_that_no_step_leaves_is_too_good_where_something_moves_unevenly(
+    share: float,
+) -> None:
+    errors = examined(of_turns(FOURBAR))[0].errors
+    least = LEAST * errors.step_rad**2 * max(errors.uneven.values())
+    gaps = (row for row in errors.rows if row.quantity == "gap")
+    rows = tuple(replace(row, maximum=share * least * row.scale) for row in gaps)
+    found = too_good(replace(errors, rows=rows), "integrated", 2)
+    assert [row.quantity for row in found] == ["gap"] * (share < 1.0)
+    assert too_good(replace(errors, rows=rows, uneven={}), "integrated", 2) == []
 
 
 def verdict_of(runner: Callable[..., Run]) -> dict[str, str]:

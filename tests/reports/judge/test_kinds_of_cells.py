@@ -237,6 +237,16 @@ def test_limits_grow_with_late_impulses_and_with_what_lasts_and_drifts() -> None
         assert default(FREE["geometry"], each) == default(FREE["geometry"], errors)
 
 
+def test_what_lasts_grows_with_powers_of_the_step_and_the_curvature() -> None:
+    def lasted(**changed: float) -> float:
+        errors = replace(errors_of(), **changed)
+        longer = replace(errors, travel_rad=100.0 * errors.travel_rad)
+        return default(FREE["phase"], longer) - default(FREE["phase"], errors)
+
+    assert lasted(step_rad=0.01) == pytest.approx(8.0 * lasted(step_rad=0.005))
+    assert lasted(curvature=4.0) == pytest.approx(8.0 * lasted(curvature=1.0))
+
+
 def test_no_order_is_graded_where_a_start_grows_much(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
