@@ -171,7 +171,7 @@ def deadly_check(cell: Cell) -> object:
 
 def test_a_cell_that_kills_its_process_costs_only_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     """The others have the same errors as in one process, in the same order."""
-    scenes = ["fourbar-lecture-1", "slotted-lever", "tangent"]
+    scenes = [load_scene(name) for name in ("fourbar-lecture-1", "slotted-lever", "tangent")]
     cells = [of_turns(scene, engine) for scene in scenes for engine in ("mujoco", "pymunk")]
     assert len(cells) >= FEW + 2
     cells[2] = replace(cells[2], profile="deadly")
