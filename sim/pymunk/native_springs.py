@@ -69,9 +69,9 @@ def native_springs(
 ) -> dict[str, NativeSpring]:
     """The springs of a scene between its bodies in the space, by name, the ground among them.
 
-    One between bodies that both move as they are driven, or not at all, is left out: pymunk takes
-    none, and its force does not depend on the steps. One along a line hangs on a place of it ``far_m`` behind the slider, so far that the slider
-    never comes there.
+    One between two bodies that do not move freely is left out: pymunk takes none there. One along a
+    line hangs on a place of it ``far_m`` behind the slider, so far that the slider never comes
+    there.
     """
     slides = {slide.slider.name: slide for slide in joints(scene).slides}
     springs = {}
