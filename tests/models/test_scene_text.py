@@ -143,7 +143,7 @@ REFUSED: dict[str, tuple[str, str]] = {
         r"the loop cannot close at B.* can stand at -0.4 to -0.2 m and 0.2 to 0.4 m"),
     "assembly 0": (numbered("plate = 0"), "numbered from 1 to at most 6"),
     "assembly 7": (numbered("plate = 7"), "numbered from 1 to at most 6"),
-    "no such assembly": (numbered("plate = 5"), "the group has 2 assemblies; give a number"),
+    "no such assembly": (numbered("plate = 5"), "has 2 assemblies; give a number from 1 to 2$"),
     "no number of one": (numbered("plate = true"), "found True"),
     "a leg's branch": (numbered("leg1 = 1"), "no two assemblies; it has plate"),
     "beyond a limit": (

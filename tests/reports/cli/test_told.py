@@ -49,7 +49,8 @@ TOLD = {
     f"solve {PISTON} --forces": "driving force 15.4 | slider C at",
     f"graph {PISTON} --of rod": "no. C m phi rad | 12 0.30000",
     f"graph {COUPLER} --of rocker": "no. coupler deg",
-    f"rotatability {PISTON}": "slider C ends at 0.2 m: crank and rod in line",
+    f"rotatability {PISTON}": f"{PISTON}: the branch that it is on alone | slider C ends at 0.2 m: "
+    "crank and rod in line",
     # Forces: locked instants are told, and have no mean.
     "solve slider-crank-self-locking --forces": "Locked, crank at 81 deg, 81.5 deg, 82 deg"
     " | driving torque 23280.4 N m 279.5 deg - A on crank",

@@ -39,9 +39,10 @@ def stored(folder: Path) -> Result:
     return crank_alone(*args, "-o", folder, "--jobs", 1)
 
 
-def test_the_matrix_is_printed_with_critical_values(stored: Result) -> None:
+def test_the_matrix_is_printed_with_critical_values(stored: Result, folder: Path) -> None:
     assert stored.exit_code == 0, stored.output
     told = flat(stored.stdout)
+    assert told.endswith(f"{folder}: stability.json, stability.csv, stability.html")
     assert "mujoco tuned" in told
     assert "holds down to" in told
     assert "crankcheck stability CASE --engine ENGINE --profile PROFILE --at VALUE" in told
