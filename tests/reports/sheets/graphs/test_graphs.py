@@ -163,6 +163,7 @@ def test_over_the_angle_of_another_driver_rates_are_analogues() -> None:
         ("fourbar-swing", "rocker", "angle", 1.0, "may turn back; use --over time"),
         ("fourbar-elastic-pulse", "rocker", "time", 0.1, "coupler bends .*`crankcheck solve`"),
         ("fourbar-swing", "rocker", "time", math.nan, "give seconds above 0"),
+        ("fourbar-swing", "rocker", "time", 0.0, "give seconds above 0"),
     ],
 )
 def test_what_can_not_be_drawn_is_refused(
