@@ -29,6 +29,7 @@ from models.errors import EngineError
 from models.scene import Scene
 from sim.engine import Settings
 from sim.pymunk.chain_springs import chain_springs
+from sim.pymunk.pushes import moves_freely
 from sim.pymunk.space import SpaceModel
 
 HALVINGS = 3.0
@@ -90,7 +91,7 @@ def left_over(model: SpaceModel) -> float:
 
 def _inverse_masses(body: pymunk.Body) -> Array:
     """Of a body that moves along x, along y, and turns; 0 where nothing moves it."""
-    if body.body_type != pymunk.Body.DYNAMIC:
+    if not moves_freely(body):
         return np.zeros(3)
     return 1.0 / np.array([body.mass, body.mass, body.moment])
 

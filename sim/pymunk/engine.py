@@ -21,6 +21,7 @@ from sim.pymunk.body_rows import FIELDS, WIDTH, finite, pose, rows_of
 from sim.pymunk.chain_springs import chain_springs
 from sim.pymunk.convergence import iterations
 from sim.pymunk.driven_joint import DrivenJoint, driven_joint
+from sim.pymunk.pushes import moves_freely
 from sim.pymunk.reactions import BEFORE, Reactions
 from sim.pymunk.settings import (
     AS_SHIPPED,
@@ -81,11 +82,7 @@ class PymunkSession:
 
     def facts(self) -> Facts:
         """The space as pymunk holds it now; what cannot move or turn freely has no mass to hold."""
-        free = {
-            name: body
-            for name, body in self._model.bodies.items()
-            if body.body_type == pymunk.Body.DYNAMIC
-        }
+        free = {name: body for name, body in self._model.bodies.items() if moves_freely(body)}
         space = self._space
         biases = {float(constraint.error_bias) for constraint in space.constraints}
         return Facts(

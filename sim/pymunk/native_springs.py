@@ -20,7 +20,7 @@ from models.poses import Frame
 from models.scene import Point, Scene
 from models.spring_ends import End, line_ends, whole_turns
 from models.springs import LineSpring, PinSpring, SlideSpring
-from sim.pymunk.pushes import Pushes
+from sim.pymunk.pushes import Pushes, moves_freely
 
 
 @dataclass(frozen=True)
@@ -90,14 +90,9 @@ def native_springs(
     return springs
 
 
-def _is_driven(*bodies: pymunk.Body) -> bool:
-    """Whether no body moves freely."""
-    return all(body.body_type != pymunk.Body.DYNAMIC for body in bodies)
-
-
 def _in_pin(spring: PinSpring, made: Mapping[str, pymunk.Body]) -> NativeSpring | None:
     first, second = spring.bodies
-    if _is_driven(made[first], made[second]):
+    if not (moves_freely(made[first]) or moves_freely(made[second])):
         return None
     turns = whole_turns(spring, made[second].angle - made[first].angle)
     # Chipmunk counts the angle of its first body against its second.
@@ -116,7 +111,7 @@ def _between(
     block: str | None = None,
 ) -> NativeSpring | None:
     (first, here), (second, there) = ends
-    if _is_driven(made[first], made[second]):
+    if not (moves_freely(made[first]) or moves_freely(made[second])):
         return None
     own = pymunk.DampedSpring(
         made[first],

@@ -19,6 +19,7 @@ from models.errors import EngineError
 from models.friction import ConstantFriction
 from models.joints import Slot, block_name, joined_at, joints
 from models.scene import Scene
+from sim.pymunk.pushes import moves_freely
 
 WHOLE = 1.0 - 1e-9
 """The share of its largest couple from which on a motor counts as overcome."""
@@ -69,7 +70,7 @@ def pin_friction(scene: Scene, made: Mapping[str, pymunk.Body]) -> tuple[PinFric
             first, second = _two(scene, joint, guides)
             ends = made[first], made[second]
             motor = None
-            if any(end.body_type == pymunk.Body.DYNAMIC for end in ends):
+            if any(map(moves_freely, ends)):
                 motor = pymunk.SimpleMotor(*ends, 0.0)
                 motor.max_force = law.size
             rubs.append(PinFriction(joint, first, second, law.size, motor))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import pymunk
+
 from models.joints import less
 from models.poses import Frame
 from models.scene import Point
@@ -11,6 +13,11 @@ from models.scene import Point
 Push = tuple[float, float, float]
 """A force [N] and a moment [N m]."""
 NONE: Push = (0.0, 0.0, 0.0)
+
+
+def moves_freely(body: pymunk.Body) -> bool:
+    """Whether pushes move a body: it is neither the ground nor driven."""
+    return bool(body.body_type == pymunk.Body.DYNAMIC)
 
 
 class Pushes:

@@ -28,7 +28,7 @@ from models.poses import centre_of, mass_of
 from models.scene import Scene
 from sim.forces_by_body import forces_by_body
 from sim.momentum_balance import JointPushes, MomentumGain, joint_pushes
-from sim.pymunk.pushes import Push, Pushes
+from sim.pymunk.pushes import Push, Pushes, moves_freely
 from sim.pymunk.space import SpaceModel
 
 BEFORE = (
@@ -61,7 +61,7 @@ class Reactions:
         self._scene, self._model, self._rows, self._dt = scene, model, rows, dt_s
         joints = (*model.hinges.values(), *model.lines.values(), *model.gears.values())
         self._constraints = [one for one in (*joints, model.motor) if one is not None]
-        self._driven = model.motor is not None or not _moves_freely(model.crank)
+        self._driven = model.motor is not None or not moves_freely(model.crank)
         self._impulses: list[list[float]] = []
         self._braked: list[list[float]] = []
         self._on_blocks: list[Mapping[str, Push]] = []
@@ -132,7 +132,7 @@ class Reactions:
         """What joints and drive gave a body, friction and springs apart."""
         body, centre = self._model.bodies[name], self._model.centre[name]
         start, end = before[:, self._rows[name]], after[:, self._rows[name]]
-        if _moves_freely(body):
+        if moves_freely(body):
             given = self._change(body, start, end) - start[:, 3:6]
         else:
             given = self._told(name, end[:, 2], time_s) - start[:, 3:6]
@@ -190,10 +190,6 @@ class Reactions:
                     f"{own[worst]:.6g} over the step, and {one[worst]:.6g} by the momentum of "
                     "the bodies: the forces may be wrong"
                 )
-
-
-def _moves_freely(body: pymunk.Body) -> bool:
-    return body.body_type == pymunk.Body.DYNAMIC
 
 
 def _turning(omega: Array, first: int | None, second: int | None) -> Array:

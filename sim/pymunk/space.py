@@ -35,6 +35,7 @@ from models.scene import GROUND, Point, Scene, Slider, span
 from sim.momentum_balance import Hinge
 from sim.pymunk.native_springs import NativeSpring, native_springs
 from sim.pymunk.pin_friction import PinFriction, pin_friction
+from sim.pymunk.pushes import moves_freely
 from sim.pymunk.rail import Rail
 
 FAR = 1e3
@@ -241,7 +242,7 @@ def _gear(prism: Prism, made: Mapping[str, pymunk.Body]) -> pymunk.Constraint:
 
 def _firm(body: pymunk.Body) -> bool:
     """Whether no push turns the body."""
-    return body.body_type != pymunk.Body.DYNAMIC or math.isinf(body.moment)
+    return not moves_freely(body) or math.isinf(body.moment)
 
 
 def _anchor(scene: Scene, centre: Mapping[str, Point], body: str, point: str) -> Point:
