@@ -1,7 +1,7 @@
 """Which mutants the tests kill: the power of `make test`, of `make slow`, and of the tests before.
 
     python -m benchmarks.mutants run     # hours in the background; resumes after a cut
-    python -m benchmarks.mutants table   # shares by folder, and the survivors
+    python -m benchmarks.mutants table   # counts by folder, and the survivors
 
 Each mutant of `benchmarks/mutants.json` runs against the tests that reach its line, in the nearest
 folder first, until one fails. What `make test` misses runs in `make slow` and in the tests at the
