@@ -434,7 +434,7 @@ FAULTS: Mapping[str, tuple[str, str, Fault, set[str]]] = {
     "deaf": ("EC14", "differ in iterations, error_bias", _deaf, {"EC53", "EC54"}),
     "other setting held": (
         "EC14", "iterations is asked to be 150, held 7", meddling(facts_=_another_setting), set()),
-    "heavier": ("EC21", "has mass_kg", meddling(facts_=_heavier), set()),
+    "heavier": ("EC21", "has mass_kg", meddling(facts_=_heavier), {"EC91"}),
     "from zero": ("EC22", "the samples are at", meddling(_from_zero), set()),
     "one step more": (
         "EC31", "after 60 steps step and record differ by",
@@ -474,7 +474,7 @@ FAULTS: Mapping[str, tuple[str, str, Fault, set[str]]] = {
     "pulled down alone": ("EC55", "free, gravity along x moves", _pulled(0.0, 1.0), {"EC93"}),
     "slowed": (
         "EC55", "without gravity, the centres of mass move", meddling(_damped(1e-9)),
-        {"EC93", "EC94"}),
+        {"EC92", "EC93", "EC94"}),
     "at home": ("EC61", "moved by (3, -2) m", meddling(record_=_at_home), set()),
     "blunt": ("EC71", "open raised KeyError: 'motor'", meddling(_blunt), set()),
     "another motion": ("EC81", "logs another motion", of_exudyn(forces_=_shaken), set()),
@@ -521,7 +521,7 @@ FAULTS: Mapping[str, tuple[str, str, Fault, set[str]]] = {
         of_springs(_elsewhere), set()),
     "leaking": (
         "EC93", "of the energy that goes back and forth is gained or lost", meddling(_damped(0.5)),
-        {"EC94"}),
+        {"EC92", "EC94"}),
     "deaf to its speed": (
         "EC94", "a torque over the angular velocity of its link: after", of_loads(_deaf_load),
         set()),
