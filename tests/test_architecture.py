@@ -27,6 +27,7 @@ ARROWS: Mapping[str, set[str]] = {
 FLOORS: Mapping[str, str] = {
     "reports": """
         cli
+        requests
         face sheets
         page figures
         own_model
@@ -78,9 +79,10 @@ MENTIONING: Mapping[str, str] = {
     "reports/judge/rules": "what to turn in which engine, as a cure",
     "reports/quantities": "as in the rules",
     "reports/selftest/engines.py": "what a fault is called that one engine has by default",
-    "reports/cli/changes.py": "an example in the help",
-    "reports/cli/checking.py": "whose files --mjcf takes",
-    "reports/cli/commands/sweep.py": "an example in a message",
+    "reports/cli/commands.py": "whose viewer `view` opens",
+    "reports/requests/history.py": "an example in the help, and in a message",
+    "reports/requests/sweep.py": "an example in a message",
+    "reports/requests/verify_options.py": "whose files --mjcf takes",
 }
 """Where sentences mention engines, and why; an engine that is not mentioned works as well."""
 BESIDE = {"tests", "benchmarks"}
@@ -315,10 +317,10 @@ def test_a_name_of_an_engine_is_seen(house: Path) -> None:
     (house / "reports" / "page" / "a.py").write_text(
         '"""About MuJoCo."""\nif name == "mujoco":\n    from sim import pymunk\n    pymunk_work()\n'
     )
-    (house / "reports" / "cli" / "changes.py").write_text('a = "such as mujoco"\nb = "mujoco"\n')
+    (house / "reports" / "requests" / "sweep.py").write_text('a = "such as mujoco"\nb = "mujoco"\n')
     (house / "sim" / "pymunk" / "a.py").write_text('name = "pymunk"\n')
     seen = [fault.partition(" ")[0] for fault in namings(house) if " names " in fault]
-    assert seen == ["reports/cli/changes.py:2", *(f"reports/page/a.py:{n}" for n in (2, 3, 4))]
+    assert seen == [*(f"reports/page/a.py:{n}" for n in (2, 3, 4)), "reports/requests/sweep.py:2"]
 
 
 def test_an_engine_and_a_table_outside_their_rooms_are_seen(house: Path) -> None:

@@ -17,7 +17,8 @@ def commands_page() -> str:
 
 
 def _sections(group: Any, called: str) -> Iterator[str]:
-    for name, command in sorted(group.commands.items()):
+    for name, late in sorted(group.commands.items()):
+        command = getattr(late, "loaded", late)
         if command.hidden:
             continue
         full = f"{called} {name}"

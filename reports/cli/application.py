@@ -10,22 +10,79 @@ import sys
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Annotated, Any, NoReturn, TypeVar, get_args, get_type_hints
+from functools import cached_property
+from importlib import import_module
+from typing import Annotated, Any, NoReturn, Protocol, cast, get_args, get_type_hints
 
 import typer
+from rich.console import Console
+from typer.core import TyperCommand, TyperGroup
 
-from models.errors import CrankcheckError, harmless, shown
+from models.errors import CrankcheckError, harmless
 from reports.cli.broken_package import broken_package
+from reports.cli.commands import COMMANDS
 from reports.output.console import (
     UNWRITABLE,
     forget_odd_sizes,
     give_up_output,
     readable_everywhere,
+    terminal,
 )
 from reports.workers.signals import Stopped, broken_pipe_ends, finish, install, seen
 
+BAD_INPUT, INTERNAL, INTERRUPTED, BROKEN_PIPE = 2, 70, 130, 141
+TRACEBACK = "CRANKCHECK_TRACEBACK"
+
+
+class Request(Protocol):
+    """What is asked of a command: a frozen dataclass, whose fields are annotated with the
+    `typer.Argument` or `typer.Option` of each."""
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Do it, and print what comes of it; returns the exit code."""
+        ...
+
+
+class Late(TyperCommand):
+    """A command whose request is loaded when it is called."""
+
+    def __init__(self, words: str) -> None:
+        self.words = words
+        super().__init__(words.split()[-1], help=COMMANDS[words][1])
+
+    @cached_property
+    def loaded(self) -> TyperCommand:
+        """The command with its options."""
+        module, _, name = COMMANDS[self.words][0].partition(":")
+        alone = typer.Typer(add_completion=False)
+        typed = _typed(getattr(import_module(f"..{module}", __package__), name))
+        alone.command(self.name, help=self.help)(typed)
+        return cast(TyperCommand, typer.main.get_command(alone))
+
+    def make_context(self, info_name: str | None, args: list[str], *more: Any, **extra: Any) -> Any:
+        """As of the command itself: with its options."""
+        return self.loaded.make_context(info_name, args, *more, **extra)
+
+
+class Group(TyperGroup):
+    """The commands that begin with the name of the group, or all, before the groups in it."""
+
+    def __init__(self, **attributes: Any) -> None:
+        super().__init__(**attributes)
+        before = "" if self.name == NAME else f"{self.name} "
+        late = {
+            words.removeprefix(before): Late(words)
+            for words in COMMANDS
+            if words.startswith(before) and " " not in words.removeprefix(before)
+        }
+        groups = self.commands
+        self.commands = {k: v for k, v in late.items() if k not in groups} | {**groups}
+
+
+NAME = "crankcheck"
 app = typer.Typer(
-    name="crankcheck",
+    name=NAME,
+    cls=Group,
     help="Hold physics engines to the closed form of planar closed-loop mechanisms.",
     epilog="Exit codes: 0 all within tolerance, 1 out of tolerance or worse than before, 2 bad "
     "input or usage, 70 a fault of crankcheck itself, 130 interrupted, 141 nobody reads the "
@@ -35,50 +92,13 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-BAD_INPUT, INTERNAL, INTERRUPTED, BROKEN_PIPE = 2, 70, 130, 141
-TRACEBACK = "CRANKCHECK_TRACEBACK"
-Request = TypeVar("Request")
-
-
-def seconds(text: str) -> float:
-    """A number of seconds, such as 0.02 or 1/60. Raises typer.BadParameter for what is none."""
-    number, slash, parts = text.partition("/")
-    try:
-        return float(number) / float(parts) if slash else float(number)
-    except (ValueError, ZeroDivisionError):
-        raise typer.BadParameter(
-            f"{shown(text)} is no number of seconds; write it like 0.02, or 1/60"
-        ) from None
-
-
-Engines = Annotated[Sequence[str], typer.Option("--engine", help="Engine; may be repeated.")]
-StepS = Annotated[
-    float | None,
-    typer.Option("--dt", metavar="SECONDS", parser=seconds, help="Time step, such as 1/60."),
-]
-StepsPerTurn = Annotated[
-    float | None, typer.Option(help="Steps in a turn, in place of --dt (default 720).")
-]
-Duration = Annotated[
-    float | None,
-    typer.Option("--duration", metavar="SECONDS", help="Of free motion; default: the scene's."),
-]
-Forces = Annotated[
-    bool, typer.Option("--forces", help="Reactions, moments and driving torque as well.")
-]
-SegmentCount = Annotated[
-    int | None,
-    typer.Option("--segments", metavar="N", help="Of each elastic link in an engine (default 16)."),
-]
-SpringKind = Annotated[
-    str | None,
-    typer.Option(
-        "--springs",
-        help="Between segments: plain (default), corrected for the sag; beam: an engine's own.",
-    ),
-]
-Jobs = Annotated[int, typer.Option(min=0, max=1024, help="Processes; 0: one per processor.")]
-"""Options that several commands have."""
+engines_app = typer.Typer(cls=Group, invoke_without_command=True)
+app.add_typer(engines_app, name="engines")
+app.add_typer(
+    typer.Typer(cls=Group, no_args_is_help=True, callback=lambda: None),
+    name="recipe",
+    help="Show how something is read out of an engine.",
+)
 
 
 def main() -> None:
@@ -140,28 +160,26 @@ def guarded() -> Iterator[None]:
         )
 
 
-def command(run: Callable[[Request], int], of: typer.Typer = app) -> Callable[[Request], int]:
-    """Make a command of a function: its name, its docstring as help, and of its request, a frozen
-    dataclass, an argument or option for each field; what it returns is the exit code. It is a
-    command ``of`` crankcheck, or of one of its commands.
-
-    A field is annotated with its `typer.Argument` or `typer.Option`. What is not given keeps the
-    field's default.
-    """
-    hints = get_type_hints(run)
-    request = hints[next(iter(inspect.signature(run).parameters))]
+def _typed(request: type[Request]) -> Callable[..., None]:
+    """A function with an argument or option for each field of a request, as typer reads it, that
+    ends with the exit code of what it does. What is not given keeps the field's default."""
 
     def typed(**options: object) -> None:
         given = {name: value for name, value in options.items() if value is not None}
-        with guarded():
-            code = run(request(**given))
-        raise typer.Exit(code)
+        _end_with(request(**given))
 
     notes = get_type_hints(request, include_extras=True)
-    parameters = [_parameter(field, notes[field.name]) for field in dataclasses.fields(request)]
+    fields = dataclasses.fields(cast(Any, request))
+    parameters = [_parameter(field, notes[field.name]) for field in fields]
     typed.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # read by typer
-    of.command(run.__name__, help=run.__doc__)(typed)
-    return run
+    return typed
+
+
+def _end_with(request: Request) -> NoReturn:
+    """Do what is asked, and end with its exit code."""
+    with guarded():
+        code = request.run(terminal(), terminal(stderr=True))
+    raise typer.Exit(code)
 
 
 def _parameter(field: dataclasses.Field[Any], note: object) -> inspect.Parameter:
@@ -206,3 +224,16 @@ def _options(
     broken_pipe_ends(at_once=False)
     if show_traceback:
         os.environ[TRACEBACK] = "1"
+
+
+@engines_app.callback(help=COMMANDS["engines"][1])
+def _engines(
+    context: typer.Context,
+    settings: Annotated[
+        bool, typer.Option("--settings", help="Show every setting with its reason.")
+    ] = False,
+) -> None:
+    if context.invoked_subcommand is None:
+        with guarded():
+            from reports.requests.engines import EnginesRequest
+        _end_with(EnginesRequest(settings))

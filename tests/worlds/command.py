@@ -41,7 +41,8 @@ SCRIPT = """
 import atexit, os, signal, sys, time
 from crankcheck.__main__ import main
 from models.errors import EngineError
-from reports.cli.commands import listing, solve
+from reports.requests import solve
+from reports.requests.scenes import ScenesRequest
 from reports.workers import signals
 
 def strike(*_):

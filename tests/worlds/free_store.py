@@ -7,8 +7,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from reports.cli.commands import sweep as command
-from reports.cli.measuring import SweepRequest
+from reports.requests.sweep import SweepRequest
 from tests.worlds.in_process import in_this_process
 
 SCENE = "fourbar-swing"
@@ -30,5 +29,5 @@ def filled(folder: Path) -> Path:
         jobs=1,
     )
     with in_this_process():
-        command.sweep(asked, nowhere, nowhere)
+        asked.run(nowhere, nowhere)
     return folder

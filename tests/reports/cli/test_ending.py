@@ -46,7 +46,7 @@ def cut_short(*_):
     except BaseException:
         raise EngineError("engine mujoco: not installed")
 
-listing.scenes = cut_short
+ScenesRequest.run = cut_short
 """
 FILLED = (SOLVE, "export tangent", "scenes", "--help")
 
@@ -109,7 +109,7 @@ def test_a_fault_of_crankcheck_asks_to_be_reported(
     def fault(*_: object) -> object:
         raise ZeroDivisionError(text)
 
-    monkeypatch.setattr("reports.cli.commands.listing.scenes", fault)
+    monkeypatch.setattr("reports.requests.scenes.ScenesRequest.run", fault)
     monkeypatch.setenv("CRANKCHECK_TRACEBACK", "")
     result = crank("scenes")
     assert result.exit_code == 70

@@ -19,9 +19,9 @@ from analytic.free.release import release
 from models.files import kinds, load_scene, shipped
 from models.laws import Oscillating
 from models.motion import Motion
-from reports.cli.commands import listing
 from reports.drawing import gif
 from reports.drawing.shape import COLOURS
+from reports.requests import engines
 from sim.registry import Availability
 from tests.worlds.command_line import told
 from tests.worlds.tiers import few
@@ -102,7 +102,7 @@ def test_engines_lists_versions_profiles_and_settings_with_reasons_and_what_is_m
     assert [word for word in ("mujoco", "tuned", "as-shipped") if word not in plain] == []
     assert len(full.splitlines()) > len(plain.splitlines()) + 5
     missing = (Availability("mujoco", None, "pip install mujoco"),)
-    monkeypatch.setattr(listing, "available", lambda: missing)
+    monkeypatch.setattr(engines, "available", lambda: missing)
     assert "not installed: pip install mujoco" in told("engines")
 
 
@@ -110,7 +110,7 @@ def test_view_with_a_screen_opens_the_assembled_model(monkeypatch: pytest.Monkey
     viewer = pytest.importorskip("sim.mujoco.viewer")
     shown: list[int] = []
     monkeypatch.setattr(viewer.mujoco.viewer, "launch", lambda model, _: shown.append(model.nkey))
-    monkeypatch.setattr("reports.cli.commands.view.has_screen", lambda: True)
+    monkeypatch.setattr("reports.requests.view.has_screen", lambda: True)
     told("view tangent")
     assert shown == [1]
 
@@ -121,7 +121,7 @@ def test_view_without_a_screen_draws_an_animation_that_moves(
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    monkeypatch.setattr("reports.cli.commands.view.sys.platform", "linux")
+    monkeypatch.setattr("reports.requests.view.sys.platform", "linux")
     monkeypatch.setattr(gif, "FRAMES", 4)
     assert "scotch-yoke.gif" in told("view scotch-yoke")
     frames = []

@@ -14,8 +14,7 @@ import pytest
 from models.errors import CrankcheckError
 from models.files import load_scene, scene_texts
 from models.scene_text import scene_text
-from reports.cli.checking import VerifyRequest
-from reports.cli.commands.verify import plan
+from reports.requests.verify import VerifyRequest, plan
 from reports.stability.matrix import FILE, Graded, Matrix, read_matrix, to_json
 from reports.store.reader import read_store
 from sim import registry

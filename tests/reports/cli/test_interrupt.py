@@ -181,7 +181,7 @@ def lost(*_):
     Dies()
     time.sleep(3600.0)
 
-listing.scenes = lost
+ScenesRequest.run = lost
 """,
     "swallowed": """
 def swallowed(*_):
@@ -191,12 +191,12 @@ def swallowed(*_):
     except BaseException:
         time.sleep(3600.0)
 
-listing.scenes = swallowed
+ScenesRequest.run = swallowed
 """,
-    "terminated": "listing.scenes = lambda *_: os.kill(os.getpid(), signal.SIGTERM)",
-    "ignored": "signal.signal(signal.SIGINT, signal.SIG_IGN); listing.scenes = strike",
-    "told": "listing.scenes = lambda *_: setattr(sys.stdout, 'flush', strike)",
-    "finished": "listing.scenes = lambda *_: atexit.register(strike)",
+    "terminated": "ScenesRequest.run = lambda *_: os.kill(os.getpid(), signal.SIGTERM)",
+    "ignored": "signal.signal(signal.SIGINT, signal.SIG_IGN); ScenesRequest.run = strike",
+    "told": "ScenesRequest.run = lambda *_: setattr(sys.stdout, 'flush', strike)",
+    "finished": "ScenesRequest.run = lambda *_: atexit.register(strike)",
 }
 
 

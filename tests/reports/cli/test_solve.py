@@ -18,9 +18,8 @@ from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.files import load_scene, shipped
 from models.scene import Scene
-from reports.cli.commands.solve import run_solve
-from reports.cli.showing import SolveRequest
 from reports.describe.facts import facts
+from reports.requests.solve import SolveRequest
 from tests.worlds.command_line import crank, refused, told
 from tests.worlds.tiers import few, slowly
 
@@ -84,8 +83,8 @@ def test_a_workbook_holds_a_name_that_a_workbook_can_not_hold(
     path = tmp_path / "out.xlsx"
     ringing = replace(fourbar, source="bell \x07")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.cli.commands.solve.load_scene", lambda _: ringing)
-        run_solve(SolveRequest(fourbar.name, output=path), Console())
+        patch.setattr("reports.requests.solve.load_scene", lambda _: ringing)
+        SolveRequest(fourbar.name, output=path).run(Console(), Console())
     assert "bell \ufffd" in pd.read_excel(path, sheet_name="source")["value"].tolist()
 
 

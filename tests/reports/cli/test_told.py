@@ -8,9 +8,8 @@ import io
 import pytest
 from rich.console import Console
 
-from reports.cli.commands.solve import run_solve
-from reports.cli.showing import SolveRequest
 from reports.judge.cell import Checked, check
+from reports.requests.solve import SolveRequest
 from reports.verify.table import show
 from tests.worlds.command_line import flat, told
 from tests.worlds.turns import of_turns
@@ -171,6 +170,6 @@ def test_a_verdict_is_whole_at_every_width(checked: list[Checked], width: int) -
 @pytest.mark.parametrize("width", [60, 80, 100])
 def test_a_motion_fits_as_well(width: int) -> None:
     stream = io.StringIO()
-    run_solve(SolveRequest("sixbar-watt"), Console(file=stream, width=width))
+    SolveRequest("sixbar-watt").run(Console(file=stream, width=width), Console())
     assert max(len(line.rstrip()) for line in stream.getvalue().splitlines()) <= width
     assert CLIPPED not in stream.getvalue()

@@ -16,9 +16,9 @@ from rich.console import Console
 
 from models.errors import CrankcheckError, EngineError
 from models.files import shipped
-from reports.cli.checking import VerifyRequest
-from reports.cli.commands import verify as command
 from reports.judge.rules import RULES
+from reports.requests import verify as command
+from reports.requests.verify import VerifyRequest
 from tests.worlds.command_line import crank, crank_alone, flat, refused, told
 from tests.worlds.tiers import slowly
 
@@ -184,7 +184,7 @@ def against(tmp_path: Path) -> Verify:
             "scenes": ("fourbar-lecture-1",), "engines": ("mujoco",), "profiles": ("tuned",),
             "steps_per_turn": 90.0, "turns": 1.0, "converge": False, "jobs": 1,
         }  # fmt: skip
-        code = command.verify(VerifyRequest(**{**given, **asked}), console, console)  # type: ignore[arg-type]
+        code = VerifyRequest(**{**given, **asked}).run(console, console)  # type: ignore[arg-type]
         return code, console.export_text()
 
     return run

@@ -14,13 +14,13 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from models.files import load_scene
-from reports.cli.checking import VerifyRequest
-from reports.cli.commands import verify_model
-from reports.cli.commands.verify_model import IN_FOLDER
 from reports.own_model.account import Account, checked_line, read_here
 from reports.own_model.checked_line import CheckedLine
 from reports.own_model.judged import JudgedModel
 from reports.own_model.running import judged_lines
+from reports.requests import verify_model
+from reports.requests.verify import VerifyRequest
+from reports.requests.verify_model import IN_FOLDER
 from tests.worlds.command_line import crank, flat, refused, told
 from tests.worlds.own_models import SLIDER_CRANK
 

@@ -13,14 +13,13 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.cli.changes import DiffRequest
-from reports.cli.commands.diff import run_diff
 from reports.diff.costs import cost_text
 from reports.diff.junit import suite
 from reports.diff.markdown import markdown
 from reports.diff.terminal import show
 from reports.diff.words import left_out, lines
 from reports.output.junit import junit
+from reports.requests.diff import DiffRequest
 from reports.results.changes.changes import Diff, compare
 from reports.results.changes.runs import CellCost, StoredCell, StoredRun
 from tests.worlds.tiers import few
@@ -52,7 +51,7 @@ def diff(paper: Console) -> Run:
     """The command on two folders: its exit code, and all that it says."""
 
     def of(old: Path, new: Path, **asked: object) -> tuple[int, str]:
-        return run_diff(DiffRequest(old, new, **asked), paper), paper.export_text()
+        return DiffRequest(old, new, **asked).run(paper, paper), paper.export_text()
 
     return of
 

@@ -13,10 +13,10 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.cli.commands.figures import run_figures
 from reports.figures.free.phase import _over_one_turn
 from reports.figures.free_runs.free_run import free_runs
 from reports.figures.saving import FORMATS
+from reports.requests.figures import FiguresRequest
 from reports.results.overview import Report
 from reports.store.reader import read_store
 from tests.worlds.free_store import SCENE as LET_GO
@@ -52,7 +52,7 @@ FAULTS = {
 def as_svg(store: Path, folder: Path) -> Path:
     """All of a store, as SVG alone: fonts of a PDF take twice the time of all else."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.cli.commands.figures.FORMATS", ("svg",))
+        patch.setattr("reports.requests.figures.FORMATS", ("svg",))
         figures(store, folder)
     return folder
 
@@ -69,9 +69,8 @@ def drawn_free(free_store: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
 
 def figures(*asked: object) -> str:
     """What is said as they are drawn."""
-    store, folder, *chosen = asked
     said = io.StringIO()
-    assert run_figures(store, folder, Console(file=said), *chosen) == 0
+    assert FiguresRequest(*asked).run(Console(file=said), Console()) == 0  # type: ignore[arg-type]
     return said.getvalue()
 
 

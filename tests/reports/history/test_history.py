@@ -16,10 +16,9 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from models.files import shipped
-from reports.cli.changes import HistoryRequest
-from reports.cli.commands.history import run_history
 from reports.history import verification
 from reports.history.environments import EngineVersion, NotMeasuredError
+from reports.requests.history import HistoryRequest
 from reports.workers.programs import Ended
 from tests.worlds.command import COMMAND, PYTHON, script, shadows
 from tests.worlds.command_line import flat
@@ -60,7 +59,7 @@ def history(installer: Path, monkeypatch: pytest.MonkeyPatch) -> History:
         request = HistoryRequest(
             "mujoco", versions, **{**usual, "cache": installer / "cache"} | options
         )
-        code = run_history(request, *[Console(file=stream, width=100) for stream in streams])
+        code = request.run(*[Console(file=stream, width=100) for stream in streams])
         return code, flat(streams[0].getvalue()), streams[1].getvalue()
 
     return run
@@ -100,7 +99,7 @@ def test_versions_are_installed_run_compared_and_kept(
     assert f"Results: {cache.resolve()}" in output.replace("- ", "-")
 
     folders: list[Path] = []
-    measure = "reports.cli.commands.history.measure"
+    measure = "reports.requests.history.measure"
     monkeypatch.setattr(measure, lambda folder, *_: folders.append(folder))
     code, output, _ = history("3.7.0", again=True)
     assert len(folders) == 1
@@ -150,8 +149,8 @@ def measured(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Path]:
         (folder / "verify.csv").write_text(f"{columns},gap_pure,pin_gap_m\n{row}\n")
         folders.append(folder)
 
-    monkeypatch.setattr("reports.cli.commands.history.measure", measure)
-    monkeypatch.setattr("reports.cli.commands.history.ready", lambda *_: tmp_path / "python")
+    monkeypatch.setattr("reports.requests.history.measure", measure)
+    monkeypatch.setattr("reports.requests.history.ready", lambda *_: tmp_path / "python")
     return folders
 
 
@@ -226,7 +225,7 @@ def test_a_run_that_dies_has_its_reason(history: History, monkeypatch: pytest.Mo
 def test_a_mistake_is_told_before_anything_is_installed(
     history: History, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("reports.cli.commands.history.ready", None)  # nothing may be installed
+    monkeypatch.setattr("reports.requests.history.ready", None)  # nothing may be installed
     (tmp_path / "file").touch()
     for versions, options, message in (
         ("8.8.8", {"scenes": ["fourbar-lecture-9"]}, "neither a shipped scene"),
@@ -242,7 +241,7 @@ def test_a_mistake_is_told_before_anything_is_installed(
         with pytest.raises(CrankcheckError, match=message):
             history(*versions.split(), **options)
     with pytest.raises(CrankcheckError, match="did you mean mujoco"):
-        run_history(HistoryRequest("mujocco", ["3.6.0"]), Console(), Console())
+        HistoryRequest("mujocco", ["3.6.0"]).run(Console(), Console())
 
 
 SCRIPT = """
@@ -262,14 +261,13 @@ if __name__ == "__main__":
     threading.Thread(target=stop, daemon=True).start()
     with guarded():
         install()
-        from reports.cli.changes import HistoryRequest
-        from reports.cli.commands.history import run_history
+        from reports.requests.history import HistoryRequest
         from reports.history.verification import patient
         patient.keywords["patience_s"] = 600.0  # the other program ends without being killed
         # One scene is run without workers, whose start would let signals through anyway.
         request = HistoryRequest("mujoco", [{version!r}], ["fourbar-lecture-1"], turns=100.0,
                           cache=Path({cache!r}))
-        run_history(request, terminal(), terminal(stderr=True))
+        request.run(terminal(), terminal(stderr=True))
 """
 
 
@@ -320,7 +318,7 @@ def test_mujoco_3_7_closes_moving_loops_better_than_3_6(tmp_path: Path) -> None:
     output, complaint = io.StringIO(), io.StringIO()
     folders = {"cache": tmp_path / "cache", "folder": tmp_path}
     request = HistoryRequest("mujoco", ["3.6.0", "3.7.0"], **folders)
-    code = run_history(request, Console(file=output, width=100), Console(file=complaint))
+    code = request.run(Console(file=output, width=100), Console(file=complaint))
     assert (code, complaint.getvalue()) == (0, "")
     with (tmp_path / "history.csv").open(encoding="utf-8") as lines:
         better = {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import os
 from dataclasses import replace
 from pathlib import Path
@@ -15,8 +14,8 @@ from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
 from models.files import parse_scene, shipped
-from reports.cli.commands.figures import run_figures
 from reports.page.build import page as built
+from reports.requests.figures import FiguresRequest
 from reports.store.reader import read_store
 from tests.reports.page.hostile import Outline
 from tests.reports.page.tab import Tab
@@ -156,8 +155,8 @@ def test_a_browser_runs_nothing_of_it(wide: Tab, page: Path) -> None:
 def test_figures_are_drawn_with_the_source_as_text(
     store: Path, tmp_path: Path, kinds: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("reports.cli.commands.figures.FORMATS", kinds)
-    run_figures(store, tmp_path, Console(file=io.StringIO()), only=["mechanism"])
+    monkeypatch.setattr("reports.requests.figures.FORMATS", kinds)
+    FiguresRequest(store, tmp_path, only=["mechanism"]).run(Console(quiet=True), Console())
     root = Xml.parse(tmp_path / f"mechanism-{NAME}.svg").getroot()
     assert not [each for each in root.iter() if str(each.tag).endswith("script")]
     shown = " ".join("".join(text.itertext()) for text in root.iter() if text.text)
@@ -171,9 +170,9 @@ def test_a_name_in_a_store_does_not_leave_the_folder_of_figures(
 ) -> None:
     stored = read_store(store)
     away = replace(stored, cells=stored.cells.assign(scene="../../escaped"))
-    monkeypatch.setattr("reports.cli.commands.figures.read_store", lambda _: away)
+    monkeypatch.setattr("reports.requests.figures.read_store", lambda _: away)
     with pytest.raises(CrankcheckError, match=r"'\.\./\.\./escaped' of the store: not the name"):
-        run_figures(store, tmp_path / "a" / "figs", Console(file=io.StringIO()))
+        FiguresRequest(store, tmp_path / "a" / "figs").run(Console(quiet=True), Console())
     assert list(tmp_path.rglob("*escaped*")) == []
 
 

@@ -11,13 +11,13 @@ import pandas as pd
 import pytest
 from rich.console import Console
 
-from reports.cli.commands.figures import _planned
 from reports.figures import convergence, work_precision
 from reports.figures.style import styled
 from reports.page.build import page
 from reports.page.comment import summary
 from reports.page.sections import SECTIONS
 from reports.page.sections.section import PageReport
+from reports.requests.figures import _planned
 from reports.results.drawable import PLACE_ELASTIC
 from reports.results.recommend import ELASTIC_TARGETS, Recommendation, recommendations
 from reports.results.table import recommendation_table

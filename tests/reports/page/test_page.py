@@ -16,10 +16,10 @@ from rich.console import Console
 
 from models.array import Array
 from models.errors import CrankcheckError
-from reports.cli.commands.report import format_of, run_report
 from reports.page import build, comment
 from reports.page.build import HERE, page
 from reports.page.sections import SECTIONS
+from reports.requests.report import ReportRequest, format_of
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
 from tests.reports.page.conftest import part_of
@@ -104,7 +104,7 @@ def test_drawings_give_way_where_the_page_gets_too_large(
 def report(*asked: object) -> str:
     """What the command says."""
     said = StringIO()
-    assert run_report(*asked, Console(file=said, width=200)) == 0
+    assert ReportRequest(*asked).run(Console(file=said, width=200), Console()) == 0
     return said.getvalue()
 
 

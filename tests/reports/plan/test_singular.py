@@ -44,7 +44,7 @@ NEARLY = (r"(crank = .*length_m = )0\.3", r"\g<1>0.2999999999999")
 def test_verify_refuses_a_run_through_a_singular_position_also_between_two_samples(
     edited: Edit, monkeypatch: pytest.MonkeyPatch, start: str
 ) -> None:
-    monkeypatch.setattr("reports.cli.commands.verify.check_all", None)  # no engine may run
+    monkeypatch.setattr("reports.requests.verify.check_all", None)  # no engine may run
     turned = ("start_deg = 90.0", f"start_deg = {start}")
     path = edited("fourbar-lecture-1", RHOMBUS, NEARLY, turned)
     words = ("fourbar-lecture-1", "driver 360 deg", "dyad of C", "not determined", "choose")

@@ -17,8 +17,6 @@ from models.files import load_scene, shipped
 from models.friction import ConstantFriction
 from models.loads import Load
 from models.scene import Scene
-from reports.cli.commands.sweep import asked
-from reports.cli.measuring import SweepRequest
 from reports.judge.cell import Cell
 from reports.plan.chosen import chosen_scenes, left_out_note
 from reports.plan.chosen_study import StudyChoice, chosen_study
@@ -26,6 +24,7 @@ from reports.plan.coarsest import FINER, RESOLUTION, coarsest
 from reports.plan.grid import grid
 from reports.plan.key import digest, line_key
 from reports.plan.study import Study, Variant, load_study
+from reports.requests.sweep import SweepRequest, asked
 
 TOML = """
 scenes = ["fourbar-lecture-1"]

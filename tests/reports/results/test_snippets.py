@@ -11,10 +11,9 @@ import pytest
 from rich.console import Console
 
 from models.files import load_scene
-from reports.cli.commands.sweep import sweep
-from reports.cli.measuring import SweepRequest
 from reports.judge.cell import Cell
 from reports.plan.study import Variant, load_study
+from reports.requests.sweep import SweepRequest
 from reports.results.recommend import TARGETS, Recommendation, recommendations
 from reports.store.reader import Stored, read_store
 from sim.engine import Drive
@@ -67,7 +66,7 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Stored:
     quiet = Console(quiet=True)
     with in_this_process() as patch:
         patch.setattr("reports.sweep.running.timed_in_turns", timed)
-        assert sweep(SweepRequest(folder / "sweep", study=study, jobs=1), quiet, quiet) == 0
+        assert SweepRequest(folder / "sweep", study=study, jobs=1).run(quiet, quiet) == 0
     return read_store(folder / "sweep")
 
 

@@ -16,8 +16,8 @@ from benchmarks.toggle import LINES, RandomThrow, Thrown, right_from, threw, thr
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
-from reports.cli.commands.stability import _cases
 from reports.compare.free.toggle_passage import toggle_passage
+from reports.requests.stability import _cases
 from reports.stability.case import Trial
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.catalogue.free_motion import from_rest

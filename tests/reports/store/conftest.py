@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from reports.cli.commands.sweep import sweep
-from reports.cli.measuring import SweepRequest
+from reports.requests.sweep import SweepRequest
 from tests.worlds.in_process import in_this_process
 
 Sweep = Callable[..., int]
@@ -30,7 +29,7 @@ def swept() -> Sweep:
             patch.setattr("reports.sweep.measured.LEAST_TIMED", 5)
             # A part for each sweep, however busy the machine is.
             patch.setattr("reports.store.writer.EVERY_S", 600.0)
-            return sweep(asked, nowhere, nowhere)
+            return asked.run(nowhere, nowhere)
 
     return run
 

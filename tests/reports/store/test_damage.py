@@ -20,9 +20,9 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from models.regular import UnreadableError
-from reports.cli.changes import DiffRequest
-from reports.cli.checking import VerifyRequest
-from reports.cli.commands import diff, report, verify
+from reports.requests.diff import DiffRequest
+from reports.requests.report import ReportRequest
+from reports.requests.verify import VerifyRequest
 from reports.store.damage import notice
 from reports.store.examine import UNASKED, examine
 from reports.store.manifest import MANIFEST
@@ -54,7 +54,7 @@ def refusal(call: Callable[..., object], *arguments: object) -> str:
 
 def differ(old: Path, new: Path) -> int:
     """The exit code of a comparison."""
-    return diff.run_diff(DiffRequest(old, new), paper())
+    return DiffRequest(old, new).run(paper(), paper())
 
 
 def paper() -> Console:
@@ -90,7 +90,7 @@ def test_what_can_be_read_is_reported_and_the_rest_is_named(
 ) -> None:
     case = CASES[name]
     case.change(store)
-    code, message = ended(report.run_report, store, None, "md", paper())
+    code, message = ended(ReportRequest(store, format="md").run, paper(), paper())
     told = capsys.readouterr().err if case.cells else message
     assert (code, case.words in told) == (0 if case.cells else 2, True), told
     named = [line.partition(": ")[0] for line in told.splitlines()]
@@ -183,7 +183,7 @@ def test_a_cut_baseline_passes_what_it_has(store: Path, capsys: pytest.CaptureFi
     def run(*engines: str) -> tuple[int, str]:
         alone = {"steps_per_turn": 180.0, "converge": False, "jobs": 1, "baseline": store}
         asked = VerifyRequest(["fourbar-lecture-1"], engines, ["tuned"], **alone)
-        return ended(verify.verify, asked, paper(), paper())
+        return ended(asked.run, paper(), paper())
 
     assert run("pymunk") == (0, "")
     assert CUT in capsys.readouterr().err
@@ -223,7 +223,7 @@ def test_lost_cells_are_told_on_the_page_and_stay_lost_till_they_are_asked_for_a
     store: Path, whole: Path, swept: Sweep, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     cut("cells")(store)  # of MuJoCo
-    assert report.run_report(store, tmp_path / "page.html", "html", paper()) == 0
+    assert ReportRequest(store, tmp_path / "page.html").run(paper(), paper()) == 0
     assert CUT in (tmp_path / "page.html").read_text(encoding="utf-8")
     assert "has lost too" in refusal(differ, store, store)
     capsys.readouterr()
@@ -362,7 +362,7 @@ def test_no_number_changes_without_a_word(count: int, whole: Path, tmp_path: Pat
             columns = ["scene", "engine", "version", "dt_s", "status", "place_pure", "settings"]
             assert found.cells[columns].equals(known[columns].reset_index(drop=True)), number
             if number % 10 == 0:
-                assert report.run_report(copy, None, "md", paper()) == 0
+                assert ReportRequest(copy, format="md").run(paper(), paper()) == 0
         except CrankcheckError:
             assert name == Path(MANIFEST), "one damaged part of two leaves cells to read"
             unread += 1

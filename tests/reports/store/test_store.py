@@ -18,9 +18,9 @@ from filelock import FileLock
 
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.cli.commands import report
 from reports.judge.cell import Cell
 from reports.plan.key import digest
+from reports.requests.report import ReportRequest
 from reports.store import lock, mending, part
 from reports.store.damage import BUSY
 from reports.store.examine import examine
@@ -165,7 +165,7 @@ def test_cells_that_a_sweep_is_to_write_yet_are_no_damage(
     store: Path, held: FileLock, capsys: pytest.CaptureFixture[str]
 ) -> None:
     gone("cells", "timings")(store)
-    assert report.run_report(store, None, "md", paper()) == 0
+    assert ReportRequest(store, format="md").run(paper(), paper()) == 0
     told = f"crankcheck: {store}: {BUSY}; 2 cells can be read, 2 missing\n"
     assert capsys.readouterr().err == told
     assert held.is_locked

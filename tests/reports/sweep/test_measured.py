@@ -16,10 +16,9 @@ from rich.console import Console
 from analytic.kinematics import solve
 from models.files import load_scene
 from models.scene import Scene
-from reports.cli.commands.sweep import sweep
-from reports.cli.measuring import SweepRequest
 from reports.compare.free.kept_motion import released_state
 from reports.judge.cell import Cell
+from reports.requests.sweep import SweepRequest
 from reports.store.reader import read_store
 from reports.sweep import measured
 from reports.workers.isolated import Isolated, Limits, Lost
@@ -96,7 +95,7 @@ def swept(folder: Path, *faults: str, engine: str = "bad", **more: Any) -> str:
     usual = {"profiles": ["tuned"], "steps_per_turn": "90", "jobs": 1, "timing": False}
     more = {"limit_s": 600.0, **usual, **more}
     request = SweepRequest(folder, ["fourbar-lecture-1"], **named, **more)
-    assert sweep(request, Console(file=output, width=100), Console(file=StringIO())) == 0
+    assert request.run(Console(file=output, width=100), Console(file=StringIO())) == 0
     return output.getvalue()
 
 

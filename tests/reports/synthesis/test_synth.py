@@ -13,7 +13,7 @@ from analytic.synthesis.solutions import solutions_of
 from models.files import read_scene
 from models.tasks.files import find_task, load_task
 from reports.cli import app
-from reports.cli.commands import synth as command
+from reports.requests import synth as command
 from reports.synthesis.solution_table import solution_frame
 from tests.worlds.command_line import flat, refused
 

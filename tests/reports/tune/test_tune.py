@@ -16,8 +16,7 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from models.files import shipped
-from reports.cli.commands.tune import run_tune
-from reports.cli.measuring import TuneRequest
+from reports.requests.tune import TuneRequest
 from reports.tune.attempt import Attempt, Bench
 from reports.workers.signals import Stopped
 from sim.engine import Settings
@@ -34,7 +33,7 @@ SMALL = TuneRequest(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, ti
 def told(request: TuneRequest) -> tuple[int, str]:
     """Exit code and output, but for the time of day."""
     output = io.StringIO()
-    code = run_tune(request, Console(file=output, width=100), Console(file=io.StringIO()))
+    code = request.run(Console(file=output, width=100), Console(file=io.StringIO()))
     return code, "\n".join(line for line in output.getvalue().splitlines() if "made" not in line)
 
 
@@ -80,7 +79,7 @@ def test_what_is_found_reaches_the_target_no_dearer_than_tuned(whole: tuple[int,
 def test_where_all_else_is_dearer_the_profile_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     knob = Knob("iterations", (160, 170, 180))
     space = replace(search_space("pymunk"), knobs=(knob,), starts=())
-    monkeypatch.setattr("reports.cli.commands.tune.search_space", lambda name: space)
+    monkeypatch.setattr("reports.requests.tune.search_space", lambda name: space)
     code, text = told(replace(SMALL, engine="pymunk", target=1e-3, budget=8))
     assert code == 0
     assert line(text, "iterations") == ["150", "150"]
@@ -109,7 +108,7 @@ def test_the_snippet_has_the_settings_that_were_found(whole: tuple[int, str]) ->
 def test_a_file_of_other_versions_or_starts_is_refused(
     kept: Path, monkeypatch: pytest.MonkeyPatch, name: str, now: object, words: str
 ) -> None:
-    monkeypatch.setattr(f"reports.cli.commands.tune.{name}", now)
+    monkeypatch.setattr(f"reports.requests.tune.{name}", now)
     with pytest.raises(CrankcheckError, match=f"asked was {words}"):
         told(replace(SMALL, output=kept))
 
@@ -197,8 +196,7 @@ SCRIPT = """
 import os, signal, sys, threading
 from pathlib import Path
 from reports.cli import guarded
-from reports.cli.measuring import TuneRequest
-from reports.cli.commands.tune import run_tune
+from reports.requests.tune import TuneRequest
 from reports.workers.signals import install
 from reports.output.console import terminal
 from reports.tune.attempt import Bench
@@ -218,7 +216,7 @@ if __name__ == "__main__":
     with guarded():
         install()
         request = TuneRequest(("fourbar-lecture-1",), "pymunk", 1e-2, budget=1000, output=path)
-        run_tune(request, terminal(), terminal(stderr=True))
+        request.run(terminal(), terminal(stderr=True))
 """
 
 
@@ -236,7 +234,7 @@ def test_a_stopped_search_says_what_it_keeps(path: Path, monkeypatch: pytest.Mon
     for number in (2, 4):
         calls.clear()
         with pytest.raises(Stopped):
-            run_tune(replace(SMALL, output=path), Console(quiet=True), Console(file=progress))
+            replace(SMALL, output=path).run(Console(quiet=True), Console(file=progress))
         wanted += f"{number} of 6 trials are kept in {path}; the same command goes on from there\n"
         assert progress.getvalue() == wanted
 

@@ -1,0 +1,126 @@
+"""`crankcheck advise`: what engines reach at a frame time, and the sub-steps to a target."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from models.errors import CrankcheckError, listed
+from models.files import find_scenes, parse_scene, scene_texts
+from models.scene import Scene
+from reports.advise.advice import Advice, offers
+from reports.advise.choices import choices
+from reports.advise.demand import demanded
+from reports.advise.document import document
+from reports.advise.evidence import MeasuredStudy, evidence, stored_choices, stored_scenes
+from reports.advise.prices import prices, timings
+from reports.advise.search import SearchResult, search_all
+from reports.advise.table import show
+from reports.output.console import tell
+from reports.output.provenance import provenance
+from reports.output.write import check_outputs, write
+from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
+from reports.plan.elastic import rigid_alone
+from reports.requests.options import Engines, Jobs, seconds
+from reports.requests.stored_files import stored_files
+from reports.results.lines import lines
+from reports.store.reader import Stored, read_store
+from reports.workers.progress import progress_bar
+from sim.registry import engine
+
+USUAL_SCENES = ("fourbar-lecture-1", "slider-crank-central")
+"""What is advised on where no scene is named: a loop of pins, and one with a slider."""
+
+
+@dataclass(frozen=True)
+class AdviseRequest:
+    """What `advise` was asked for, as given."""
+
+    dt_s: Annotated[
+        float,
+        typer.Option(
+            "--dt", metavar="SECONDS", parser=seconds, help="Frame time of your program, as 1/60."
+        ),
+    ]
+    speed: Annotated[
+        float, typer.Option(metavar="RAD_S", help="Speed of the driver; clockwise is negative.")
+    ]
+    target: Annotated[
+        float, typer.Option(help="Error to reach, as a pure number: rad, lengths over L.")
+    ]
+    scenes: Annotated[
+        Sequence[str],
+        typer.Argument(
+            metavar="SCENE", help="Shipped names or scene files; two usual ones if none."
+        ),
+    ] = ()
+    engines: Engines = ()
+    study: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Folder of sweep -o: what it covers is read from it."),
+    ] = None
+    turns: Annotated[float, typer.Option(help="Turns of the driver in a run.")] = 10.0
+    jobs: Jobs = 0
+    json: Annotated[Path | None, typer.Option(help="Write all of it as JSON.")] = None
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Do it; returns the exit code: 0 where some settings reach the target, 1 where none do, 2
+        where none could be run. Raises CrankcheckError for what can be told of the request before
+        anything runs."""
+        read = [*find_scenes(self.scenes), *stored_files(self.study)]
+        check_outputs({"--json": self.json}, inputs=read)
+        stored = _study(self)
+        scenes, texts = _scenes(self, stored)
+        demand = demanded(scenes, self.speed, self.dt_s, self.target, self.turns)
+        if note := left_out_note(self.scenes):
+            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+        engines = chosen_engines(self.engines)
+        every = lines(stored) if stored else ()
+        wanted = choices(engines, stored_choices(every))
+        known = evidence(stored, every, demand, texts, wanted) if stored else MeasuredStudy()
+        with progress_bar(progress, "settings", len(wanted)) as advance:
+            found = search_all(demand, wanted, known, self.jobs, lambda _: advance())
+        _refuse_unrun(found)
+        with progress_bar(progress, "timings", timings(demand, found)) as advance:
+            priced = prices(demand, found, advance)
+        facts = provenance({name: engine(name).version() for name in engines})
+        named = bool(self.scenes or stored)
+        advice = Advice(demand, offers(found, priced), priced.noise, known, facts, named)
+        try:
+            if self.json is not None:
+                write(self.json, document(advice))
+        finally:  # a full disk costs the file, and not the advice with it
+            show(console, advice)
+        return 0 if advice.promises else 1
+
+
+def _study(request: AdviseRequest) -> Stored | None:
+    """The study that was given. Raises CrankcheckError for a folder that is none."""
+    if request.study is None:
+        return None
+    stored = read_store(request.study)
+    tell(stored.notice)
+    return stored
+
+
+def _scenes(
+    request: AdviseRequest, stored: Stored | None
+) -> tuple[Sequence[Scene], Mapping[str, str]]:
+    """The scenes that were named, else those of the study, else the usual ones; their texts."""
+    if stored is not None and not request.scenes:
+        texts = stored_scenes(stored)
+        return [parse_scene(text, f"{stored.folder}: {n}") for n, text in texts.items()], texts
+    names = request.scenes or USUAL_SCENES
+    return chosen_scenes(names, rigid_alone("advise")), scene_texts(names)
+
+
+def _refuse_unrun(found: Sequence[SearchResult]) -> None:
+    """Raise CrankcheckError where no engine can hold a scene."""
+    if all(one.ended is not None and one.ended.status == "unsupported" for one in found):
+        ends = {one.ended.reason: one.choice.label for one in found if one.ended}
+        raise CrankcheckError(listed("advise", [f"{label}: {why}" for why, label in ends.items()]))

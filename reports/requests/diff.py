@@ -1,0 +1,85 @@
+"""`crankcheck diff`: two stored runs, and what became of every cell."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from models.errors import CrankcheckError
+from reports.diff.junit import suite
+from reports.diff.markdown import markdown
+from reports.diff.terminal import show
+from reports.output.console import tell
+from reports.output.junit import junit
+from reports.output.write import check_outputs, write
+from reports.requests.stored_files import stored_files
+from reports.results.changes.changes import compare
+from reports.results.changes.reading import read_run
+
+FORMATS = ("text", "md")
+
+
+@dataclass(frozen=True)
+class DiffRequest:
+    """What `diff` was asked for, as given.
+
+    ``old`` and ``new`` are folders of `sweep -o` or of `verify -o`, in any combination: a profile
+    is the variant of its name. ``format`` is what is printed, or what goes to ``output``, which
+    is Markdown in any case.
+    """
+
+    old: Annotated[Path, typer.Argument(metavar="OLD", help="Folder of sweep -o or verify -o.")]
+    new: Annotated[Path, typer.Argument(metavar="NEW", help="Folder to compare with it.")]
+    factor: Annotated[float, typer.Option(help="Growth of an error that is no fault yet.")] = 1.1
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Exit 1 for missing cells and changed scenes too.")
+    ] = False
+    old_version: Annotated[
+        str | None, typer.Option(help="Engine version to take of OLD, where it holds several.")
+    ] = None
+    new_version: Annotated[str | None, typer.Option(help="The same of NEW.")] = None
+    format: Annotated[str, typer.Option(metavar="text|md", help="What is printed.")] = "text"
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write Markdown, for a pull request.")
+    ] = None
+    junit: Annotated[Path | None, typer.Option(help="Write JUnit XML, a case per cell.")] = None
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Do it; returns the exit code.
+
+        0: nothing is worse. 1: some error grew past the factor, or a cell that ended well does not
+        any more; with ``strict`` also where a cell of the old run is missing, or its scene changed.
+        Without it those are told and are no fault: a run that failed is a row with its status, so a
+        cell is missing only where it was not asked for. Times of steps are shown and never count.
+
+        Raises
+        ------
+        CrankcheckError
+            A folder that holds no run, two runs with nothing in common, an option that makes no
+            sense; a damaged run that may have lost a cell which the other one has.
+        """
+        if self.format not in FORMATS:
+            raise CrankcheckError(f"--format {self.format!r}: unknown; use {' or '.join(FORMATS)}")
+        read = stored_files(self.old, self.new)
+        check_outputs({"-o": self.output, "--junit": self.junit}, inputs=read)
+        old = read_run(self.old, self.old_version, "--old-version")
+        new = read_run(self.new, self.new_version, "--new-version")
+        for run in (old, new) if self.old != self.new else (old,):
+            tell(run.notice)
+        diff = compare(old, new, self.factor)
+        page = markdown(diff, self.strict)
+        try:
+            if self.output:
+                write(self.output, page)
+            if self.junit:
+                write(self.junit, junit(suite(diff, self.strict)))
+        finally:  # a full disk costs the file, and not the verdict with it
+            if self.format == "md" and not self.output:
+                console.print(page, end="", markup=False, highlight=False, soft_wrap=True)
+            else:
+                show(console, diff, self.strict)
+        return diff.code(self.strict)

@@ -1,0 +1,223 @@
+"""`crankcheck history`: the same verification with several versions of an engine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import Progress
+
+from models.errors import CrankcheckError
+from models.files import find_scenes
+from reports.history.cache import alone, cache_folder
+from reports.history.document import page, table_text
+from reports.history.environments import EngineVersion, NotMeasuredError, ready, uv_here, wanted
+from reports.history.table import show
+from reports.history.verification import kept, key_of, measure, place
+from reports.history.version_result import VersionResult, read_version
+from reports.judge.cell import Cell
+from reports.output.provenance import provenance
+from reports.output.write import check_folder, refuse_link, write
+from reports.plan.chosen import left_out_note
+from reports.plan.free import free_names
+from reports.requests.options import Duration, Jobs, StepS, StepsPerTurn
+from reports.requests.verify import VerifyRequest, plan
+from reports.requests.verify_files import IN_FOLDER
+from reports.results.changes.reading import scene_digests
+from reports.verify.footer import DRIVEN, FREE
+from reports.workers.programs import run_child
+from sim.registry import ENGINES, engine
+
+FILES = ("history.csv", "history.md")
+
+
+@dataclass(frozen=True)
+class HistoryRequest:
+    """What `history` was asked for, as given; as of `verify` where the names are the same."""
+
+    engine: Annotated[str, typer.Argument(metavar="ENGINE", help="Engine, such as mujoco.")]
+    versions: Annotated[
+        Sequence[str], typer.Argument(metavar="VERSION", help="Released versions of it.")
+    ]
+    scenes: Annotated[
+        Sequence[str],
+        typer.Option("--scene", help="Shipped name or file; may be repeated; all if none."),
+    ] = ()
+    profiles: Annotated[
+        Sequence[str], typer.Option("--profile", help="Profile; default: tuned and as-shipped.")
+    ] = ()
+    dt_s: StepS = None
+    steps_per_turn: StepsPerTurn = None
+    turns: Annotated[float | None, typer.Option(help="Turns of the driver (default 2).")] = None
+    free: Annotated[
+        bool, typer.Option("--free", help="Let scenes go; those of free motion if none is named.")
+    ] = False
+    duration_s: Duration = None
+    jobs: Jobs = 0
+    cache: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Where environments and results are kept.")
+    ] = None
+    again: Annotated[bool, typer.Option("--again", help="Verify again; environments are kept.")] = (
+        False
+    )
+    folder: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="Write tables and each version's verification."
+        ),
+    ] = None
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Do it; returns the exit code: 0 when every version has a result, 2 when one has none.
+        Raises CrankcheckError for what can be told of the request before installing."""
+        _refuse_own(self.engine)
+        versions = wanted(self.engine, self.versions)
+        if not versions:
+            raise CrankcheckError(f"history {self.engine}: name versions, such as 3.6.0 3.7.0")
+        cells = plan(_verification(self))
+        names = free_names(self.scenes) if self.free else self.scenes
+        cache = cache_folder(self.cache)
+        _check_outputs(self, versions)
+        uv = uv_here()
+        if note := left_out_note(names):
+            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+        # The files of a result hold the digests of the scenes' texts, by which they are compared.
+        key, results = key_of([*cells, scene_digests(names)]), []
+        with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
+            task = bar.add_task("", total=2 * len(versions))
+            for asked in versions:
+
+                def tell(what: str, steps: int = 0, asked: EngineVersion = asked) -> None:
+                    called = f"{asked.engine} {asked.version}"
+                    bar.update(task, advance=steps, description=f"{called}: {what}")
+
+                results.append(_measured(self, asked, place(cache, asked, key), cache, uv, tell))
+                bar.update(task, completed=2 * len(results))
+        footer = _footer(self, cells, results)
+        try:
+            _write(self, results, footer)
+        finally:
+            show(console, results, footer)
+        missing = [result for result in results if not result.cells]
+        for result in missing:
+            text = f"crankcheck: {self.engine} {result.version}: {result.reason}"
+            progress.print(text, markup=False, soft_wrap=True)
+        return 2 if missing else 0
+
+
+def _refuse_own(name: str) -> None:
+    """Refuse an engine that no registry has versions of. Raises CrankcheckError, with the near
+    names of one that is unknown."""
+    if name not in ENGINES:
+        own = engine(name).name
+        raise CrankcheckError(
+            f"history {own}: it has released versions of {', '.join(ENGINES)} alone; keep `verify "
+            f"--engine {name} -o DIR` of each version of yours, and compare two with `diff`"
+        )
+
+
+def _verification(request: HistoryRequest) -> VerifyRequest:
+    """The verification that each version is put to."""
+    return VerifyRequest(
+        scenes=request.scenes,
+        engines=(request.engine,),
+        profiles=request.profiles,
+        dt_s=request.dt_s,
+        steps_per_turn=request.steps_per_turn,
+        turns=request.turns,
+        free=request.free,
+        duration_s=request.duration_s,
+        jobs=request.jobs,
+    )
+
+
+def _arguments(request: HistoryRequest) -> list[str]:
+    """The same verification as arguments of the command line; the engine goes before them."""
+    options = [f"--jobs={request.jobs}", *["--free"] * request.free]
+    options += [f"--profile={name}" for name in request.profiles]
+    numbers = {
+        "--turns": request.turns,
+        "--duration": request.duration_s,
+        "--dt": request.dt_s,
+        "--steps-per-turn": request.steps_per_turn,
+    }
+    options += [f"{option}={value!r}" for option, value in numbers.items() if value is not None]
+    return [*options, "--", *request.scenes]
+
+
+def _measured(
+    request: HistoryRequest,
+    asked: EngineVersion,
+    folder: Path,
+    cache: Path,
+    uv: str | None,
+    tell: Callable[..., None],
+) -> VersionResult:
+    """The result of one version in ``folder``, kept from before or made now; or the reason why
+    there is none."""
+    lock = cache / "locks" / f"{asked.name}.lock"
+    try:
+        with alone(lock, lambda: tell("waiting for another crankcheck")):
+            from_before = kept(folder) and not request.again
+            if not from_before:
+                tell("installing")
+                python = ready(cache, asked, uv, run_child)
+                tell("verifying", 1)
+                measure(folder, asked, python, _arguments(request))
+            return VersionResult(asked, read_version(folder), folder=folder, kept=from_before)
+    except NotMeasuredError as error:
+        return VersionResult(asked, reason=str(error))
+    except OSError as error:
+        raise CrankcheckError(
+            f"--cache {cache}: {error.strerror or error}; free some space there, or choose "
+            "another place"
+        ) from None
+
+
+def _check_outputs(request: HistoryRequest, versions: Sequence[EngineVersion]) -> None:
+    """Refuse outputs that can not be written, before anything is installed."""
+    if request.folder is None:
+        return
+    read = find_scenes(request.scenes)
+    check_folder(request.folder, "-o", FILES, inputs=read)
+    for version in versions:
+        refuse_link(request.folder / version.name, "-o")
+        check_folder(request.folder / version.name, "-o", IN_FOLDER, inputs=read)
+
+
+def _write(request: HistoryRequest, results: Sequence[VersionResult], footer: str) -> None:
+    """The verification of each version in a folder of its own, and the history of all."""
+    if request.folder is None:
+        return
+    for result in results:
+        for path in sorted(result.folder.iterdir()) if result.folder else ():
+            write(request.folder / result.asked.name / path.name, path.read_bytes())
+    write(request.folder / FILES[0], table_text(results))
+    write(request.folder / FILES[1], page(results, footer))
+
+
+def _footer(
+    request: HistoryRequest, cells: Sequence[Cell], results: Sequence[VersionResult]
+) -> str:
+    """Units, settings and versions; the result's place where no -o was given."""
+    first = cells[0]
+    step, long = f"{first.steps_per_turn:.4g} steps a turn", f"{first.turns:.4g} turns"
+    if first.drive == "free":
+        step, long = f"dt {first.dt_s:.4g} s", f"let go for {first.turns:.4g} s"
+    if len({round(cell.steps_per_turn, 3) for cell in cells}) > 1:
+        step = f"dt {first.dt_s:.4g} s"
+    measured = [result for result in results if result.folder]
+    names = " ".join(result.version for result in measured) or "none"
+    facts = provenance({request.engine: names})
+    lines = [
+        FREE if first.drive == "free" else DRIVEN,
+        f"{step}, {long}; settings are those of this crankcheck's profiles in every version.",
+        ", ".join(f"{name} {value}" for name, value in facts.items()),
+    ]
+    if request.folder is None and measured:
+        lines.append("Results: " + ", ".join(str(result.folder) for result in measured))
+    return "\n".join(lines)

@@ -1,0 +1,256 @@
+"""`crankcheck rotatability`: what turns fully, on which circuit, between which dead points."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+
+from analytic.circuits.circuits import Circuits, Position, circuits_of
+from analytic.circuits.dead_points import at_limit, dead_points
+from analytic.circuits.own_arc import own_arc
+from analytic.circuits.rotatability import Rotation, rotations
+from analytic.circuits.transmission import Extreme, transmissions
+from analytic.dyads.driven import driver_scale
+from analytic.mechanism.grashof_of_scene import grashof_of
+from analytic.structure.mobility import analyse
+from models.driver_shown import driver_unit
+from models.errors import CrankcheckError, StructureError, harmless, shown
+from models.files import load_scene
+from models.scene import Scene
+from reports.output.columns import plain_table
+from reports.requests.options import SceneName
+
+Row = Mapping[str, object]
+
+
+@dataclass(frozen=True)
+class RotatabilityRequest:
+    """What `rotatability` was asked for, as given."""
+
+    scene: SceneName
+    position: Annotated[
+        Sequence[str],
+        typer.Option(
+            metavar="DEG[:SIGNS]",
+            help="A position, such as 90 or 90:+-, signs by dyad in solving order; repeatable: "
+            "whether the driver leads through all in this order.",
+        ),
+    ] = ()
+    json: Annotated[bool, typer.Option("--json", help="As JSON, not as tables.")] = False
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Show it; the exit code. Raises CrankcheckError for what can not be asked."""
+        scene = load_scene(self.scene)
+        try:
+            circuits = circuits_of(scene)
+        except StructureError as error:
+            analyse(scene)  # which says what is no mechanism at all
+            if self.position:
+                raise
+            document = _of_own_branch(scene, str(error))
+            if self.json:
+                _print_json(console, document)
+            else:
+                _show_own_branch(console, document)
+            return 0
+        positions = [_position(circuits, text) for text in self.position]
+        defect = circuits.defect(positions) if positions else "none"
+        document = _document(scene, circuits)
+        if positions:
+            document["defect"] = defect
+        if self.json:
+            _print_json(console, document)
+        else:
+            _show(console, document)
+        return int(defect != "none")
+
+
+def _position(circuits: Circuits, text: str) -> Position:
+    """A position as written. Raises CrankcheckError."""
+    degrees, colon, written = text.partition(":")
+    signs = circuits.signed.signs
+    try:
+        angle = math.radians(float(degrees))
+    except ValueError:
+        angle = math.nan
+    fits = not colon or (len(written) == len(signs) and set(written) <= {"+", "-"})
+    if not math.isfinite(angle) or not fits:
+        dyads = ", ".join(circuits.signed.dyads) or "none"
+        raise CrankcheckError(
+            f"--position {shown(text)}: wants degrees, and a sign + or - for each dyad after a "
+            f"colon ({len(signs)}: {dyads}), such as 90:{'+' * len(signs)}"
+        )
+    given = tuple(1 if sign == "+" else -1 for sign in written)
+    return Position(angle, given if colon else signs)
+
+
+def _document(scene: Scene, circuits: Circuits) -> dict[str, object]:
+    """All of it, angles in degrees, as JSON has it."""
+    turning = rotations(scene, circuits.own[1])
+    dyads, merit = transmissions(circuits)
+    grashof, (number, own) = grashof_of(scene), circuits.own
+    return {
+        "scene": scene.name,
+        "type": None if grashof is None else grashof.name,
+        "margin_m": None if grashof is None else grashof.margin_m,
+        "rotations": [rotation_row(one, is_limited=own.low is not None) for one in turning],
+        "dyads": list(circuits.signed.dyads),
+        "change_points": circuits.change_points,
+        "circuit": number + 1,
+        "branches": [
+            {
+                "circuit": k + 1,
+                "signs": "".join("+" if sign > 0 else "-" for sign in arc.signs),
+                "driver_from_deg": math.degrees(arc.range_rad[0]),
+                "driver_to_deg": math.degrees(arc.range_rad[1]),
+                "limits": [end.dyad for end in (arc.low, arc.high) if end is not None],
+                "scene": arc is own,
+            }
+            for k, circuit in enumerate(circuits.circuits)
+            for arc in circuit
+        ],
+        "dead_points": [
+            {"input": p.input, "driver_deg": math.degrees(p.driver_rad), "where": p.where}
+            for p in dead_points(circuits, turning)
+        ],
+        "transmission": [
+            {
+                "dyad": one.dyad,
+                "kind": one.kind,
+                **_extreme("smallest_deg", one.smallest_rad),
+                **_extreme("largest_deg", one.largest_rad),
+                "pressure_deg": None
+                if one.pressure_rad is None
+                else math.degrees(one.pressure_rad),
+                "least_sine": one.least_sine.value,
+                "least_sine_at_deg": math.degrees(one.least_sine.driver_rad),
+            }
+            for one in dyads
+        ],
+        "merit": merit.value,
+        "merit_at_deg": math.degrees(merit.driver_rad),
+    }
+
+
+def _of_own_branch(scene: Scene, why: str) -> dict[str, object]:
+    """What is told of a mechanism whose circuits are not found: the branch that it is on."""
+    arc = own_arc(scene)
+    scale = driver_scale(scene) if scene.driver.slider is not None else math.degrees(1.0)
+    return {
+        "scene": scene.name,
+        "why_no_circuits": why,
+        "driver": scene.driver.joint,
+        "unit": driver_unit(scene),
+        "ends": [
+            {"at": end.angle_rad * scale, "where": at_limit(scene, end.dyad)}
+            for end in (arc.low, arc.high)
+            if end is not None
+        ],
+        "rotations": [
+            rotation_row(r, is_limited=arc.low is not None) for r in rotations(scene, arc)
+        ],
+    }
+
+
+def _show_own_branch(console: Console, document: Mapping[str, Any]) -> None:
+    """The same in words and a table."""
+
+    def say(text: str) -> None:
+        console.print(harmless(text), highlight=False, markup=False)
+
+    say(f"{document['scene']}: the branch that it is on alone")
+    show_rows(console, document["rotations"], TABLES["rotations"].split())
+    say("")
+    for end in document["ends"]:
+        say(f"{document['driver']} ends at {end['at']:.6g} {document['unit']}: {end['where']}")
+    if not document["ends"]:
+        say(f"{document['driver']} turns fully")
+    say(document["why_no_circuits"])
+
+
+def _print_json(console: Console, document: Mapping[str, object]) -> None:
+    console.print(json.dumps(document, indent=1), highlight=False, markup=False, soft_wrap=True)
+
+
+def rotation_row(one: Rotation, *, is_limited: bool) -> Row:
+    """What a link does over a branch; the swing is that of one which does not turn fully."""
+    low, high = (math.degrees(each) for each in (one.low_rad, one.high_rad))
+    swings = one.turns == 0
+    return {
+        "link": one.link,
+        "against": one.against,
+        "does": one.word,
+        "turns": one.turns,
+        "driver_turns": None if is_limited else one.period_rad / math.tau,
+        "from_deg": low if swings else None,
+        "to_deg": high if swings else None,
+        "swing_deg": high - low if swings else None,
+    }
+
+
+def _extreme(name: str, extreme: Extreme | None) -> Row:
+    """An extreme angle and where the driver stands, both in degrees."""
+    if extreme is None:
+        return {name: None}
+    at = math.degrees(extreme.driver_rad)
+    return {name: math.degrees(extreme.value), name.replace("_deg", "_at_deg"): at}
+
+
+TABLES = {
+    "rotations": "link against does turns from_deg to_deg swing_deg",
+    "branches": "circuit signs driver_from_deg driver_to_deg limits scene",
+    "dead_points": "input driver_deg where",
+    "transmission": "dyad kind smallest_deg smallest_at_deg largest_deg largest_at_deg "
+    "pressure_deg least_sine least_sine_at_deg",
+}
+"""The tables in their order, and their columns."""
+
+
+def _show(console: Console, document: Mapping[str, Any]) -> None:
+    """The same in words and tables."""
+
+    def say(text: str) -> None:
+        console.print(text, highlight=False, markup=False)
+
+    kind = "no four-bar or slider-crank driven at its crank, so of no Grashof type"
+    if document["type"] is not None:
+        kind = f"{document['type']}, margin {document['margin_m']:.6g} m"
+    say(f"{document['scene']}: {kind}")
+    for name, columns in TABLES.items():
+        if name == "branches":
+            meet = ", those that meet in change points as one" if document["change_points"] else ""
+            say(f"\ncircuits{meet}; signs of {', '.join(document['dyads']) or 'no dyad'}")
+        elif name != "rotations":
+            say(f"\n{name.replace('_', ' ')}" + ("" if document[name] else ": none"))
+        if document[name]:
+            show_rows(console, document[name], columns.split())
+    say(f"\nindex of merit {document['merit']:.6g} at {document['merit_at_deg']:.6g} deg")
+    if "defect" in document:
+        found = document["defect"]
+        told = "led through by the driver" if found == "none" else f"a {found} defect"
+        say(f"positions: {told}")
+
+
+def show_rows(console: Console, rows: Sequence[Row], columns: Sequence[str]) -> None:
+    table = plain_table(gap=2)
+    for column in columns:
+        table.add_column(column.replace("_", " "), overflow="fold")
+    for row in rows:
+        table.add_row(*(_cell(row.get(column)) for column in columns))
+    console.print(table, highlight=False)
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else ""
+    if isinstance(value, list):
+        return ", ".join(dict.fromkeys(value))
+    if isinstance(value, float):
+        return f"{0.0 if abs(value) < 1e-6 else value:.6g}"
+    return "" if value is None else str(value)

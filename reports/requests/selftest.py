@@ -1,0 +1,173 @@
+"""`crankcheck selftest`: plant faults, see which rule catches each, show, write."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import pandas as pd
+import typer
+from rich.console import Console
+from rich.progress import Progress
+
+from models.errors import CrankcheckError
+from reports.judge.cell import Checked
+from reports.output.frame_file import csv
+from reports.output.provenance import provenance
+from reports.output.write import check_outputs, write
+from reports.plan.chosen import chosen_engines
+from reports.requests.options import Jobs
+from reports.selftest.all_faults import chosen_faults
+from reports.selftest.elastic_runs import BENDING
+from reports.selftest.fault import PROFILE, RunKind
+from reports.selftest.free_runs import FREE_RUNS
+from reports.selftest.table import place_row, show
+from reports.selftest.trial import (
+    STEPS,
+    Passed,
+    Verdict,
+    healthy,
+    passed_by,
+    passes,
+    sites,
+    tried_all,
+)
+from sim.registry import engine, offering
+
+KINDS_ASKED: tuple[RunKind, ...] = ("forces", "free", "elastic")
+IN_FOLDER = ("selftest.csv", "selftest.json")
+
+
+@dataclass(frozen=True)
+class SelftestRequest:
+    """What `selftest` was asked for, as given."""
+
+    engines: Annotated[
+        Sequence[str], typer.Option("--engine", help="Engine; may be repeated; all if none.")
+    ] = ()
+    faults: Annotated[
+        Sequence[str],
+        typer.Option(
+            "--fault", metavar="NAME", help="Fault of the table; may be repeated; all if none."
+        ),
+    ] = ()
+    jobs: Jobs = 0
+    csv: Annotated[Path | None, typer.Option(help="Write a row per fault and place.")] = None
+    json: Annotated[Path | None, typer.Option(help="Write the same and more as JSON.")] = None
+    folder: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write both into a folder.")
+    ] = None
+    forces: Annotated[
+        bool, typer.Option("--forces", help="Plant faults of reactions and torques instead.")
+    ] = False
+    free: Annotated[
+        bool, typer.Option("--free", help="Plant faults of dynamics in free motion instead.")
+    ] = False
+    elastic: Annotated[
+        bool, typer.Option("--elastic", help="Plant faults of elastic links instead.")
+    ] = False
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Do it; returns the exit code: 0 where every fault is caught, 1 where one escapes or
+        plants nothing, and where nothing is planted of what need not be seen. Raises
+        CrankcheckError for an unknown engine or fault, and an output that can not be written."""
+        engines, kind = chosen_engines(self.engines), _kind(self)
+        faults = chosen_faults(self.faults, engines, kind)
+        check_outputs({"--csv": self.csv, "--json": self.json}, self.folder, IN_FOLDER)
+        for name in engines:
+            if name not in offering("spoiler"):
+                progress.print(f"engine {name}: it has no spoiler, so nothing is planted inside it")
+        with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
+            task = bar.add_task("planting", total=len(faults))
+            names = [fault.name for fault in faults]
+            verdicts = tried_all(names, engines, self.jobs, lambda _: bar.advance(task))
+        sound = [
+            healthy(scene, name, kind=each)
+            for each in dict.fromkeys(fault.kind for fault in faults)
+            for scene, name in sites([f for f in faults if f.kind == each], engines)
+        ]
+        passed = [] if self.faults or self.forces else passed_by(engines, kind)
+        facts = provenance({name: engine(name).version() for name in engines})
+        try:
+            _write(self, verdicts, sound, passed, facts)
+        finally:  # a full disk costs the file, and not the verdict with it
+            show(console, sound, verdicts, engines, facts, passed)
+        return int(not all(one.caught for one in verdicts) or any(one.nothing for one in passed))
+
+
+def _kind(request: SelftestRequest) -> RunKind:
+    """What runs the faults are planted in, where none is named. Raises CrankcheckError."""
+    given = {"forces": request.forces, "free": request.free, "elastic": request.elastic}
+    asked = [kind for kind in KINDS_ASKED if given[kind]]
+    if len(asked) > 1:
+        raise CrankcheckError(
+            f"--{asked[0]} with --{asked[1]}: the faults of either have runs of their own; ask for "
+            "one of them"
+        )
+    return asked[0] if asked else "motion"
+
+
+def _write(
+    request: SelftestRequest,
+    verdicts: Sequence[Verdict],
+    sound: Sequence[Checked],
+    passed: Sequence[Passed],
+    facts: Mapping[str, str],
+) -> None:
+    """Every output that was asked for, each whole or not at all."""
+    rows = [place_row(one, place) for one in verdicts for place in one.places]
+    texts = (
+        csv(pd.DataFrame(rows)),
+        _json(verdicts, sound, passed, rows, facts),
+    )
+    folder = request.folder
+    for name, text, path in zip(IN_FOLDER, texts, (request.csv, request.json), strict=True):
+        for target in filter(None, (path, folder and folder / name)):
+            write(target, text)
+
+
+def _settings(verdicts: Sequence[Verdict]) -> dict[str, object]:
+    """How long the runs are, and at which step; free ones by their scene."""
+    kinds = {one.fault.kind for one in verdicts}
+    turn = {"steps_per_turn": STEPS, "turns": 1} if kinds - {"free", *BENDING} else {}
+    runs = {scene: {"dt_s": dt_s, "steps": steps} for scene, (dt_s, steps) in FREE_RUNS.items()}
+    own: dict[RunKind, object] = {"free": runs}
+    own |= {
+        kind: {scene: vars(each) for scene, each in bent.items()} for kind, bent in BENDING.items()
+    }
+    return {"profile": PROFILE, **turn, **{kind: own[kind] for kind in own if kind in kinds}}
+
+
+def _json(
+    verdicts: Sequence[Verdict],
+    sound: Sequence[Checked],
+    passed: Sequence[Passed],
+    rows: Sequence[Mapping[str, object]],
+    facts: Mapping[str, str],
+) -> str:
+    """Facts, settings, the runs without a fault, every fault in every place, and what passes."""
+    content = {
+        "provenance": dict(facts),
+        "settings": _settings(verdicts),
+        "caught": sum(one.caught for one in verdicts),
+        "escaped": [one.name for one in verdicts if not one.caught],
+        "without_a_fault": [
+            {"scene": one.cell.scene.name, "engine": one.cell.engine, "passes": passes(one)}
+            for one in sound
+        ],
+        "places": list(rows),
+        "not_seen": [
+            {
+                "name": one.unseen.name,
+                "what": one.unseen.what,
+                "reason": one.unseen.reason,
+                "failed": dict(one.failed),
+                "planted_nothing_in": list(one.nothing),
+            }
+            for one in passed
+        ],
+    }
+    return json.dumps(content, indent=1) + "\n"

@@ -1,0 +1,202 @@
+"""`crankcheck solve`: the reference alone, at one driver angle or over time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+
+from analytic.kinematics import solve, solve_driven
+from analytic.mechanism.cycle import Along
+from analytic.structure.mobility import analyse
+from models.errors import CrankcheckError, harmless, suggestion
+from models.files import find_scene, load_scene
+from models.motion import Motion
+from models.scene import Scene
+from reports.describe.driver_at import MOST_DEG, driver_at
+from reports.describe.facts import speed_facts
+from reports.describe.frame import motion_frame
+from reports.describe.with_forces import with_forces
+from reports.face.solution_text import (
+    show_friction,
+    show_heading,
+    show_largest,
+    show_motion,
+    show_notes,
+    show_position,
+)
+from reports.output.frame_file import ENDINGS, write_frame
+from reports.output.write import check_file, check_folder, write
+from reports.requests.solve_options import (
+    FAMILY_ENDINGS,
+    PAGE,
+    WORKBOOK,
+    SolveOptions,
+    elastic_choice,
+    instants_of,
+    refuse_times,
+)
+
+
+@dataclass(frozen=True)
+class SolveRequest(SolveOptions):
+    """What `solve` was asked for, as given."""
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Show or write the reference. Raises CrankcheckError for what can not be asked."""
+        if self.output is not None:
+            endings = (*ENDINGS, PAGE) if self.family is None else FAMILY_ENDINGS
+            check_file(self.output, "-o", endings, inputs=[find_scene(self.scene)])
+        scene = load_scene(self.scene)
+        asked = elastic_choice(self)
+        if self.family is not None:
+            from reports.requests.solve_family import run_family  # slow to import
+
+            run_family(scene, self, console)
+            return 0
+        if scene.elastic:
+            from reports.requests.solve_elastic import run_solve_elastic  # slow to import
+
+            run_solve_elastic(scene, self, asked, console)
+            return 0
+        asked.refuse_of_rigid(scene)
+        if scene.is_free:
+            from reports.requests.solve_free import run_solve_free  # slow to import
+
+            run_solve_free(scene, self, console)
+            return 0
+        _check_driven(scene, self)
+        along = [_along(scene, text) for text in self.along]
+        structure = analyse(scene)
+        motion = _over(scene, self) if not self.at_place else _at(scene, self)
+        if self.forces:
+            motion = with_forces(scene, motion, by_law=not self.at_place)
+        if self.output is not None or self.figures is not None:
+            _tell_written(console, scene, motion, self)
+            return 0
+        speeds = speed_facts(scene, along, clockwise=self.clockwise)
+        show_heading(console, scene, structure, along, speeds)
+        _show(console, scene, motion, self)
+        show_notes(console, scene, motion)
+        return 0
+
+
+def _check_driven(scene: Scene, request: SolveOptions) -> None:
+    """Refuse what can not be asked of a scene that is driven. Raises CrankcheckError."""
+    refuse_times(scene, request)
+    if request.at_place and (request.turns or request.steps_per_turn):
+        raise CrankcheckError(
+            f"{request.at_place} with --turns or --steps-per-turn: one is a single "
+            "position, the others a motion; give one of them"
+        )
+    if request.clockwise and not request.at_place:
+        raise CrankcheckError("--clockwise: it is of one position; give --at-deg, such as 90")
+    _check_figures(request)
+    _check_page(request)
+
+
+def _tell_written(console: Console, scene: Scene, motion: Motion, request: SolveOptions) -> None:
+    """Write what was asked for, and say so."""
+    told = []
+    if request.figures is not None:
+        from reports.figures.forces.writing import written_figures
+
+        told.append(written_figures(scene, request.figures))
+    if request.output is not None:
+        told.append(_write(request.output, scene, motion, is_turn=not request.at_place))
+    for each in told:
+        console.print(harmless(each), highlight=False, markup=False, soft_wrap=True)
+
+
+def _show(console: Console, scene: Scene, motion: Motion, request: SolveOptions) -> None:
+    """Print one position, or a motion."""
+    if request.at_place:
+        show_position(console, scene, motion)
+        if request.forces:
+            show_friction(console, scene)
+        return
+    show_motion(console, scene, motion)
+    if request.forces:
+        show_largest(console, scene)
+        show_friction(console, scene)
+    console.print(
+        "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
+    )
+
+
+def _check_page(request: SolveOptions) -> None:
+    """Refuse a page of a single position, or of other than a turn."""
+    given = [request.at_deg, request.at_m, request.turns, request.steps_per_turn]
+    is_page = request.output is not None and request.output.suffix.lower() == PAGE
+    if is_page and any(each is not None for each in given):
+        raise CrankcheckError(
+            f"-o {request.output}: a page shows a turn; leave out --at-deg, --at-m, --turns and "
+            "--steps-per-turn"
+        )
+
+
+def _check_figures(request: SolveOptions) -> None:
+    """Refuse figures of what is not asked for, before anything is worked out."""
+    if request.figures is None:
+        return
+    if not request.forces:
+        raise CrankcheckError("--figures: it draws forces; give --forces as well")
+    if request.at_place:
+        raise CrankcheckError(
+            f"--figures with {request.at_place}: they are of a turn; leave one of them out"
+        )
+    from reports.figures.forces.writing import figure_files
+
+    check_folder(request.figures, "--figures", figure_files())
+
+
+def _along(scene: Scene, text: str) -> Along:
+    """A point and a direction, from text such as C:30."""
+    point, colon, degrees = text.partition(":")
+    try:
+        direction_deg = float(degrees)
+    except ValueError:
+        direction_deg = math.nan
+    if not (colon and abs(direction_deg) <= MOST_DEG):
+        raise CrankcheckError(
+            f"--along {text}: write a point and a direction in degrees, such as C:30"
+        )
+    points = dict.fromkeys([*scene.pins, *(slider.point for slider in scene.sliders.values())])
+    if point not in points:
+        raise CrankcheckError(f"--along {text}: {suggestion(point, points, 'the points are')}")
+    return Along(point, math.radians(direction_deg))
+
+
+def _at(scene: Scene, request: SolveOptions) -> Motion:
+    """The mechanism with its driver at a place, moving as its law moves it there."""
+    theta, omega, alpha = driver_at(
+        scene, request.at_deg, request.at_m, clockwise=request.clockwise
+    )
+    return solve_driven(scene, np.array([theta]), np.array([omega]), np.array([alpha]))
+
+
+def _over(scene: Scene, request: SolveOptions) -> Motion:
+    """The motion over whole turns, the last sample included."""
+    return solve(scene, instants_of(scene, request))
+
+
+def _write(path: Path, scene: Scene, motion: Motion, *, is_turn: bool) -> str:
+    """The motion as a file of the kind that the ending says; returns what was written, in a
+    line."""
+    if path.suffix.lower() == PAGE:
+        from reports.face.scene_report import page_of
+
+        write(path, page_of(scene, with_forces=motion.forces is not None))
+        return f"{path}: {scene.name} over one turn"
+    origin = {"scene": scene.name, "source": scene.source}
+    frame, more, told = motion_frame(motion), None, ""
+    if path.suffix.lower() == WORKBOOK and is_turn:
+        from reports.workbook.beside_values import beside_values, left_out
+
+        told = left_out(motion.time_s.size)
+        more = beside_values(scene, motion.time_s, list(frame.columns))
+    write_frame(path, frame, "motion", origin, more)
+    return f"{path}: {motion.time_s.size} samples of {scene.name}{told}"

@@ -1,0 +1,174 @@
+"""`crankcheck stability`: hard cases, graded by rules, with the value up to which each is held."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import pandas as pd
+import typer
+from rich.console import Console
+
+from models.errors import CrankcheckError, suggestion
+from reports.output.frame_file import csv
+from reports.output.numbers import count
+from reports.output.provenance import provenance
+from reports.output.write import check_folder, write
+from reports.plan.chosen import PROFILES, chosen_engines, chosen_profiles
+from reports.plan.forces import silent_note
+from reports.requests.options import Engines, Forces, Jobs
+from reports.stability.case import Case
+from reports.stability.catalogue import CATALOGUE
+from reports.stability.critical import command
+from reports.stability.matrix import FILE, Matrix, read_matrix, run_rows, to_json
+from reports.stability.running import CaseLine, run_lines, run_one
+from reports.stability.table import show, show_run
+from reports.workers.isolated import Limits, checked_limits
+from reports.workers.progress import progress_bar
+from sim.registry import engine
+
+TABLE, PAGE = "stability.csv", "stability.html"
+
+
+@dataclass(frozen=True)
+class StabilityRequest:
+    """What the user asked for; ``at`` is one value of one case."""
+
+    cases: Annotated[
+        Sequence[str], typer.Argument(metavar="CASE", help="Hard cases; all if none.")
+    ] = ()
+    engines: Engines = ()
+    profiles: Annotated[
+        Sequence[str], typer.Option("--profile", help="Profile; may be repeated.")
+    ] = ()
+    at: Annotated[
+        float | None, typer.Option(help="Only this value of the one case that is named.")
+    ] = None
+    folder: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder for matrix, table and page.")
+    ] = None
+    limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 120.0
+    memory_gb: Annotated[float, typer.Option(help="Most memory for a run, in GB.")] = 4.0
+    jobs: Jobs = 0
+    forces: Forces = False
+    free: Annotated[
+        bool, typer.Option("--free", help="The cases of free motion, which are not among all.")
+    ] = False
+    elastic: Annotated[
+        bool, typer.Option("--elastic", help="Those of elastic links, which are not among all.")
+    ] = False
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Do it; returns the exit code: 0, or for one value 1 where it is not held.
+
+        Raises
+        ------
+        CrankcheckError
+            An unknown case, engine or profile, a value that has no reference, or a folder that can
+            not be written.
+        """
+        cases = _cases(self.cases, free=self.free, elastic=self.elastic)
+        engines = chosen_engines(self.engines)
+        profiles = [name for name, _ in chosen_profiles(self.profiles or PROFILES, engines)]
+        limits = checked_limits(self.limit_s, self.memory_gb)
+        if self.forces and (note := silent_note(engines)):
+            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+        if self.at is not None:
+            return _single(cases, self, engines, profiles, limits, console)
+        if self.folder is not None:
+            check_folder(self.folder, "-o", (FILE, TABLE, PAGE))
+            _keep_others(self.folder, {case.name for case in cases})
+        lines = [
+            CaseLine(case.name, engine_, profile, self.forces)
+            for case, engine_, profile in itertools.product(cases, engines, profiles)
+        ]
+        with progress_bar(progress, "lines", len(lines)) as advance:
+            graded = run_lines(lines, self.jobs, limits, lambda _: advance())
+        matrix = Matrix(
+            facts=provenance({name: engine(name).version() for name in engines}),
+            cases=tuple(case.facts() for case in cases),
+            runs=tuple(run for line in graded for run in line.runs),
+            critical=tuple(line.critical for line in graded),
+            pictures=tuple(picture for line in graded for picture in line.pictures),
+        )
+        try:
+            if self.folder is not None:
+                _write(self.folder, matrix)
+        finally:  # a full disk costs the file, and not the result with it
+            show(console, matrix)
+        if self.folder is not None:
+            names = ", ".join((FILE, TABLE, PAGE))
+            console.print(f"{self.folder}: {names}", markup=False, highlight=False)
+        return 0
+
+
+def _cases(names: Sequence[str], *, free: bool, elastic: bool) -> list[Case]:
+    """The named cases, or all: those that are let go with ``free``, those of ``elastic`` links, or
+    those that are driven and rigid."""
+    if free and elastic:
+        raise CrankcheckError("--free with --elastic: no case is of both; ask for one of them")
+    for name in names:
+        if name not in CATALOGUE:
+            raise CrankcheckError(f"case {name!r}: unknown; {suggestion(name, CATALOGUE, 'use')}")
+    driven = [name for name in names if free and not CATALOGUE[name].free]
+    if driven:
+        known = ", ".join(name for name, case in CATALOGUE.items() if case.free)
+        raise CrankcheckError(f"--free and {driven[0]}: no case of free motion; those are {known}")
+    rigid = [name for name in names if elastic and not CATALOGUE[name].elastic]
+    if rigid:
+        known = ", ".join(name for name, case in CATALOGUE.items() if case.elastic)
+        raise CrankcheckError(f"--elastic and {rigid[0]}: no elastic link in it; those are {known}")
+    kind = free, elastic
+    every = (name for name, case in CATALOGUE.items() if (case.free, case.elastic) == kind)
+    return [CATALOGUE[name] for name in dict.fromkeys(names or every)]
+
+
+def _keep_others(folder: Path, wanted: set[str]) -> None:
+    """Refuse to put a few cases in the place of a matrix that holds others as well."""
+    try:
+        stored = {case.name for case in read_matrix(folder).cases}
+    except CrankcheckError:
+        return  # there is none, or none that can be read
+    if others := stored - wanted:
+        raise CrankcheckError(
+            f"-o {folder}: holds a matrix with {count(len(others), 'case')} not run now "
+            f"({', '.join(sorted(others)[:3])}); name another folder, or run these cases as well"
+        )
+
+
+def _single(
+    cases: Sequence[Case],
+    request: StabilityRequest,
+    engines: Sequence[str],
+    profiles: Sequence[str],
+    limits: Limits,
+    console: Console,
+) -> int:
+    """One value of one case, in full."""
+    value = request.at
+    assert value is not None
+    if len(cases) != 1:
+        raise CrankcheckError(f"--at {value:g}: a value of one case; found {len(cases)}, name one")
+    if request.folder is not None:
+        raise CrankcheckError("--at and -o: one value is shown and not stored; leave one of them")
+    case, code = cases[0], 0
+    case.refuse(value)
+    for name, profile in itertools.product(engines, profiles):
+        run = run_one(CaseLine(case.name, name, profile, request.forces), value, limits)
+        show_run(console, case.facts(), run)
+        code = max(code, int(run.outcome not in case.good))
+    return code
+
+
+def _write(folder: Path, matrix: Matrix) -> None:
+    """The matrix as JSON, its runs as a table, and its page."""
+    from reports.page.build import stability_page
+
+    write(folder / FILE, to_json(matrix))
+    told = zip(run_rows(matrix), matrix.runs, strict=True)
+    rows = [row | {"command": command(run)} for row, run in told]
+    write(folder / TABLE, csv(pd.DataFrame(rows)))
+    write(folder / PAGE, stability_page(matrix))

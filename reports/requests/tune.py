@@ -1,0 +1,227 @@
+"""`crankcheck tune`: search an engine's settings for the cheapest that reach a target error."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.text import Text
+
+from analytic.kinematics import solve
+from models.errors import CrankcheckError
+from models.files import find_scenes, read_text
+from reports.judge.three_steps import AT_ROUNDING
+from reports.output.provenance import crankcheck_version, provenance
+from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
+from reports.plan.elastic import rigid_alone
+from reports.plan.key import MEASURE, digest
+from reports.plan.short_tables import refuse_short_tables
+from reports.plan.singular import refuse_singular
+from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
+from reports.tune.attempt import Attempt, Bench, Goal, LostError, Row
+from reports.tune.search import Plan, attempts, best_of, plainer, search
+from reports.tune.storage import check_storage, study_in
+from reports.tune.table import Side, footer, show
+from reports.tune.timing import times
+from reports.workers.isolated import Limits
+from reports.workers.progress import progress_bar
+from reports.workers.signals import Stopped
+from sim.engine import Settings
+from sim.registry import engine, offering
+from sim.settings import profile_of, resolved
+from sim.snippets import snippet
+from sim.tuning import SearchSpace, search_space
+
+PROFILE = "tuned"
+"""The profile that is searched around, and compared with."""
+MOST_BUDGET, MOST_SEED, COARSEST = 100_000, 2**32 - 1, 1.0
+
+
+@dataclass(frozen=True)
+class TuneRequest:
+    """What `tune` was asked for, as given."""
+
+    scenes: Annotated[
+        Sequence[str], typer.Argument(metavar="SCENE", help="Shipped names or scene files.")
+    ]
+    engine: Annotated[str, typer.Option(help="Engine whose settings are searched.")]
+    target: Annotated[
+        float, typer.Option(help="Error to reach, as a pure number: rad, lengths over L.")
+    ]
+    budget: Annotated[int, typer.Option(help="Trials in all, also of a resumed search.")] = 60
+    seed: Annotated[int, typer.Option(help="The same seed finds the same settings.")] = 0
+    turns: Annotated[float, typer.Option(help="Turns of the driver in a run.")] = 2.0
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Keep the search (.db), to go on later.")
+    ] = None
+    limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 20.0
+    timing: Annotated[bool, typer.Option(help="Time what was found beside the profile.")] = True
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Do it; returns the exit code: 0 when settings reach the target, 1 when none do. Raises
+        CrankcheckError for what can be told of the request before the search."""
+        goal = _goal(self)
+        if note := left_out_note(self.scenes):
+            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+        base = resolved(profile_of(engine(goal.engine), goal.profile), None)
+        space = search_space(goal.engine).around(base)
+        if self.output is not None:
+            check_storage(self.output)
+        limits = Limits(self.limit_s)
+        works = [space.work(scene, solve(scene, np.zeros(1)).state()) for scene in goal.scenes]
+        with closing(Bench(goal, works, limits)) as bench:
+            bench.refuse_unsupported(base)
+            trials = _searched(self, bench, space, base, progress)
+            best = best_of(trials)
+            first = next(trial for trial in trials if dict(trial.settings) == dict(base))
+            tried: list[Attempt] = []
+            if best is not None:
+                best, tried = plainer(space, first, best, bench.attempt)
+            last = best or min(trials, key=lambda trial: trial.error)
+            columns = {f"profile {goal.profile}": first, "found": last}
+            sides = [Side(title, each, _rows(bench, each)) for title, each in columns.items()]
+        if self.timing and (taken := times(goal, list(columns.values()), limits)):
+            sides = [replace(side, taken=each) for side, each in zip(sides, taken, strict=True)]
+        show(console, goal, space, sides)
+        if best is None:
+            console.print(Text(_unreached(goal, last), "bold red"))
+        elif goal.engine in offering("snippet"):
+            period_s = goal.scenes[
+                0
+            ].driver.law.period_s  # to copy, at the speed of the first scene
+            text = snippet(goal.engine, best.settings, float(best.tried), period_s)
+            console.print()
+            console.print(text, markup=False, highlight=False, soft_wrap=True)
+        around = len(goal.scenes) + sum(len(side.rows) for side in sides)
+        facts = provenance({goal.engine: engine(goal.engine).version()})
+        how = _how(self, trials, tried, around)
+        console.print(Text(footer(goal, how, facts), "dim"), highlight=False)
+        return 0 if best else 1
+
+
+def _how(
+    request: TuneRequest, trials: Sequence[Attempt], tried: Sequence[Attempt], around: int
+) -> str:
+    """How many trials and runs it took; ``around`` are the runs before and after the search."""
+    after = sum(each.runs for each in tried)
+    late = sum(each.timed_out for each in (*trials, *tried))
+    lost = (
+        f" The clock ended {late} of what was tried (--limit-s {request.limit_s:g}), which is not "
+        "kept: where runs are quicker, a search may find otherwise."
+    )
+    return (
+        f"Seed {request.seed}: {len(trials)} trials, of which {sum(a.reached for a in trials)} "
+        f"reach the target; {sum(a.runs for a in trials) + after + around} runs in all, {after} of "
+        "them to set back what gains nothing."
+    ) + (lost if late else "")
+
+
+def _goal(request: TuneRequest) -> Goal:
+    """What is asked for, checked."""
+    target, budget, seed = request.target, request.budget, request.seed
+    if not AT_ROUNDING <= target < COARSEST:
+        raise CrankcheckError(
+            f"--target {target:g}: give an error of place from {AT_ROUNDING:g}, which is rounding, "
+            f"to under {COARSEST:g}, such as 1e-6"
+        )
+    if not 1 <= budget <= MOST_BUDGET:
+        raise CrankcheckError(f"--budget {budget}: give a number of trials, 1 to {MOST_BUDGET}")
+    if not 0 <= seed <= MOST_SEED:
+        raise CrankcheckError(f"--seed {seed}: give a whole number, 0 to {MOST_SEED}")
+    positive("--limit-s", request.limit_s, "seconds for a run, such as 20")
+    if not request.scenes:
+        raise CrankcheckError("tune: name a scene or several, such as fourbar-lecture-1")
+    positive("--turns", request.turns, "turns; 1 is one period of the driver")
+    name = chosen_engines([request.engine])[0]
+    goal = Goal(
+        tuple(chosen_scenes(request.scenes, rigid_alone("tune"))),
+        name,
+        PROFILE,
+        target,
+        request.turns,
+    )
+    if goal.most < goal.least:
+        raise CrankcheckError(
+            f"--turns {request.turns:g}: a run of a search has {MOST_SEARCHED} steps at most; take "
+            f"{MOST_SEARCHED / (2 * LEAST_STEPS_PER_TURN):g} turns or less"
+        )
+    for scene in goal.scenes:
+        duration_s = goal.turns * scene.driver.law.period_s
+        refuse_singular(scene, duration_s)
+        refuse_short_tables(scene, duration_s)
+    return goal
+
+
+def _searched(
+    request: TuneRequest, bench: Bench, space: SearchSpace, base: Settings, progress: Console
+) -> list[Attempt]:
+    """All trials; where they are cut short, what is kept is said."""
+    with study_in(request.output, _asked(request, bench, space, base)) as study:
+        done = min(len(attempts(study)), request.budget)
+        try:
+            with progress_bar(progress, "trials", request.budget - done) as advance:
+                plan = Plan(space, base, bench.goal.target, request.budget, request.seed)
+                return search(study, plan, bench.attempt, advance)
+        except Stopped:
+            if request.output is not None:
+                progress.print(
+                    f"{len(attempts(study))} of {request.budget} trials are kept in "
+                    f"{request.output}; the same command goes on from there",
+                    markup=False,
+                    highlight=False,
+                    soft_wrap=True,
+                )
+            raise
+
+
+def _asked(
+    request: TuneRequest, bench: Bench, space: SearchSpace, base: Settings
+) -> dict[str, object]:
+    """All that the results of the trials depend on, as plain values."""
+    goal = bench.goal
+    texts = [read_text(path) for path in find_scenes(request.scenes)]
+    return {
+        "scene": [scene.name for scene in goal.scenes],
+        "scene text": list(dict.fromkeys(digest(text) for text in texts)),
+        "engine": goal.engine,
+        "engine version": engine(goal.engine).version(),
+        "crankcheck version": crankcheck_version(),
+        "Optuna version": version("optuna"),
+        "target": goal.target,
+        "turns": goal.turns,
+        "seed": request.seed,
+        "limit_s": request.limit_s,
+        "profile": dict(base),
+        "knobs": {knob.name: list(knob.values) for knob in space.knobs},
+        "starts": [dict(start) for start in space.starts],
+        "model of cost": [work(base) for work in bench.works],
+        "measure": MEASURE,
+    }
+
+
+def _rows(bench: Bench, of: Attempt) -> list[Row]:
+    """The rows of an attempt at its step, one per scene; none where one is lost."""
+    try:
+        return [bench.row(scene, of.settings, of.tried) for scene in bench.goal.scenes]
+    except LostError:
+        return []
+
+
+def _unreached(goal: Goal, nearest: Attempt) -> str:
+    """What came nearest."""
+    if nearest.reason:
+        return f"NOTHING REACHES {goal.target:g}; {nearest.reason}"
+    if math.isinf(nearest.error):
+        return f"NOTHING REACHES {goal.target:g}: no run came to its end"
+    return (
+        f"NOTHING REACHES {goal.target:g}: nearest is {nearest.error:.2e} in {nearest.scene} with "
+        f"{nearest.tried} steps per turn; take a larger target, or a larger --budget"
+    )

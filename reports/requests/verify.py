@@ -1,0 +1,279 @@
+"""`crankcheck verify`: run, compare, judge, show, write."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+from rich.console import Console
+from rich.progress import Progress
+
+from models.errors import CrankcheckError
+from models.files import find_scenes
+from models.scene import Scene
+from reports.judge.cell import Cell, Checked
+from reports.judge.tolerance import (
+    check_names,
+    parse,
+    refuse_forces_unasked,
+    refuse_of_other_motion,
+)
+from reports.output.console import tell
+from reports.output.provenance import provenance
+from reports.output.write import check_outputs
+from reports.plan.chosen import (
+    chosen_engines,
+    chosen_profiles,
+    chosen_scenes,
+    left_out_note,
+    refuse_unfollowed,
+)
+from reports.plan.elastic import (
+    chosen_segments,
+    chosen_springs,
+    counted_released,
+    held_steps,
+    refuse_rigid,
+    refuse_unelastic,
+    shortened_note,
+)
+from reports.plan.forces import gives_forces, refuse_forceless, silent_note
+from reports.plan.free import (
+    free_names,
+    refuse_other_options,
+    refuse_unreleased,
+    scenes_of,
+    under_control,
+)
+from reports.plan.short_tables import refuse_short_tables
+from reports.plan.singular import passage_note, refuse_singular
+from reports.plan.steps import TURNS, counted, counted_free
+from reports.requests.verify_files import IN_FOLDER, Results, write_results
+from reports.requests.verify_options import PRESCRIBED, VerifyOptions, refuse_of_models
+from reports.verify.all_cells import check_all
+from reports.verify.table import show
+from sim.engine import Drive
+from sim.registry import engine
+
+if (
+    TYPE_CHECKING
+):  # what reads stored runs takes half a second to import: where there is one to read
+    from reports.results.changes.changes import Diff
+    from reports.results.changes.runs import StoredRun
+
+
+@dataclass(frozen=True)
+class VerifyRequest(VerifyOptions):
+    """What `verify` was asked for, as given."""
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Do it; returns the exit code: 0 within, 1 out of tolerance or worse than the baseline, 2
+        not to be run. Raises CrankcheckError for what can be told of the request before running."""
+        if self.mjcf is not None:
+            from reports.requests.verify_model import verify_model
+
+            return verify_model(self, console, progress)
+        refuse_of_models(self)
+        cells = plan(self)
+        files = {"--junit": self.junit, "--csv": self.csv, "--json": self.json}
+        names = free_names(self.scenes) if self.free else self.scenes
+        read = find_scenes(names)
+        check_outputs(files, self.folder, IN_FOLDER, inputs=read)
+        if self.baseline is not None:
+            _spare_baseline(files, self.baseline)
+        digests = _digests(self)
+        silent = silent_note(chosen_engines(())) if self.forces and not self.engines else ""
+        for note in filter(None, (*passages(cells), silent, left_out_note(names))):
+            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+        base = _baseline(self, cells, digests)
+        with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
+            task = bar.add_task("verifying", total=len(cells))
+            checked = check_all(cells, self.jobs, lambda _: bar.advance(task))
+        engines = dict.fromkeys(cell.engine for cell in cells)
+        facts = provenance({name: engine(name).version() for name in engines})
+        diff = _changes(base, checked, facts, digests, self.factor) if base else None
+        try:
+            write_results(self, Results(checked, facts, digests, diff))
+        finally:  # a full disk costs the file, and not the verdict with it
+            show(console, checked, facts)
+            if diff:
+                from reports.diff.terminal import show as show_diff
+
+                console.print()
+                show_diff(console, diff)
+        return _code(checked, diff, progress)
+
+
+def _code(checked: Sequence[Checked], diff: Diff | None, progress: Console) -> int:
+    """The exit code; names the gated cells that could not be run."""
+    gated = [one for one in checked if one.cell.gated]
+    missing = [one for one in gated if one.verdict == "unsupported"]
+    for one in missing:
+        progress.print(f"crankcheck: {one.cell.label}: {one.reason}", markup=False, soft_wrap=True)
+    if missing:
+        return 2
+    out = any(one.verdict == "out" for one in gated)
+    return int(out or (diff is not None and diff.code() == 1))
+
+
+def plan(request: VerifyOptions) -> list[Cell]:
+    """The cells that the request asks for; with forces, engines that report none are run without
+    unless they are named. Raises CrankcheckError for what can not be run."""
+    tolerance = parse(request.tolerance)
+    if not request.forces:
+        refuse_forces_unasked("--tol", tolerance)
+    scenes = _scenes(request)
+    _refuse_options(request, scenes)
+    bends = any(scene.elastic for scene in scenes)
+    free = [scene.is_free for scene in scenes]
+    refuse_of_other_motion("--tol", tolerance, free, bends=bends)
+    engines = chosen_engines(request.engines)
+    profiles = chosen_profiles(request.profiles, engines)
+    refuse_rigid(scenes, request.segments, request.springs)
+    segments, springs = (
+        chosen_segments(request.segments),
+        chosen_springs(request.springs or "plain"),
+    )
+    steps = {scene.name: _steps(request, scene) for scene in scenes}
+    return [
+        Cell(
+            scene=scene,
+            engine=name,
+            profile=profile,
+            dt_s=dt_s,
+            steps=count,
+            gated=gated,
+            drive="free" if scene.is_free else cast(Drive, request.drive),
+            tolerance=tolerance,
+            converge=request.converge,
+            with_forces=request.forces and (bool(request.engines) or gives_forces(name)),
+            segments=segments,
+            springs=springs,
+        )
+        for scene in scenes
+        for dt_s, count in [steps[scene.name]]
+        for profile, gated in profiles
+        for name in engines
+    ]
+
+
+def _scenes(request: VerifyOptions) -> list[Scene]:
+    """The scenes, those that are to be let go with a driver that is, as those that are given way
+    to by a controller."""
+    if request.free:
+        return scenes_of(request.scenes, free=True)
+
+    def check(scene: Scene) -> None:
+        check_names(scene)
+        if not scene.is_free:
+            refuse_unfollowed(scene)
+
+    return [under_control(scene) for scene in chosen_scenes(request.scenes, check)]
+
+
+def _refuse_options(request: VerifyOptions, scenes: Sequence[Scene]) -> None:
+    """Refuse what the scenes have no use for. Raises CrankcheckError."""
+    if request.drive not in ("prescribed", "servo"):
+        raise CrankcheckError(
+            f"--drive {request.drive!r}: unknown; use prescribed or servo, let scenes go with "
+            "--free, or name the model whose joint that is with --mjcf FILE"
+        )
+    free = [scene.name for scene in scenes if scene.is_free]
+    if free and request.drive != PRESCRIBED:
+        raise CrankcheckError(
+            f"--drive {request.drive}: {free[0]} is let go, and nothing drives it; leave --drive "
+            "out, or the scene"
+        )
+    driven = {"--turns": request.turns, "--steps-per-turn": request.steps_per_turn}
+    refuse_other_options(scenes, {"--duration": request.duration_s}, driven)
+
+
+def _steps(request: VerifyOptions, scene: Scene) -> tuple[float, int]:
+    """Step [s] and number of steps of a scene. Raises CrankcheckError where it can not be run."""
+    segments, springs = (
+        chosen_segments(request.segments),
+        chosen_springs(request.springs or "plain"),
+    )
+    if scene.is_free:
+        step = request.dt_s, request.duration_s
+        dt_s, count = (
+            counted_released(scene, *step, segments, springs)
+            if scene.elastic
+            else counted_free(scene, *step)
+        )
+        refuse_unreleased(scene, dt_s * count)
+        refuse_unelastic(scene, segments, springs)
+        return dt_s, count
+    turns = TURNS if request.turns is None else request.turns
+    per_turn = request.steps_per_turn
+    if scene.elastic and request.dt_s is None and per_turn is None:
+        per_turn = held_steps(scene, segments, springs)
+    dt_s, count = counted(scene, request.dt_s, per_turn, turns)
+    refuse_singular(scene, dt_s * count)
+    if request.forces:
+        refuse_forceless(scene, dt_s * count)
+    refuse_short_tables(scene, dt_s * count)
+    refuse_unelastic(scene, segments, springs)
+    return dt_s, count
+
+
+def passages(cells: Sequence[Cell]) -> list[str]:
+    """What is to be said of change points, and of elastic links that are let go for a part of their
+    time, once for every scene and duration of the cells."""
+    runs = {(cell.scene.name, cell.dt_s * cell.steps): cell for cell in cells}
+    notes = (
+        (shortened_note if cell.drive == "free" else passage_note)(cell.scene, duration_s)
+        for (_, duration_s), cell in runs.items()
+    )
+    return [note for note in dict.fromkeys(notes) if note]
+
+
+def _baseline(
+    request: VerifyOptions, cells: Sequence[Cell], digests: Mapping[str, str]
+) -> StoredRun | None:
+    """The cells of the baseline that are to be run now, read before anything is written over it.
+    Raises CrankcheckError for no stored run, and for nothing to compare with."""
+    if request.baseline is None:
+        return None
+    from reports.results.changes.changes import compare
+    from reports.results.changes.reading import read_run
+    from reports.results.changes.runs import planned_run
+
+    base = read_run(request.baseline)
+    tell(base.notice)
+    planned = planned_run(cells, digests)
+    compare(base, planned, request.factor)  # raises, where nothing is to be compared
+    return base.only(planned.cells)
+
+
+def _spare_baseline(files: Mapping[str, Path | None], baseline: Path) -> None:
+    """Raises CrankcheckError for an output that is a file of the baseline, which ``-o`` may go on
+    from."""
+    from reports.requests.stored_files import stored_files
+
+    check_outputs(files, inputs=stored_files(baseline))
+
+
+def _digests(request: VerifyOptions) -> dict[str, str]:
+    """The digests of the texts of the scenes, where they are kept or compared."""
+    if not (request.baseline or request.folder or request.json):
+        return {}
+    from reports.results.changes.reading import scene_digests
+
+    return scene_digests(free_names(request.scenes) if request.free else request.scenes)
+
+
+def _changes(
+    base: StoredRun,
+    checked: Sequence[Checked],
+    facts: Mapping[str, str],
+    digests: Mapping[str, str],
+    factor: float,
+) -> Diff:
+    """What changed since the baseline."""
+    from reports.results.changes.changes import compare
+    from reports.results.changes.runs import run_of
+
+    return compare(base, run_of(checked, facts, digests), factor)
