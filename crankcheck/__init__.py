@@ -71,7 +71,8 @@ if TYPE_CHECKING:
     from reports.face.regulation import MachineCycle, MachineFlywheel, cycle, flywheel
     from reports.face.report import report
     from reports.face.simulation import Simulation, run
-    from reports.face.solution import Solution, solve, solve_driven
+    from reports.face.solution import Solution
+    from reports.face.solve import solve, solve_driven
     from reports.face.sweep import Sweep, sweep
     from reports.face.synthesis import Synthesis, synth
     from reports.judge.cell import Cell
@@ -162,8 +163,10 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
                 from reports.face import report as home
             case "Simulation" | "run":
                 from reports.face import simulation as home
-            case "Solution" | "solve" | "solve_driven":
+            case "Solution":
                 from reports.face import solution as home
+            case "solve" | "solve_driven":
+                from reports.face import solve as home
             case "Sweep" | "sweep":
                 from reports.face import sweep as home
             case "Synthesis" | "synth":

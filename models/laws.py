@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -26,6 +26,9 @@ class Law(ABC):
     ``phase_rad`` and ``fastest_rad_s``, the constant parts of the angle and of the phase and the
     fastest circular frequency in the law, are what the rounding of the law grows with.
     """
+
+    is_free: ClassVar[bool] = False
+    """Whether nothing drives it after the start."""
 
     def __post_init__(self) -> None:
         for name, number in vars(self).items():

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError
 from models.laws import Law
-
-if TYPE_CHECKING:
-    from models.scene import Scene
+from models.scene import Scene
 
 LONGEST_S = 1e6
 """For which a mechanism may be left free [s]."""
@@ -35,6 +33,7 @@ class Released(Law):
     time ``duration_s`` for which the scene is left free.
     """
 
+    is_free: ClassVar[bool] = True
     start_rad: float
     speed_rad_s: float
     duration_s: float

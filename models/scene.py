@@ -26,7 +26,6 @@ from models.fixed import FixedMapping
 from models.friction import CoulombFriction, Friction
 from models.laws import Law
 from models.loads import Load
-from models.released import Released
 from models.springs import Spring
 from models.start import Start
 
@@ -187,7 +186,7 @@ class Scene:
     @property
     def is_free(self) -> bool:
         """Whether the driver is let go, and not driven."""
-        return isinstance(self.driver.law, Released)
+        return self.driver.law.is_free
 
     @property
     def coulomb_joints(self) -> list[str]:

@@ -12,17 +12,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from analytic.dyads.plane import Vec
+from analytic.forces.balance import Balance, PrismaticPair
 from analytic.forces.bounded import NOUGHT, NOWHERE, Bounded, BoundedVec
 from analytic.structure.compound import as_triad
 from analytic.structure.groups import Group, JointKey, Leg, Triad
 from models.joints import local_point
 from models.scene import Point
-
-if TYPE_CHECKING:
-    from analytic.forces.balance import Balance, PrismaticPair
 
 ONE = Bounded(1.0)
 Three = tuple[Bounded, Bounded, Bounded]

@@ -18,6 +18,7 @@ from analytic.forces.coulomb import (
     coulomb_bound,
     solve_coulomb,
 )
+from analytic.forces.dyad_balance import torque_of
 from analytic.forces.free_body import FreeBody
 from analytic.forces.rubbing import Rubbing
 from analytic.structure.mobility import Structure
@@ -52,7 +53,7 @@ class LoadedBodies:
         for rubbing, size in friction:
             rubbing.put(free, size)
         balance = Balance(self.scene, self.structure, free, self.displaced)
-        return balance, balance.torque()
+        return balance, torque_of(balance)
 
 
 def coulomb_friction(

@@ -16,6 +16,7 @@ from analytic.dyads.plane import Real
 from analytic.forces.applied_loads import apply_loads
 from analytic.forces.balance import Balance
 from analytic.forces.bounded import Bounded
+from analytic.forces.dyad_balance import torque_of
 from analytic.forces.force_arrays import ForceArrays
 from analytic.forces.free_body import free_bodies
 from analytic.forces.friction import LoadedBodies, coulomb_friction
@@ -125,7 +126,7 @@ def _write(
         result.write(span, torque_by_power(free, unit, chunk), {}, {}, friction)
     elif not left:
         balance = Balance(scene, structure, free, displaced)
-        result.write(span, balance.torque(), balance.pins, balance.sliders, friction)
+        result.write(span, torque_of(balance), balance.pins, balance.sliders, friction)
     else:
         bodies = LoadedBodies(scene, structure, displaced, free)
         sizes, solution = coulomb_friction(

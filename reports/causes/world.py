@@ -14,8 +14,8 @@ from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.logs.beside_truth import AtCrank
 from reports.logs.channel import Channel
+from reports.logs.log_beside import AtCrank
 
 Stamps = Callable[[Array], Array]
 Drive = Callable[[Array], tuple[Array, Array, Array]]

@@ -17,7 +17,7 @@ from reports.compare.branch import departure
 from reports.compare.change_points import conditioning
 from reports.compare.curvature import curvature
 from reports.compare.drive_rounding import summed
-from reports.compare.elastic.elastic_beside import ElasticBeside
+from reports.compare.elastic.elastic_truth import ElasticBeside
 from reports.compare.error_rows import Instants, instants_of, whole_row
 from reports.compare.errors import Error, Errors
 from reports.compare.force_rows import force_rows

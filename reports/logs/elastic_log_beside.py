@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from reports.compare.elastic.elastic_beside import ElasticBeside
-from reports.logs.beside_truth import LogBeside
+from reports.compare.elastic.elastic_truth import ElasticBeside
+from reports.logs.log_beside import LogBeside
 from sim.engine import Run
 
 if TYPE_CHECKING:

@@ -13,9 +13,9 @@ from models.motion import Motion, Order
 from reports.compare.free.free_beside import FreeBeside
 from reports.compare.free.free_truth import FreeTruth
 from reports.compare.tracks import Track, tracks
-from reports.logs.beside_truth import LogBeside
 from reports.logs.channel import OwnLog, Reading
 from reports.logs.kinds import KINDS
+from reports.logs.log_beside import LogBeside
 from reports.logs.logged_motion import logged_motion
 from reports.quantities.free import GEOMETRY
 from sim.engine import Run

@@ -15,8 +15,8 @@ from models.errors import CrankcheckError, shown
 from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.logs.beside_truth import MANY, AtCrank
 from reports.logs.channel import OwnLog, Reading
+from reports.logs.log_beside import MANY, AtCrank
 from reports.own_log.speeds import speeds
 
 LogDrive = Literal["scene", "fitted", "logged"]

@@ -23,8 +23,9 @@ from reports.judge.rules.limits import LIMITS
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import refuse_forces_unasked
 from reports.judge.too_good import LEAST, PLACES
-from reports.logs.beside_truth import LogBeside, beside_truth, lacking
+from reports.logs.beside_truth import beside_truth, lacking
 from reports.logs.channel import OwnLog
+from reports.logs.log_beside import LogBeside
 from reports.own_log.drives import DriveFit, LogDrive, truth_of_log
 from reports.own_log.elastic_log import NO_CAUSE, bent_truth
 from reports.own_log.free_log import (

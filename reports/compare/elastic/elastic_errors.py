@@ -9,8 +9,8 @@ from functools import partial
 import numpy as np
 
 from models.motion import Motion
-from reports.compare.elastic.elastic_beside import ElasticBeside
 from reports.compare.elastic.elastic_facts import ElasticFacts
+from reports.compare.elastic.elastic_truth import ElasticBeside
 from reports.compare.error_rows import instants_of, whole_row
 from reports.compare.errors import Error, ErrorKind, Errors
 from reports.compare.series import length

@@ -22,14 +22,13 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.beamed import BeamedScene
 from models.cut_links import CutScene
-from models.errors import CrankcheckError, EngineError
+from models.errors import CrankcheckError, EngineError, ReachError
 from models.motion import Motion, State
 from models.scene import Scene, as_bytes
 from models.segmented import SegmentedScene
 from reports.compare.beside import Beside, Truth
 from reports.compare.elastic.beam_theory import LEAST, BeamTheory, shape_of
 from reports.compare.elastic.cut import cut
-from reports.compare.elastic.elastic_beside import ElasticBeside
 from reports.compare.elastic.exact_chain import ExactChain
 from reports.compare.elastic.folded_run import folded_run
 from sim.engine import Run
@@ -248,3 +247,24 @@ class ChainTruth(ElasticTruth):
         """The longest step that holds, in words."""
         period_s = self.scene.driver.law.period_s
         return f"{math.ceil(period_s * self.fastest_rad_s / STEADY)} steps a turn"
+
+
+@dataclass(frozen=True)
+class ElasticBeside(Beside):
+    """As `Beside`. Where links bend the angle of the driver says nothing of the others: there are
+    no errors at the logged angle."""
+
+    elastic: ElasticTruth = field(kw_only=True)
+
+    @cached_property
+    def exact(self) -> Motion | None:
+        """The exact chain at the logged instants, None where it takes too long to be found."""
+        return self.elastic.exact_at(self.motion.time_s) if self.elastic.is_exact else None
+
+    @property
+    def has_crank(self) -> bool:
+        return False
+
+    @cached_property
+    def at_crank(self) -> Motion:
+        raise ReachError("where links bend the driver's angle does not say where the others are")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from reports.compare.elastic.elastic_beside import ElasticBeside
+from reports.compare.elastic.elastic_truth import ElasticBeside
 from reports.compare.free.free_beside import FreeBeside
 
 

@@ -23,8 +23,8 @@ from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.compare.series import rate, second_rate
 from reports.describe.driver_at import angle_at
-from reports.logs.beside_truth import EVEN
 from reports.logs.channel import OwnLog, Reading
+from reports.logs.log_beside import EVEN
 from reports.logs.logged_motion import logged_motion
 from reports.logs.map_file import Map
 from reports.sheets.sheet_log import SheetLog

@@ -1,0 +1,125 @@
+"""The equilibrium of the five class II groups: reactions of a group from what acts on its bodies.
+
+A group is statically determinate: two bodies, six equations, three pairs of two unknowns each. Its
+bodies are solved one group after the other, in the reverse of the solving order, and leave what
+their outer pairs need on the bodies that hold them; the driver is last. Of the six equations four
+only take over what two have found: those of a 2 x 2 system with the determinant of the group's
+kinematics (the transposed problem), which is why forces are singular where positions are.
+
+Letters: e along a line, n = e turned by +90 deg; F the force on the first body in the inner pin, R
+that in its outer pin; E and M what else acts on a body, with moments about the pin named.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from analytic.forces.balance import Balance, PrismaticPair
+from analytic.forces.bounded import Bounded, BoundedVec
+from analytic.forces.central_balance import balance_central
+from analytic.structure.groups import Bridge, Group, Triad
+
+
+def torque_of(on: Balance) -> Bounded:
+    """Solve all groups, the last one first; the torque on the driver that is left over, or the
+    force along its line."""
+    compound = on.structure.compound
+    inner = set() if compound is None else {compound.name}
+    for part in reversed(on.structure.order):
+        if isinstance(part, Bridge):
+            continue
+        central = inner.intersection(part.bodies)
+        on.standing.difference_update(part.bodies)
+        if central and compound is not None:
+            on.standing -= {compound.base, compound.link}
+        if isinstance(part, Triad) or central:
+            balance_central(on, part)
+        else:
+            _BALANCES[part.kind](on, part)
+    return on.drive()
+
+
+def _rrr(on: Balance, group: Group) -> None:
+    """Moments about the outer pins: r1 x F + M1 = 0, r2 x F = M2."""
+    one, other = on.free[group.first], on.free[group.second]
+    r1 = on.span(group.first, group.outer1, group.inner)
+    r2 = on.span(group.second, group.outer2, group.inner)
+    m1, m2 = on.moment(group.first, group.outer1), on.moment(group.second, group.outer2)
+    inverse = r2.cross(r1).inverse()
+    force = r1 * (m2 * inverse) + r2 * (m1 * inverse)
+    on.inner(group, force)
+    on.hold(group.outer1, group.first, -(one.force + force))
+    on.hold(group.outer2, group.second, force - other.force)
+
+
+def _rrp(on: Balance, group: Group) -> None:
+    """Along the line e F = e E2, and about the outer pin r x F + M1 = 0."""
+    one, other = on.free[group.first], on.free[group.second]
+    line = on.pair(group.outer2)
+    r = on.span(group.first, group.outer1, group.inner)
+    along = line.along.dot(other.force)
+    turning = on.moment(group.first, group.outer1) + along * r.cross(line.along)
+    force = line.along * along - line.across * (turning * r.dot(line.along).inverse())
+    on.inner(group, force)
+    on.hold(group.outer1, group.first, -(one.force + force))
+    on.push(group.second, group.inner, -force)
+    on.rest(group.outer2, group.second)
+
+
+def _rpr(on: Balance, group: Group) -> None:
+    """The force N n on the first body: with d from the second outer pin to the first, moments of
+    both bodies about the second give (d e) N = M1 + M2."""
+    one, other = on.free[group.first], on.free[group.second]
+    line = on.pair(group.inner)
+    near = line.arms[group.first] - on.arm(group.first, group.outer1)
+    far = line.arms[group.second] - on.arm(group.second, group.outer2)
+    m1, m2 = on.moment(group.first, group.outer1), on.moment(group.second, group.outer2)
+    normal = (m1 + m2) * (far - near).dot(line.along).inverse()
+    force = line.across * normal
+    on.hold(group.outer1, group.first, -(one.force + force))
+    on.hold(group.outer2, group.second, force - other.force)
+    moment = -(m1 + normal * near.dot(line.along))
+    on.sliders[line.name] = (normal, moment) if group.first == line.body else (-normal, -moment)
+
+
+def _prp(on: Balance, group: Group) -> None:
+    """Along the two lines e1 F = -e1 E1, e2 F = e2 E2."""
+    one, other = on.free[group.first], on.free[group.second]
+    line1, line2 = on.pair(group.outer1), on.pair(group.outer2)
+    along1, along2 = -line1.along.dot(one.force), line2.along.dot(other.force)
+    force = _crossing(line1, line2, along1, along2)
+    on.inner(group, force)
+    on.push(group.first, group.inner, force)
+    on.push(group.second, group.inner, -force)
+    on.rest(group.outer1, group.first)
+    on.rest(group.outer2, group.second)
+
+
+def _rpp(on: Balance, group: Group) -> None:
+    """Along the inner line k R = -k E1, and of both bodies along the outer e R = -e (E1 + E2)."""
+    one, other = on.free[group.first], on.free[group.second]
+    inner, outer = on.pair(group.inner), on.pair(group.outer2)
+    along1 = -inner.along.dot(one.force)
+    along2 = -outer.along.dot(one.force + other.force)
+    force = _crossing(inner, outer, along1, along2)
+    on.hold(group.outer1, group.first, force)
+    on.push(group.first, group.outer1, force)
+    on.rest(group.inner, group.first)
+    on.rest(group.outer2, group.second)
+
+
+def _crossing(
+    line1: PrismaticPair, line2: PrismaticPair, along1: Bounded, along2: Bounded
+) -> BoundedVec:
+    """The force with these components along two lines."""
+    inverse = line1.along.cross(line2.along).inverse()
+    return line1.across * (along2 * inverse) - line2.across * (along1 * inverse)
+
+
+_BALANCES: Mapping[str, Callable[[Balance, Group], None]] = {
+    "RRR": _rrr,
+    "RRP": _rrp,
+    "RPR": _rpr,
+    "PRP": _prp,
+    "RPP": _rpp,
+}
