@@ -27,7 +27,6 @@ from analytic.free import release as of_release
 from analytic.free.free_motion import FreeMotion
 from analytic.free.machine import Machine
 from analytic.free.release import release
-from analytic.multibody.baumgarte_table import baumgarte_table
 from models.array import Array
 from models.errors import EngineError
 from models.files import load_scene
@@ -36,6 +35,7 @@ from reports.output.provenance import processor
 from sim.registry import engine
 from sim.run import run
 from sim.timing import time_run
+from tests.second_opinions.baumgarte_table import baumgarte_table
 
 SCENES = ("fourbar-swing", "fourbar-pulse", "slider-crank-spring", "press-motor")
 LASTS_S = 1.0

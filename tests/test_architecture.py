@@ -49,7 +49,7 @@ FLOORS: Mapping[str, str] = {
         nearness kinematics
         prepared
         assur
-        change_points check reach result
+        change_points reach result
         turns
         dyads
         structure multibody

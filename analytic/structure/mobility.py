@@ -110,6 +110,12 @@ def analyse(scene: Scene) -> Structure:
     return structure
 
 
+def sides_of(scene: Scene) -> list[str]:
+    """The pins whose branch is a side, which a mirror exchanges: those of dyads of three pins.
+    Raises StructureError as `analyse`."""
+    return [group.branch_key for group in analyse(scene).groups if group.kind == "RRR"]
+
+
 def _fault(structure: Structure, left: list[str]) -> str:
     """Why this is no mechanism of dyads with one driver: ``left`` could not be placed."""
     mobility = structure.mobility

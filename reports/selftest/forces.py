@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from analytic.check.moved_scene import scaled
+from models.moved_scene import scaled
 from reports.compare.force_rows import OF_STEPS
 from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, in_log
 from reports.selftest.force_changes import (

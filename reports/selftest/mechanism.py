@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from analytic.check.moved_scene import scaled
 from models.laws import ConstantSpeed, Law
+from models.moved_scene import scaled
 from models.scene import Link, Scene
 from reports.selftest.fault import FOURBAR, SLIDER, Fault, in_scene
 

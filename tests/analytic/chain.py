@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from mpmath import mp, mpf
 
-from analytic.check.constraints import Constraints
 from models.joints import local_point, sliding_body
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.motion import Motion
@@ -21,6 +20,7 @@ from tests.analytic import oracle
 from tests.analytic.change_points import jets
 from tests.analytic.change_points.jets import Jet, Number
 from tests.analytic.oracle import Place
+from tests.second_opinions.constraints import Constraints
 
 DONE = mpf(10) ** -42
 Frame = tuple[Place, Jet, Place]

@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from analytic.check.moved_scene import moved
 from analytic.kinematics import solve
 from models.array import Array
 from models.files import load_scene, shipped
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.motion import Motion
+from models.moved_scene import moved
 from models.scene import GROUND, Driver, Point, Scene
 from tests.analytic.chain import Chain, Solved, coordinates
 from tests.analytic.change_points.jets import Jet

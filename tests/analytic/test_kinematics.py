@@ -13,15 +13,16 @@ import pytest
 from hypothesis import given
 
 from analytic import prepared
-from analytic.check import moved_scene as transform
-from analytic.check.moved_scene import mirrored
 from analytic.dyads.plane import EPS
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.nearness import nearness
+from analytic.structure.mobility import sides_of
+from models import moved_scene as transform
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.files import load_scene, parse_scene, shipped
 from models.motion import Motion
+from models.moved_scene import mirrored
 from models.scene import Scene
 from tests.worlds.other_way import sped_up
 from tests.worlds.strategies import FORMS, Designed, examples, mechanisms, swing_times
@@ -223,7 +224,7 @@ def _assert_same(
 
 CHANGES: dict[str, tuple[Callable[[Scene], Scene], tuple[float, float, float, bool]]] = {
     "turned": (lambda s: transform.rotated(s, 0.7), (0.7, 1.0, 1.0, False)),
-    "mirrored": (mirrored, (0.0, 1.0, 1.0, True)),
+    "mirrored": (lambda scene: mirrored(scene, sides_of(scene)), (0.0, 1.0, 1.0, True)),
     "larger": (lambda s: transform.scaled(s, 10.0), (0.0, 10.0, 1.0, False)),
     "smaller": (lambda s: transform.scaled(s, 0.1), (0.0, 0.1, 1.0, False)),
     "faster": (lambda s: sped_up(s, 50.0), (0.0, 1.0, 50.0, False)),

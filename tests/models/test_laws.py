@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from analytic.check.moved_scene import mirrored_law
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
+from models.moved_scene import mirrored_law
 from models.passing import passing
 from tests.worlds.other_way import faster_law
 

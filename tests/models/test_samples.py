@@ -12,7 +12,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic.check import newton
 from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve, solve_driven
 from models.errors import CrankcheckError, EngineError
@@ -26,6 +25,7 @@ from models.samples import numbers, samples
 from models.window_chain import Chain
 from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes
 from sim.run import run
+from tests.second_opinions import newton
 
 SCENE = load_scene("fourbar-lecture-1")
 TIMES = np.linspace(0.0, 0.1, 3)

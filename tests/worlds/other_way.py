@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.check import moved_scene
+from analytic.structure.mobility import sides_of
+from models import moved_scene
 from models.array import Array
 from models.friction import ConstantFriction, Friction
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
@@ -96,7 +97,7 @@ class Change:
 MOVES: dict[str, Change] = {
     "turned": Change(lambda s: moved_scene.rotated(s, 0.7), turn_rad=0.7),
     "moved": Change(lambda s: moved_scene.moved(s, (3.0, -2.0)), shift_m=(3.0, -2.0)),
-    "mirrored": Change(moved_scene.mirrored, side=-1.0),
+    "mirrored": Change(lambda s: moved_scene.mirrored(s, sides_of(s)), side=-1.0),
     "larger": Change(lambda s: moved_scene.scaled(s, 10.0), grow=10.0),
     "smaller": Change(lambda s: moved_scene.scaled(s, 0.1), grow=0.1),
 }

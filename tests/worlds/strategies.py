@@ -272,7 +272,7 @@ def some_forms(kind: str, chance: random.Random) -> list[str]:
 @dataclass(frozen=True)
 class Designed:
     """A random mechanism, with the frames (x, y [m], theta) of its bodies at time 0; blocks named
-    as in `analytic.check.newton`."""
+    as in `tests.second_opinions.newton`."""
 
     scene: Scene
     frames: Mapping[str, tuple[float, float, float]]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from analytic.check.moved_scene import mirrored, moved, rotated, scaled
+from analytic.structure.mobility import sides_of
+from models.moved_scene import mirrored, moved, rotated, scaled
 from models.scene import Scene
 from reports.contract.clause import Clause
 from reports.contract.clauses.physics import pure_errors, unlike
@@ -13,7 +14,7 @@ from reports.contract.subject import NotTriedError, Subject
 CHANGES: Mapping[str, Callable[[Scene], Scene]] = {
     "turned by 0.7 rad": lambda scene: rotated(scene, 0.7),
     "moved by (3, -2) m": lambda scene: moved(scene, (3.0, -2.0)),
-    "mirrored": mirrored,
+    "mirrored": lambda scene: mirrored(scene, sides_of(scene)),
     "ten times as large": lambda scene: scaled(scene, 10.0),
     "a tenth as large": lambda scene: scaled(scene, 0.1),
 }

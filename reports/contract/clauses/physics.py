@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.check.free import centres
 from models.array import Array
 from models.joints import bodies
 from models.laws import ConstantSpeed, Oscillating
@@ -18,6 +17,7 @@ from reports.compare.beside import Beside, truth_of
 from reports.compare.compare import places
 from reports.compare.errors import largest
 from reports.contract.clause import Clause
+from reports.contract.let_go import centres
 from reports.contract.subject import NotTriedError, Subject
 from reports.judge.halving import PLACES
 from reports.judge.three_steps import convergence

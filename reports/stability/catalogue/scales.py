@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from functools import partial
 
-from analytic.check.moved_scene import moved, rotated, scaled
 from models.files import load_scene
+from models.moved_scene import moved, rotated, scaled
 from reports.stability.case import Case, Trial
 
 SOURCE = "fourbar-lecture-1"

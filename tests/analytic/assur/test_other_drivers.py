@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.check import newton
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.structure.mobility import analyse
 from models.array import Array
@@ -20,6 +19,7 @@ from models.scene import Scene
 from tests.analytic.chain import coordinates
 from tests.analytic.four_bars import fourbar
 from tests.analytic.test_bounds import shares
+from tests.second_opinions import newton
 from tests.worlds.tiers import slowly
 
 LENGTHS = {"usual": (0.1, 0.25, 0.2, 0.3), "parallelogram": (0.1, 0.3, 0.1, 0.3)}

@@ -12,13 +12,13 @@ import pytest
 from analytic.assur.group_steps import prepare
 from analytic.assur.platform import solve_platform
 from analytic.assur.step import AssurStep
-from analytic.check.moved_scene import moved
 from analytic.dyads.plane import BodyKinematics
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import ReachError
 from models.laws import ConstantSpeed
+from models.moved_scene import moved
 from models.scene import Scene
 from tests.analytic.assur.triad_scenes import KINDS, on_branch, triad
 from tests.analytic.test_bounds import shares

@@ -10,10 +10,6 @@ import pytest
 from hypothesis import given
 
 from analytic import kinematics
-from analytic.check import newton
-from analytic.check.constraints import Constraints
-from analytic.check.free import centres
-from analytic.check.newton import Guess
 from analytic.dyads.parts import MovingLine
 from analytic.dyads.plane import EPS
 from analytic.free.window_chain import ChainMotion
@@ -26,9 +22,13 @@ from models.poses import centre_of, frames
 from models.scene import Same, Scene
 from models.window_chain import Chain
 from reports.compare.beside import truth_of
+from reports.contract.let_go import centres
 from tests.analytic.chain import coordinates
 from tests.analytic.imported import reached
 from tests.analytic.test_bounds import SIX
+from tests.second_opinions import newton
+from tests.second_opinions.constraints import Constraints
+from tests.second_opinions.newton import Guess
 from tests.worlds.strategies import FORMS, OF_EACH_KIND, Designed, examples, mechanisms, swing_times
 from tests.worlds.tiers import at_length, slowly
 
@@ -165,8 +165,8 @@ def test_forms_cover_every_kind_and_role() -> None:
 def test_neither_computation_imports_the_other() -> None:
     closed, second = (reached(f"analytic.{m}") for m in ("kinematics", "check.newton"))
     assert {f"analytic.dyads.{kind}" for kind in ("rrr", "rrp", "rpr", "prp", "rpp")} <= closed
-    assert "analytic.check.newton" not in closed
-    assert {"analytic.check.constraints", "analytic.multibody.assembly"} <= second
+    assert "tests.second_opinions.newton" not in closed
+    assert {"tests.second_opinions.constraints", "analytic.multibody.assembly"} <= second
     assert not closed & second
 
 

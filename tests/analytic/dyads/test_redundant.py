@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.check import newton
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.structure.mobility import analyse
 from models.array import Array
@@ -16,6 +15,7 @@ from models.files import load_scene, parse_scene
 from models.laws import Oscillating
 from models.motion import LinkMotion
 from models.scene import Driver, Link, Point, Scene
+from tests.second_opinions import newton
 
 HIGH = np.radians(np.linspace(15.0, 165.0, 40))
 """Driver angles that keep away from the flat positions."""

@@ -10,7 +10,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.check.moved_scene import scaled
 from analytic.elastic.discretisation import (
     REFERENCE,
     Discretisation,
@@ -31,6 +30,7 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
+from models.moved_scene import scaled
 from models.scene import Scene
 from tests.analytic.elastic.driven import (
     SHIPPED,

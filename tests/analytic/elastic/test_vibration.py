@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp  # type: ignore[import-untyped]
 
-from analytic.check.driven_multipliers import DrivenMultipliers
 from analytic.elastic import vibration
 from analytic.elastic.discretisation import Discretisation, Elements, Modes, Polynomials, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
@@ -37,6 +36,7 @@ from tests.analytic.elastic.driven import (
     turning,
     with_elastic,
 )
+from tests.second_opinions.driven_multipliers import DrivenMultipliers
 from tests.worlds.tiers import slowly
 
 STEPS = "many steps of the library: the equations are the same"

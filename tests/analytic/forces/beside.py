@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.check import multipliers, power
 from analytic.forces import kinetostatics
 from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.forces import Forces
 from models.motion import Motion
 from models.scene import Scene
+from tests.second_opinions import multipliers, power
 
 AGREED = 1e-11
 SAMPLES = 61

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from mpmath import mpf
 
-from analytic.check.moved_scene import moved
 from analytic.forces.kinetostatics import forces
 from analytic.forces.springs import spring_lengths
 from analytic.kinematics import chunks, solve
 from models.array import Array
 from models.files import load_scene, shipped
 from models.forces import Forces
+from models.moved_scene import moved
 from models.scene import Scene
 from tests.analytic.chain import Chain, coordinates
 from tests.analytic.forces.beside import series

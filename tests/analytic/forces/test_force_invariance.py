@@ -12,8 +12,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.check import moved_scene
 from analytic.forces import kinetostatics
+from analytic.structure.mobility import sides_of
+from models import moved_scene
 from models.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.files import load_scene, shipped
 from models.forces import Forces
@@ -106,4 +107,7 @@ def test_friction_grows_with_the_scene() -> None:
     scene = replace(load_scene("slider-crank-central"), friction=rubs(0.02, 3.0, 5.0))
     assert moved_scene.scaled(scene, 10.0).friction == rubs(0.2, 3000.0, 500.0)
     assert sped_up(scene, 3.0).friction == rubs(0.02, 27.0, 45.0)
-    assert moved_scene.mirrored(scene).friction == moved_scene.moved(scene, (1.0, 0.0)).friction
+    assert (
+        moved_scene.mirrored(scene, sides_of(scene)).friction
+        == moved_scene.moved(scene, (1.0, 0.0)).friction
+    )

@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.check import multipliers, power
 from analytic.forces import kinetostatics
 from analytic.forces.efficiency import friction_power
 from analytic.kinematics import reach, solve
@@ -20,6 +19,7 @@ from models.friction import ConstantFriction, CoulombFriction
 from models.scene import Scene
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.analytic.forces.beside import AGREED, agreed, apart, at, out_of_balance, series, turn
+from tests.second_opinions import multipliers, power
 from tests.worlds.loading import loaded, massless, rubbed, rubbed_mechanism
 
 PRESS = """

@@ -13,7 +13,6 @@ import pytest
 from analytic.forces.kinetostatics import forces
 from analytic.forces.late_impulses import ON_TIME, LateImpulses, late_impulses
 from analytic.forces.reduced_machine import reduced_machine
-from analytic.forces.reduction import oscillation_length, plane_motion, rotation, two_masses
 from analytic.kinematics import solve
 from models.array import Array
 from models.characteristics import Constant
@@ -22,6 +21,7 @@ from models.files import load_scene, parse_scene, shipped
 from models.laws import Accelerating, ConstantSpeed
 from models.loads import Load
 from models.scene import Driver
+from tests.second_opinions.reduction import oscillation_length, plane_motion, rotation, two_masses
 from tests.worlds.loading import loaded, sprung
 
 Pair = tuple[float, float]

@@ -8,8 +8,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.check import multipliers
-from analytic.check.constraints import Constraints
 from analytic.dyads.plane import EPS
 from analytic.forces import kinetostatics
 from analytic.forces.virtual_power import torque_by_power
@@ -32,6 +30,8 @@ from tests.analytic.forces.beside import (
     unlocked,
 )
 from tests.analytic.imported import reached
+from tests.second_opinions import multipliers
+from tests.second_opinions.constraints import Constraints
 from tests.worlds.loading import loaded, loaded_mechanism, sprung
 from tests.worlds.tiers import few, slowly
 
@@ -189,10 +189,10 @@ def _length(series: Array) -> Array:
 
 def test_no_computation_imports_another() -> None:
     assert not any(".check" in name for name in reached("analytic.forces.kinetostatics"))
-    for opinion in ("analytic.check.multipliers", "analytic.check.power"):
+    for opinion in ("tests.second_opinions.multipliers", "tests.second_opinions.power"):
         rooms = {name.split(".")[1] for name in reached(opinion)}
         assert rooms <= {"check", "multibody"}
-    assert "analytic.check.constraints" not in reached("analytic.check.power")
+    assert "tests.second_opinions.constraints" not in reached("tests.second_opinions.power")
 
 
 def test_a_fault_in_one_of_them_makes_them_disagree(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,6 @@ from functools import cache
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from analytic.check.constraints import Constraints
 from analytic.free.chart import Chart
 from analytic.free.free_motion import FreeMotion
 from analytic.free.machine import Machine
@@ -20,6 +19,7 @@ from models.array import Array
 from models.poses import centre_of, mass_of
 from models.scene import Scene, as_bytes
 from tests.analytic.multibody.scenes import scene
+from tests.second_opinions.constraints import Constraints
 
 
 def released(mechanism: Scene, until_s: float) -> FreeMotion:

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from analytic.check.constraints import Constraints
 from analytic.free.doubt import _moved
 from analytic.free.limit_position import REACH
 from analytic.free.machine_motion import MachineMotion
@@ -31,6 +30,7 @@ from tests.analytic.free.mechanisms import (
 )
 from tests.analytic.multibody.scenes import by_bodies
 from tests.analytic.multibody.scenes import scene as parsed
+from tests.second_opinions.constraints import Constraints
 from tests.worlds.loading import loaded_mechanism
 from tests.worlds.tiers import slowly
 

@@ -13,12 +13,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from analytic.check.constraints import Constraints
 from analytic.dyads.chunk import Chunk
 from analytic.free.free_motion import FreeMotion
 from analytic.free.integration import Integration
 from analytic.free.machine_motion import MachineMotion
-from analytic.free.period import period
 from analytic.free.release import release
 from analytic.free.window_chain import Amplitude, ChainMotion
 from analytic.kinematics import solve_driven
@@ -41,6 +39,8 @@ from tests.analytic.free.mechanisms import (
     slider_crank,
 )
 from tests.analytic.multibody.scenes import by_bodies, scene
+from tests.second_opinions.constraints import Constraints
+from tests.second_opinions.period import period
 from tests.worlds.tiers import few, slowly
 
 SHORT_S = {"engine-flywheel": 0.004, "squeezer": 0.03, "fourbar-double-rocker-swing": 0.35}

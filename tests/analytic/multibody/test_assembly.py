@@ -16,7 +16,6 @@ from analytic.free.free_motion import FreeMotion
 from analytic.free.release import release
 from analytic.kinematics import solve
 from analytic.multibody.assembly import Assembly
-from analytic.multibody.baumgarte_table import STABLE, baumgarte_table
 from analytic.multibody.configuration import Configuration
 from analytic.multibody.multibody_motion import Baumgarte, MultibodyMotion
 from analytic.multibody.release_multibody import release_multibody, start_state
@@ -39,6 +38,7 @@ from tests.analytic.multibody.scenes import (
     by_bodies,
     scene,
 )
+from tests.second_opinions.baumgarte_table import STABLE, baumgarte_table
 from tests.worlds.loading import loaded_mechanism, massless
 from tests.worlds.tiers import few, slowly
 

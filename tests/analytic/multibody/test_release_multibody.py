@@ -9,7 +9,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-from analytic.check.moved_scene import scaled
 from analytic.free.release import release
 from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve
@@ -22,6 +21,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.loads import Load
+from models.moved_scene import scaled
 from models.tabulated import Tabulated
 from models.window_chain import Chain
 from tests.analytic.free.mechanisms import fourbar

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from analytic.check.moved_scene import mirrored
 from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
 from analytic.regulation.cycle_scene import cycle_scene, with_flywheel
@@ -20,11 +19,13 @@ from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
 from analytic.regulation.periodic_solution import StallError
 from analytic.regulation.steady_cycle import SteadyCycle
 from analytic.regulation.turning_machine import TurningMachine
+from analytic.structure.mobility import sides_of
 from models.characteristics import Constant, Polynomial, Sine
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
 from models.friction import ConstantFriction, CoulombFriction
 from models.laws import Accelerating, ConstantSpeed
+from models.moved_scene import mirrored
 from models.released import Released
 from models.scene import GROUND, Driver, Scene
 from models.springs import LineSpring, PinSpring, SlideSpring
@@ -182,7 +183,8 @@ def test_a_load_of_short_waves_by_hand() -> None:
 def test_torques_are_those_that_kinetostatics_has_at_constant_speed(backward: bool) -> None:
     """torque of the drive = J' w^2 / 2 - M, friction and dampers among what acts."""
     speed = -140.0 if backward else 140.0
-    scene = mirrored(driven_by_a_motor()) if backward else driven_by_a_motor()
+    scene = driven_by_a_motor()
+    scene = mirrored(scene, sides_of(scene)) if backward else scene
     scene = replace(scene, driver=Driver("crank", ConstantSpeed(0.4, speed)))
     machine = TurningMachine.of(scene)
     u = np.linspace(0.05, 6.2, 40)
@@ -214,7 +216,7 @@ def test_shipped_machines_close_their_balance(name: str) -> None:
 
 def test_a_mirrored_machine_has_the_mirrored_cycle() -> None:
     scene = load_scene("compressor")
-    one, other = cycle(scene), cycle(mirrored(scene))
+    one, other = cycle(scene), cycle(mirrored(scene, sides_of(scene)))
     assert other.machine.way == -one.machine.way
     assert other.delta == pytest.approx(one.delta, rel=1e-10)
     assert (other.fastest, other.slowest) == pytest.approx((one.fastest, one.slowest), rel=1e-8)

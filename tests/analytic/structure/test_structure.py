@@ -7,8 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.check import newton
-from analytic.check.newton import Guess
 from analytic.kinematics import solve
 from analytic.structure.by_driver import StructureByDriver, by_drivers
 from analytic.structure.groups import Bridge
@@ -18,6 +16,8 @@ from models.errors import StructureError
 from models.files import load_scene, parse_scene, shipped
 from models.laws import ConstantSpeed
 from models.scene import Driver, Scene
+from tests.second_opinions import newton
+from tests.second_opinions.newton import Guess
 
 FOURBAR = {"crank": "AB", "coupler": "BC", "rocker": "DC"}
 GROUND = {"A": (0.0, 0.0), "D": (0.3, 0.0), "G": (0.6, 0.1), "H": (0.5, 0.4)}

@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analytic.check.moved_scene import mirrored, moved, rotated, scaled
 from analytic.kinematics import solve
+from analytic.structure.mobility import sides_of
 from models.array import Array
 from models.files import load_scene
 from models.motion import LinkMotion
+from models.moved_scene import mirrored, moved, rotated, scaled
 from models.scene import Scene
 from reports.compare.beside import SETTLING, Beside, Truth
 from reports.compare.compare import compare
@@ -275,7 +276,7 @@ CHANGES: dict[str, Callable[[Scene], Scene]] = {
     "none": lambda scene: scene,
     "rotated by 0.7 rad": lambda scene: rotated(scene, 0.7),
     "moved by (3, -2) m": lambda scene: moved(scene, (3.0, -2.0)),
-    "mirrored": mirrored,
+    "mirrored": lambda scene: mirrored(scene, sides_of(scene)),
     "10 times as large": lambda scene: scaled(scene, 10.0),
     "a tenth as large": lambda scene: scaled(scene, 0.1),
     "turning the other way": lambda scene: sped_up(scene, -1.0),

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.check.body_samples import BodySamples, cross
 from models.array import Array
 from models.driver_course import driver_course
 from models.forces import Forces
@@ -18,6 +17,7 @@ from models.friction import CoulombFriction
 from models.joints import local_point, sliding_body
 from models.motion import Motion
 from models.scene import GROUND, Scene
+from tests.second_opinions.body_samples import BodySamples, cross
 
 STILL = 1e-12
 """The share of the driver's rate below which a joint rests."""

@@ -21,10 +21,6 @@ from itertools import chain
 
 import numpy as np
 
-from analytic.check.body_samples import BodySamples, body_samples, cross, weights_and_loads
-from analytic.check.constraints import Constraints
-from analytic.check.friction import rubbing_samples, turning
-from analytic.check.spring_samples import springs_on_bodies
 from analytic.multibody.joint_forces import joint_forces
 from models.array import Array
 from models.driver_course import driver_course
@@ -32,6 +28,10 @@ from models.errors import CrankcheckError
 from models.forces import Forces
 from models.motion import Motion
 from models.scene import Scene
+from tests.second_opinions.body_samples import BodySamples, body_samples, cross, weights_and_loads
+from tests.second_opinions.constraints import Constraints
+from tests.second_opinions.friction import rubbing_samples, turning
+from tests.second_opinions.spring_samples import springs_on_bodies
 
 REFINEMENTS = 2
 MOST = 400

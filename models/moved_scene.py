@@ -5,9 +5,9 @@ A mechanism does not know where it stands, so errors as pure numbers must not ch
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
-from analytic.structure.mobility import analyse
 from models.friction import CoulombFriction, Friction
 from models.joints import turned
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
@@ -78,8 +78,9 @@ def moved(scene: Scene, by_m: Point) -> Scene:
     )
 
 
-def mirrored(scene: Scene) -> Scene:
-    """The scene mirrored in the x-axis; pins of two-link dyads change their branch with it."""
+def mirrored(scene: Scene, sides: Iterable[str]) -> Scene:
+    """The scene mirrored in the x-axis; ``sides`` are the pins whose branch changes with it, those
+    of dyads of two links and three pins."""
 
     def flip(p: Point) -> Point:
         return (p[0], -p[1])
@@ -109,7 +110,6 @@ def mirrored(scene: Scene) -> Scene:
     def spring(old: Spring) -> Spring:
         return replace(old, free=-old.free) if isinstance(old, PinSpring) else old
 
-    sides = [group.branch_key for group in analyse(scene).groups if group.kind == "RRR"]
     flipped = {pin: -scene.branch.get(pin, 1) for pin in sides}
     return replace(
         scene,

@@ -15,14 +15,14 @@ from itertools import chain
 
 import numpy as np
 
-from analytic.check.body_samples import body_samples, weights_and_loads
-from analytic.check.friction import rubbing_samples
-from analytic.check.spring_samples import springs_on_bodies
 from models.array import Array
 from models.driver_course import driver_course
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
+from tests.second_opinions.body_samples import body_samples, weights_and_loads
+from tests.second_opinions.friction import rubbing_samples
+from tests.second_opinions.spring_samples import springs_on_bodies
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from analytic.check.driver_row import DriverRow
 from analytic.multibody.assembly import Assembly
 from models.array import Array
 from models.errors import CrankcheckError
 from models.joints import local_point, sliding_body
 from models.scene import Point, Scene, Slider
+from tests.second_opinions.driver_row import DriverRow
 
 
 class Constraints:

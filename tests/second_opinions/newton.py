@@ -18,13 +18,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.check.constraints import Constraints
 from models.array import Array
 from models.errors import CrankcheckError
 from models.joints import local_point
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.samples import samples
 from models.scene import GROUND, Point, Scene, Slider
+from tests.second_opinions.constraints import Constraints
 
 LONGEST_STEP_RAD = 0.05
 """The driver turns at most so far between two positions: the predictor stays on its branch."""

@@ -10,12 +10,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from analytic.check.body_samples import body_samples, cross
 from models.array import Array
 from models.joints import block_name, local_point, sliding_body
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene
 from models.springs import LineSpring, PinSpring, SlideSpring
+from tests.second_opinions.body_samples import body_samples, cross
 
 Push = tuple[str, Point, Array, Array]
 """A body, a place on it, a force (T, 2) and a torque (T,)."""

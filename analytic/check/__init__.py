@@ -1,1 +1,0 @@
-"""Second opinions, which share no arithmetic with the closed forms."""
