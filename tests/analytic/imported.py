@@ -1,22 +1,24 @@
-"""The modules of `analytic` that a module imports, so that two computations are shown to be two."""
+"""The modules of `analytic`, and second opinions, that a module imports, so that two computations
+are shown to be two."""
 
 from __future__ import annotations
 
 import ast
 from pathlib import Path
 
-import analytic
+ROOT = Path(__file__).parents[2]
+OURS = ("analytic", "tests.second_opinions")
 
 
 def reached(module: str) -> set[str]:
-    root, found, todo = Path(str(analytic.__file__)).parents[1], set(), [module]
+    found, todo = set[str](), [module]
     while todo:
         name = todo.pop()
-        path = root.joinpath(*name.split(".")).with_suffix(".py")
+        path = ROOT.joinpath(*name.split(".")).with_suffix(".py")
         if name in found or not path.is_file():
             continue
         found.add(name)
         for node in ast.walk(ast.parse(path.read_text())):
-            if isinstance(node, ast.ImportFrom) and str(node.module).startswith("analytic"):
+            if isinstance(node, ast.ImportFrom) and str(node.module).startswith(OURS):
                 todo += [str(node.module), *(f"{node.module}.{a.name}" for a in node.names)]
     return found

@@ -196,7 +196,7 @@ ScenesRequest.run = swallowed
     "terminated": "ScenesRequest.run = lambda *_: os.kill(os.getpid(), signal.SIGTERM)",
     "ignored": "signal.signal(signal.SIGINT, signal.SIG_IGN); ScenesRequest.run = strike",
     "told": "ScenesRequest.run = lambda *_: setattr(sys.stdout, 'flush', strike)",
-    "finished": "ScenesRequest.run = lambda *_: atexit.register(strike)",
+    "finished": "ScenesRequest.run = lambda *_: [atexit.register(strike), 0][1]",
 }
 
 
