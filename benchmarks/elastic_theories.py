@@ -26,7 +26,6 @@ import numpy as np
 if __name__ == "__main__":  # run as a file: the packages are beside this folder
     sys.path[0] = str(Path(__file__).resolve().parents[1])
 
-from analytic.elastic.any_speed import at_speed
 from analytic.elastic.discretisation import Discretisation, Modes, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.linearised import linearise
@@ -40,6 +39,7 @@ from analytic.elastic.periodic import (
     periodic_motion,
 )
 from analytic.elastic.reduced import ReducedForm
+from analytic.lectures.vibration.any_speed import at_speed
 from models.array import Array
 from models.beamed import BeamedScene
 from models.files import load_scene

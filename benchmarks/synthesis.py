@@ -21,12 +21,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from analytic.synthesis.coupler import coupler_proposals
-from analytic.synthesis.examine import examine
-from analytic.synthesis.path.search import generate
-from analytic.synthesis.path.task import PathTask
-from analytic.synthesis.solutions import solutions_of
-from models.tasks.coupler import CouplerTask
+from analytic.lectures.synthesis.coupler import coupler_proposals
+from analytic.lectures.synthesis.examine import examine
+from analytic.lectures.synthesis.path.search import generate
+from analytic.lectures.synthesis.path.task import PathTask
+from analytic.lectures.synthesis.solutions import solutions_of
+from models.lectures.tasks.coupler import CouplerTask
 from reports.output.provenance import provenance
 
 TASKS, SEED = 100, 19

@@ -68,15 +68,15 @@ if TYPE_CHECKING:
     from reports.face.free_solution import FreeSolution
     from reports.face.log_verdict import LogVerdict, judge
     from reports.face.model_verdict import ModelVerdict, check_model
-    from reports.face.regulation import MachineCycle, MachineFlywheel, cycle, flywheel
     from reports.face.report import report
     from reports.face.simulation import Simulation, run
     from reports.face.solution import Solution
     from reports.face.solve import solve, solve_driven
     from reports.face.sweep import Sweep, sweep
-    from reports.face.synthesis import Synthesis, synth
     from reports.judge.cell import Cell
     from reports.judge.rules.rule import Finding
+    from reports.lectures.design.synthesis import Synthesis, synth
+    from reports.lectures.machine.regulation import MachineCycle, MachineFlywheel, cycle, flywheel
     from sim.engine import Run
 
     __version__: str
@@ -158,7 +158,7 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
             case "ModelVerdict" | "check_model":
                 from reports.face import model_verdict as home
             case "MachineCycle" | "MachineFlywheel" | "cycle" | "flywheel":
-                from reports.face import regulation as home
+                from reports.lectures.machine import regulation as home
             case "report":
                 from reports.face import report as home
             case "Simulation" | "run":
@@ -170,7 +170,7 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
             case "Sweep" | "sweep":
                 from reports.face import sweep as home
             case "Synthesis" | "synth":
-                from reports.face import synthesis as home
+                from reports.lectures.design import synthesis as home
             case "Cell":
                 from reports.judge import cell as home
             case "Finding":

@@ -11,7 +11,6 @@ import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cached_property
-from importlib import import_module
 from typing import Annotated, Any, NoReturn, Protocol, cast, get_args, get_type_hints
 
 import typer
@@ -28,6 +27,7 @@ from reports.output.console import (
     readable_everywhere,
     terminal,
 )
+from reports.requests.named import named
 from reports.workers.signals import Stopped, broken_pipe_ends, finish, install, seen
 
 BAD_INPUT, INTERNAL, INTERRUPTED, BROKEN_PIPE = 2, 70, 130, 141
@@ -53,9 +53,8 @@ class Late(TyperCommand):
     @cached_property
     def loaded(self) -> TyperCommand:
         """The command with its options."""
-        module, _, name = COMMANDS[self.words][0].partition(":")
         alone = typer.Typer(add_completion=False)
-        typed = _typed(getattr(import_module(f"..{module}", __package__), name))
+        typed = _typed(named(COMMANDS[self.words][0]))
         alone.command(self.name, help=self.help)(typed)
         return cast(TyperCommand, typer.main.get_command(alone))
 

@@ -48,34 +48,34 @@ List the shipped scenes with their structure, driver and source."""),
 Open MuJoCo's viewer, or, without a screen or with -o, draw the motion into a file."""),
     "judge": ("requests.judge:JudgeRequest", """
 Hold a log of your own to the closed form; exit 1 when out of tolerance."""),
-    "centres": ("requests.centres:CentresRequest", """
+    "centres": ("lectures.drawing.centres:CentresRequest", """
 Show the instant centres of a position by the theorem of Aronhold and Kennedy, with the
 inflection circle, Bresse's circles and the centrodes of a link."""),
-    "positions": ("requests.positions:PositionsRequest", """
+    "positions": ("lectures.drawing.positions:PositionsRequest", """
 Draw the positions of a mechanism over a turn, with arcs and loci, to scale."""),
-    "polygon": ("requests.polygon:PolygonRequest", """
+    "polygon": ("lectures.drawing.polygon:PolygonRequest", """
 Draw the velocity and the acceleration polygon of a position, group by group, to scale.
 
 Without -o the table of the vectors is shown. With --log the images of a log's points stand
 beside those of the reference."""),
-    "graph": ("requests.graph:GraphRequest", """
+    "graph": ("lectures.drawing.graph:GraphRequest", """
 Draw an angle, a displacement or a coordinate over a period with its rates, each from the
 other with ruler and pole, beside the exact curves.
 
 Without -o the table is shown that is drawn first, and what is drawn from it."""),
-    "cycle": ("requests.cycle:CycleRequest", """
+    "cycle": ("lectures.machine.cycle:CycleRequest", """
 Show the cycle that a machine repeats under its loads: extreme speeds, the coefficient of
 fluctuation, surplus of work, reduced inertia, power.
 
 A scene that is driven keeps its mean speed by a constant torque; one that is let go has its
 loads alone."""),
-    "flywheel": ("requests.flywheel:FlywheelRequest", """
+    "flywheel": ("lectures.machine.flywheel:FlywheelRequest", """
 Work out the flywheel on the driver for a coefficient of fluctuation, exact and as the
 textbooks approximate it, and the speed over the cycle with it and without."""),
-    "chains": ("requests.chains:ChainsRequest", """
+    "chains": ("lectures.drawing.chains:ChainsRequest", """
 List and draw the distinct kinematic chains of so many links: number synthesis, their
 inversions with the class of each, and their types with sliders."""),
-    "structure": ("requests.structure:StructureRequest", """
+    "structure": ("lectures.drawing.structure:StructureRequest", """
 Show what a scene is made of: links and joints, mobility, Assur groups with class and order,
 the class with every other joint as the driver, and all its assemblies at one place."""),
     "rotatability": ("requests.rotatability:RotatabilityRequest", """
@@ -84,20 +84,20 @@ branches, dead points and transmission angles.
 
 Exit code 1: the driver does not lead through the positions asked for (a defect of branch,
 circuit or order)."""),
-    "synth": ("requests.synth:SynthRequest", """
+    "synth": ("lectures.design.synth:SynthRequest", """
 Find the mechanisms that do a task: their scenes, defects, figure, and proof in engines.
 
 Exit code 1: no solution without a defect, or with --prove one that an engine does not lead
 through what is asked."""),
-    "vibration": ("requests.vibration:VibrationRequest", """
+    "vibration": ("lectures.machine.vibration:VibrationRequest", """
 Show how elastic links vibrate at the driver's speed, or over speeds: natural frequencies,
 deflection, stability, resonances.
 
 A resonance, where there is no periodic motion to tell, ends with exit code 2."""),
-    "joint": ("requests.joint:JointRequest", """
+    "joint": ("lectures.drawing.joint:JointRequest", """
 Say the class of a joint, whether it is a lower or a higher pair, and its freedoms by name,
 from how its two links touch."""),
-    "mobility": ("requests.mobility:MobilityRequest", """
+    "mobility": ("lectures.drawing.mobility:MobilityRequest", """
 Count the motions of a planar or spatial scheme, and say by name which constraints are
 passive and which freedoms idle, from the rank of its equations."""),
     "engines": ("requests.engines:EnginesRequest", """

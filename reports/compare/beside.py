@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
+from typing import ClassVar
 
 import numpy as np
 
@@ -106,6 +107,8 @@ class Beside:
     share ``truth``. What is worked out raises CrankcheckError where there is no reference.
     """
 
+    bends: ClassVar[bool] = False
+    """Whether it is an `ElasticBeside`, which is loaded where links bend alone."""
     truth: Truth
     run: Run
     motion: Motion

@@ -17,7 +17,6 @@ from reports.compare.branch import departure
 from reports.compare.change_points import conditioning
 from reports.compare.curvature import curvature
 from reports.compare.drive_rounding import summed
-from reports.compare.elastic.elastic_truth import ElasticBeside
 from reports.compare.error_rows import Instants, instants_of, whole_row
 from reports.compare.errors import Error, Errors
 from reports.compare.force_rows import force_rows
@@ -48,7 +47,7 @@ def compare(beside: Beside | None) -> Errors | None:
         errors = free_errors(beside)
     else:
         errors = _of_driven(beside)
-    if isinstance(beside, ElasticBeside):
+    if beside.bends:
         from reports.compare.elastic.elastic_errors import with_elastic  # where links bend alone
 
         return with_elastic(errors, beside)
@@ -112,7 +111,7 @@ def places(beside: Beside | None) -> list[Error]:
         at = instants_of(beside, beside.motion.time_s, beside.reference)
         roles: tuple[Role, ...] = ("drive", "place", "closure")
         rows = [row for role in roles for row in whole_rows(beside, at, role)]
-    if isinstance(beside, ElasticBeside):
+    if beside.bends:
         from reports.compare.elastic.elastic_errors import elastic_rows
 
         rows += elastic_rows(beside)

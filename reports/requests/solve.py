@@ -30,6 +30,7 @@ from reports.face.solution_text import (
 )
 from reports.output.frame_file import ENDINGS, write_frame
 from reports.output.write import check_file, check_folder, write
+from reports.requests.named import FAMILY, LIVE_SHEET, named
 from reports.requests.solve_options import (
     FAMILY_ENDINGS,
     PAGE,
@@ -53,9 +54,7 @@ class SolveRequest(SolveOptions):
         scene = load_scene(self.scene)
         asked = elastic_choice(self)
         if self.family is not None:
-            from reports.requests.solve_family import run_family  # slow to import
-
-            run_family(scene, self, console)
+            named(FAMILY)(scene, self, console)
             return 0
         if scene.elastic:
             from reports.requests.solve_elastic import run_solve_elastic  # slow to import
@@ -194,9 +193,6 @@ def _write(path: Path, scene: Scene, motion: Motion, *, is_turn: bool) -> str:
     origin = {"scene": scene.name, "source": scene.source}
     frame, more, told = motion_frame(motion), None, ""
     if path.suffix.lower() == WORKBOOK and is_turn:
-        from reports.workbook.beside_values import beside_values, left_out
-
-        told = left_out(motion.time_s.size)
-        more = beside_values(scene, motion.time_s, list(frame.columns))
+        told, more = named(LIVE_SHEET)(scene, motion.time_s, list(frame.columns))
     write_frame(path, frame, "motion", origin, more)
     return f"{path}: {motion.time_s.size} samples of {scene.name}{told}"

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from analytic.regulation.cycle_scene import cycle_scene
-from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
-from analytic.regulation.steady_cycle import SteadyCycle
-from analytic.regulation.turning_machine import TurningMachine
+from analytic.lectures.regulation.cycle_scene import cycle_scene
+from analytic.lectures.regulation.flywheel import WantedFlywheel, wanted_flywheel
+from analytic.lectures.regulation.steady_cycle import SteadyCycle
+from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.characteristics import Polynomial
 from models.files import load_scene
 from models.loads import Load

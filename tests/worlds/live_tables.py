@@ -17,8 +17,8 @@ from analytic.kinematics import solve
 from models.files import load_scene
 from models.motion import Motion
 from models.scene import Link, Scene
-from reports.workbook.formula_table import FormulaTable
-from reports.workbook.live_workbook import formulas_of, live_workbook
+from reports.lectures.drawing.workbook.formula_table import FormulaTable
+from reports.lectures.drawing.workbook.live_workbook import formulas_of, live_workbook
 
 ROWS, STEP_DEG = 13, 27.5
 KINDS = ("fourbar-lecture-1", "slider-crank-offset", "slotted-lever")

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from models.motion import Motion
+from reports.compare.beside import Beside
 from reports.compare.elastic.elastic_facts import ElasticFacts
 from reports.compare.elastic.elastic_truth import ElasticBeside
 from reports.compare.error_rows import instants_of, whole_row
@@ -20,15 +21,17 @@ BEAM, CHAIN = ("deflection", "extension"), ("segments",)
 """What is held to the beam, and to the exact chain."""
 
 
-def with_elastic(errors: Errors, beside: ElasticBeside) -> Errors:
+def with_elastic(errors: Errors, beside: Beside) -> Errors:
     """The errors of a run with those of its elastic links, and what is known of these."""
+    assert isinstance(beside, ElasticBeside)
     facts = elastic_facts(beside)
     return replace(errors, rows=(*errors.rows, *elastic_rows(beside)), elastic=facts)
 
 
-def elastic_rows(beside: ElasticBeside) -> list[Error]:
+def elastic_rows(beside: Beside) -> list[Error]:
     """Deflections and extensions, of kind "total" those of the run; of kind "chain" those of the
     exact chain, beside the beam."""
+    assert isinstance(beside, ElasticBeside)
     at = instants_of(beside, beside.motion.time_s, beside.reference)
     rows = [whole_row(track, at) for track in beside.tracks(BEAM, beside.reference)]
     exact = beside.exact

@@ -13,6 +13,7 @@ import pickle
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
+from typing import ClassVar
 
 from analytic.elastic.discretisation import Segments
 from analytic.elastic.node_start import node_start
@@ -254,6 +255,7 @@ class ElasticBeside(Beside):
     """As `Beside`. Where links bend the angle of the driver says nothing of the others: there are
     no errors at the logged angle."""
 
+    bends: ClassVar[bool] = True
     elastic: ElasticTruth = field(kw_only=True)
 
     @cached_property

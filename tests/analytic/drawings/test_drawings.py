@@ -10,17 +10,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.drawings import graphical
-from analytic.drawings.centrodes import centrodes
-from analytic.drawings.curvature_circles import curvature_circles
-from analytic.drawings.drawn_polygons import DrawnPolygons, draw_polygons
-from analytic.drawings.graphical import Method, Plotted, by_chords, three_graphs
-from analytic.drawings.instant_centres import instant_centres
-from analytic.drawings.paper_scale import book_scales, round_scale
-from analytic.drawings.placed_mechanism import DriverState
-from analytic.drawings.polygon import Vector
-from analytic.drawings.similarity import similarity
 from analytic.kinematics import reach, solve, solve_driven
+from analytic.lectures.drawings import graphical
+from analytic.lectures.drawings.centrodes import centrodes
+from analytic.lectures.drawings.curvature_circles import curvature_circles
+from analytic.lectures.drawings.drawn_polygons import DrawnPolygons, draw_polygons
+from analytic.lectures.drawings.graphical import Method, Plotted, by_chords, three_graphs
+from analytic.lectures.drawings.instant_centres import instant_centres
+from analytic.lectures.drawings.paper_scale import book_scales, round_scale
+from analytic.lectures.drawings.placed_mechanism import DriverState
+from analytic.lectures.drawings.polygon import Vector
+from analytic.lectures.drawings.similarity import similarity
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped

@@ -9,13 +9,20 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from analytic.structure import screws
-from analytic.structure.freedom_names import axis_in_words, names_of_freedoms
-from analytic.structure.joint_chains import chain_of
-from analytic.structure.joint_class import analyse_joint
-from analytic.structure.screws import carried, displaced, gap, reciprocal, rotation, translation
-from models.scheme import Place, SchemeJoint
-from models.touching import Contact, Touching, load_touching, shipped_contacts
+from analytic.lectures.schemes import screws
+from analytic.lectures.schemes.freedom_names import axis_in_words, names_of_freedoms
+from analytic.lectures.schemes.joint_chains import chain_of
+from analytic.lectures.schemes.joint_class import analyse_joint
+from analytic.lectures.schemes.screws import (
+    carried,
+    displaced,
+    gap,
+    reciprocal,
+    rotation,
+    translation,
+)
+from models.lectures.scheme import Place, SchemeJoint
+from models.lectures.touching import Contact, Touching, load_touching, shipped_contacts
 
 
 def matrix(twist: np.ndarray) -> np.ndarray:

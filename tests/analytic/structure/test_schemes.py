@@ -11,18 +11,18 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from analytic.structure.drawing_frame import DrawingFrame
-from analytic.structure.higher_pairs import replaced, teeth_centres
-from analytic.structure.neighbourhood import settled
-from analytic.structure.passive import effect_of
-from analytic.structure.scheme_loops import IN_PLANE, Loops
-from analytic.structure.scheme_mobility import SchemeMobility, scheme_mobility
-from analytic.structure.screws import rank, reciprocal, rotation
+from analytic.lectures.schemes.drawing_frame import DrawingFrame
+from analytic.lectures.schemes.higher_pairs import replaced, teeth_centres
+from analytic.lectures.schemes.neighbourhood import settled
+from analytic.lectures.schemes.passive import effect_of
+from analytic.lectures.schemes.scheme_loops import IN_PLANE, Loops
+from analytic.lectures.schemes.scheme_mobility import SchemeMobility, scheme_mobility
+from analytic.lectures.schemes.screws import rank, reciprocal, rotation
 from models.errors import StructureError
+from models.lectures.scheme import HIGHER, Place, Scheme, SchemeJoint
+from models.lectures.scheme_files import load_scheme, shipped_schemes
+from models.lectures.scheme_text import scheme_text
 from models.scene import GROUND
-from models.scheme import HIGHER, Place, Scheme, SchemeJoint
-from models.scheme_files import load_scheme, shipped_schemes
-from models.scheme_text import scheme_text
 
 SCHEMES = shipped_schemes()
 COUNTS = {  # by Kutzbach and Gruebler, where the sources' mobility is another one

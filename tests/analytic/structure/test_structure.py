@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.structure.by_driver import StructureByDriver, by_drivers
+from analytic.lectures.chains.by_driver import StructureByDriver, by_drivers
 from analytic.structure.groups import Bridge
 from analytic.structure.mobility import analyse
 from analytic.structure.unsolved import MOST_LOOKS, LeftOver

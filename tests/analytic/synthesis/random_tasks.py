@@ -9,13 +9,13 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import pytest
 
-from analytic.synthesis import coupler
-from analytic.synthesis.solutions import Solutions, solutions_of
-from models.tasks.coupler import CouplerTask
-from models.tasks.quick_return import QuickReturnTask
-from models.tasks.rocker import RockerTask
-from models.tasks.stroke import StrokeTask
-from models.tasks.task import TaskTable
+from analytic.lectures.synthesis import coupler
+from analytic.lectures.synthesis.solutions import Solutions, solutions_of
+from models.lectures.tasks.coupler import CouplerTask
+from models.lectures.tasks.quick_return import QuickReturnTask
+from models.lectures.tasks.rocker import RockerTask
+from models.lectures.tasks.stroke import StrokeTask
+from models.lectures.tasks.task import TaskTable
 
 Draw = np.random.Generator
 HEAD = {"name": "random", "source": "a test"}

@@ -11,10 +11,10 @@ import pytest
 from pylinkage.synthesis import Pose as TheirPose
 from pylinkage.synthesis import compute_pole, function_generation, motion_generation
 
-from analytic.synthesis.burmester import five_positions, four_positions
-from analytic.synthesis.function.fourbar import fourbars
-from analytic.synthesis.guided_body import Dyad, about_circumcentre
-from analytic.synthesis.pose import Pose, pole
+from analytic.lectures.synthesis.burmester import five_positions, four_positions
+from analytic.lectures.synthesis.function.fourbar import fourbars
+from analytic.lectures.synthesis.guided_body import Dyad, about_circumcentre
+from analytic.lectures.synthesis.pose import Pose, pole
 from models.errors import CrankcheckError
 from tests.analytic.assur.homotopy import Equation, finite_solutions
 from tests.worlds.tiers import few

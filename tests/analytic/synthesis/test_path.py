@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve_driven
-from analytic.synthesis.examine import examine
-from analytic.synthesis.path.search import STARTS, PathFit, generate
-from analytic.synthesis.path.task import PathTask
+from analytic.lectures.synthesis.examine import examine
+from analytic.lectures.synthesis.path.search import STARTS, PathFit, generate
+from analytic.lectures.synthesis.path.task import PathTask
 from models.array import Array
 from models.errors import CrankcheckError
 from tests.analytic.synthesis.test_path_shapes import random_path

@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve_driven
-from analytic.synthesis.path import unit_four_bar as unit
-from analytic.synthesis.path.arc_length import at_shares, shares, smooth
-from analytic.synthesis.path.atlas import atlas, closed_starts, curves, similar
-from analytic.synthesis.path.candidate import Candidate, in_order
-from analytic.synthesis.path.coupler_curve import CouplerCurve, assembled, cognates
-from analytic.synthesis.path.descriptors import descriptors, match
-from analytic.synthesis.path.fit import _Problem, placed
-from analytic.synthesis.path.path_draft import drafted
-from analytic.synthesis.path.pieces import open_starts, pieces
-from analytic.synthesis.path.spread import spread
-from analytic.synthesis.path.task import PathTask, UnitPath
-from analytic.synthesis.path.timed_starts import _costs, timed_starts
-from analytic.synthesis.path.unit_four_bar import FULL, Complexes, Family, lengths
+from analytic.lectures.synthesis.path import unit_four_bar as unit
+from analytic.lectures.synthesis.path.arc_length import at_shares, shares, smooth
+from analytic.lectures.synthesis.path.atlas import atlas, closed_starts, curves, similar
+from analytic.lectures.synthesis.path.candidate import Candidate, in_order
+from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, assembled, cognates
+from analytic.lectures.synthesis.path.descriptors import descriptors, match
+from analytic.lectures.synthesis.path.fit import _Problem, placed
+from analytic.lectures.synthesis.path.path_draft import drafted
+from analytic.lectures.synthesis.path.pieces import open_starts, pieces
+from analytic.lectures.synthesis.path.spread import spread
+from analytic.lectures.synthesis.path.task import PathTask, UnitPath
+from analytic.lectures.synthesis.path.timed_starts import _costs, timed_starts
+from analytic.lectures.synthesis.path.unit_four_bar import FULL, Complexes, Family, lengths
 from models.array import Array
 from models.errors import CrankcheckError
 

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve_driven
-from analytic.synthesis.exact_line import peaucellier
-from analytic.synthesis.examine import examine
-from analytic.synthesis.hoeken import best_hoeken, hoeken, hoeken_of
-from analytic.synthesis.line_draft import StraightLine
-from analytic.synthesis.path.unit_four_bar import Complexes
-from analytic.synthesis.straight_line import TEXTBOOK, Kind, straight_line
-from analytic.synthesis.straight_part import measured
+from analytic.lectures.synthesis.exact_line import peaucellier
+from analytic.lectures.synthesis.examine import examine
+from analytic.lectures.synthesis.hoeken import best_hoeken, hoeken, hoeken_of
+from analytic.lectures.synthesis.line_draft import StraightLine
+from analytic.lectures.synthesis.path.unit_four_bar import Complexes
+from analytic.lectures.synthesis.straight_line import TEXTBOOK, Kind, straight_line
+from analytic.lectures.synthesis.straight_part import measured
 from models.errors import CrankcheckError
 from models.scene import Scene
 

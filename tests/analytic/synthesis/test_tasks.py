@@ -10,17 +10,17 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
+from analytic.lectures.synthesis.asked import AskedSlide
+from analytic.lectures.synthesis.examine import Examined, examine
+from analytic.lectures.synthesis.passing import passing_times
+from analytic.lectures.synthesis.sensitivity import is_measured, monte_carlo, sensitivity
+from analytic.lectures.synthesis.solutions import Solutions, followed, solutions_of
+from analytic.lectures.synthesis.strokes import stroke_proposals
 from analytic.mechanism.travel import travel
-from analytic.synthesis.asked import AskedSlide
-from analytic.synthesis.examine import Examined, examine
-from analytic.synthesis.passing import passing_times
-from analytic.synthesis.sensitivity import is_measured, monte_carlo, sensitivity
-from analytic.synthesis.solutions import Solutions, followed, solutions_of
-from analytic.synthesis.strokes import stroke_proposals
 from models.errors import CrankcheckError, ReachError
 from models.laws import Oscillating
-from models.tasks.files import load_task
-from models.tasks.stroke import StrokeTask
+from models.lectures.tasks.files import load_task
+from models.lectures.tasks.stroke import StrokeTask
 from tests.analytic.synthesis.random_tasks import HEAD, TASKS, random_solutions
 from tests.worlds.tiers import at_length, few, slowly
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from reports.lectures.machine.cycle import CycleRequest
+from reports.lectures.machine.flywheel import FlywheelRequest
 from reports.requests.advise import AdviseRequest
-from reports.requests.cycle import CycleRequest
 from reports.requests.diff import DiffRequest
-from reports.requests.flywheel import FlywheelRequest
 from reports.requests.history import HistoryRequest
 from reports.requests.judge import JudgeRequest
 from reports.requests.run import RunRequest

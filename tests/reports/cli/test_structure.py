@@ -12,9 +12,9 @@ import pytest
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.files import load_scene
-from models.scheme_files import SCHEMES, shipped_schemes
-from models.touching import CONTACTS, shipped_contacts
-from reports.face.assemblies import all_assemblies
+from models.lectures.scheme_files import SCHEMES, shipped_schemes
+from models.lectures.touching import CONTACTS, shipped_contacts
+from reports.lectures.drawing.assemblies import all_assemblies
 from tests.worlds.command_line import crank, flat, refused, told
 from tests.worlds.without_pdf import without_pdf
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from analytic.elastic.any_speed import at_speed
 from analytic.elastic.natural import lowest_rad_s
+from analytic.lectures.vibration.any_speed import at_speed
 from models.files import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, examined

@@ -14,30 +14,30 @@ from matplotlib.figure import Figure
 
 from analytic.elastic.control import control_elastic
 from analytic.elastic.discretisation import Modes
-from analytic.elastic.over_inertia import over_inertia as inertia_map
-from analytic.elastic.over_speeds import OverSpeeds, over_speeds
-from analytic.elastic.steady_vibration import SteadyVibration, steady_vibration
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
-from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
-from analytic.regulation.turning_machine import TurningMachine
+from analytic.lectures.regulation.flywheel import WantedFlywheel, wanted_flywheel
+from analytic.lectures.regulation.turning_machine import TurningMachine
+from analytic.lectures.vibration.over_inertia import over_inertia as inertia_map
+from analytic.lectures.vibration.over_speeds import OverSpeeds, over_speeds
+from analytic.lectures.vibration.steady_vibration import SteadyVibration, steady_vibration
 from models.files import load_scene
 from models.friction import ConstantFriction, CoulombFriction
 from models.loads import Load
 from models.scene import Scene
 from models.tabulated import Tabulated
 from reports.describe.elastic_course import drawn_course
-from reports.face.family_report import family_drawing, family_page_of
 from reports.figures.elastic.control import draw
-from reports.figures.family.family_figure import draw_family
 from reports.figures.forces.all_figures import FORCE_FIGURES
 from reports.figures.forces.force_turn import force_turn
 from reports.figures.forces.torque import mean_torque
-from reports.figures.regulation.all_figures import REGULATION_FIGURES
-from reports.figures.regulation.regulated import Regulated
-from reports.figures.vibration import over_inertia, over_speed, over_turn
-from reports.workbook.family_curves import FamilyCurves, family_curves
-from reports.workbook.live_workbook import formulas_of
+from reports.lectures.drawing.workbook.family_curves import FamilyCurves, family_curves
+from reports.lectures.drawing.workbook.family_figure import draw_family
+from reports.lectures.drawing.workbook.family_report import family_drawing, family_page_of
+from reports.lectures.drawing.workbook.live_workbook import formulas_of
+from reports.lectures.machine.figures import over_inertia, over_speed, over_turn
+from reports.lectures.machine.figures.all_figures import REGULATION_FIGURES
+from reports.lectures.machine.figures.regulated import Regulated
 from tests.reports.figures.test_files import texts
 from tests.reports.figures.test_looks import has_room
 from tests.worlds.tiers import few, slowly

@@ -13,8 +13,8 @@ import pandas as pd
 import pytest
 
 import crankcheck
-from analytic.regulation.cycle_search import cycle_of
-from analytic.regulation.turning_machine import TurningMachine
+from analytic.lectures.regulation.cycle_search import cycle_of
+from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.characteristics import Polynomial, Sine
 from models.files import load_scene
 from models.scene_text import scene_text

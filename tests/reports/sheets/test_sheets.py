@@ -10,20 +10,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.drawings.drawn_polygons import draw_polygons
-from analytic.drawings.placed_mechanism import DriverState
 from analytic.kinematics import reach
+from analytic.lectures.drawings.drawn_polygons import draw_polygons
+from analytic.lectures.drawings.placed_mechanism import DriverState
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
 from models.laws import ConstantSpeed
 from models.scene import Scene
-from reports.sheets.canvas import Canvas, line, text
-from reports.sheets.centre_sheet import centres_of, draw_centres
-from reports.sheets.driver_range import assembled
-from reports.sheets.letters import Letter, write_letters
-from reports.sheets.paper import Box, Paper
-from reports.sheets.polygons.polygon_sheet import draw_sheet, laid_out
-from reports.sheets.position_sheet import PositionSheet, draw_positions, positions
+from reports.lectures.drawing.sheets.canvas import Canvas, line, text
+from reports.lectures.drawing.sheets.centre_sheet import centres_of, draw_centres
+from reports.lectures.drawing.sheets.driver_range import assembled
+from reports.lectures.drawing.sheets.letters import Letter, write_letters
+from reports.lectures.drawing.sheets.paper import Box, Paper
+from reports.lectures.drawing.sheets.polygons.polygon_sheet import draw_sheet, laid_out
+from reports.lectures.drawing.sheets.position_sheet import PositionSheet, draw_positions, positions
 from tests.reports.sheets.measured import drawn_lines, overlaps
 from tests.worlds.tiers import slow
 

@@ -12,17 +12,17 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.synthesis.asked import Asked
-from analytic.synthesis.examine import Examined
-from analytic.synthesis.passing import passing_times
-from analytic.synthesis.solutions import solutions_of
+from analytic.lectures.synthesis.asked import Asked
+from analytic.lectures.synthesis.examine import Examined
+from analytic.lectures.synthesis.passing import passing_times
+from analytic.lectures.synthesis.solutions import solutions_of
 from models.errors import CrankcheckError
 from models.laws import ConstantSpeed, Oscillating
+from models.lectures.tasks.coupler import CouplerTask
+from models.lectures.tasks.files import load_task, shipped_tasks
+from models.lectures.tasks.task import TaskTable
 from models.scene import span
-from models.tasks.coupler import CouplerTask
-from models.tasks.files import load_task, shipped_tasks
-from models.tasks.task import TaskTable
-from reports.synthesis.proof import by_reference, proven
+from reports.lectures.design.proof import by_reference, proven
 from tests.analytic.synthesis.random_tasks import TASKS, random_solutions
 from tests.worlds.tiers import at_length, slowly
 

@@ -8,13 +8,13 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner, Result
 
-from analytic.synthesis import coupler
-from analytic.synthesis.solutions import solutions_of
+from analytic.lectures.synthesis import coupler
+from analytic.lectures.synthesis.solutions import solutions_of
 from models.files import read_scene
-from models.tasks.files import find_task, load_task
+from models.lectures.tasks.files import find_task, load_task
 from reports.cli import app
-from reports.requests import synth as command
-from reports.synthesis.solution_table import solution_frame
+from reports.lectures.design import synth as command
+from reports.lectures.design.solution_table import solution_frame
 from tests.worlds.command_line import flat, refused
 
 

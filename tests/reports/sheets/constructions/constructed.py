@@ -9,14 +9,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 
-from analytic.synthesis.asked import AskedAngle, PrecisionPosition
-from analytic.synthesis.burmester import four_positions
-from analytic.synthesis.construction import Circle, Curve, Dot, Element, Segment, Step
-from analytic.synthesis.design import Proposal
-from analytic.synthesis.fourbar_draft import CarriedBody
-from analytic.synthesis.guided_body import Dyad
-from analytic.synthesis.pose import Pose, bisector, circle_through, pole
-from models.draft import Draft, bar
+from analytic.lectures.synthesis.asked import AskedAngle, PrecisionPosition
+from analytic.lectures.synthesis.burmester import four_positions
+from analytic.lectures.synthesis.construction import Circle, Curve, Dot, Element, Segment, Step
+from analytic.lectures.synthesis.design import Proposal
+from analytic.lectures.synthesis.fourbar_draft import CarriedBody
+from analytic.lectures.synthesis.guided_body import Dyad
+from analytic.lectures.synthesis.pose import Pose, bisector, circle_through, pole
+from models.lectures.draft import Draft, bar
 
 LECTURE = 'Lecture "Tong hop co cau" (synthesis)'
 THREE = (Pose(0.0 + 0.0j, 0.9), Pose(0.09 + 0.05j, 0.55), Pose(0.2 + 0.045j, 0.1))

@@ -18,22 +18,32 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from analytic.drawings.drawn_polygons import draw_polygons, polygons_of
-from analytic.drawings.placed_mechanism import DriverState, PlacedMechanism
 from analytic.kinematics import solve, solve_driven
+from analytic.lectures.drawings.drawn_polygons import draw_polygons, polygons_of
+from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMechanism
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.motion import Motion
 from reports.drawing.true_motion import true_motion
+from reports.lectures.drawing.sheets.paper import Paper
+from reports.lectures.drawing.sheets.polygons.logged_instant import (
+    DIFFERENCED,
+    REPORTED,
+    LoggedInstant,
+    LogInstants,
+)
+from reports.lectures.drawing.sheets.polygons.polygon_files import polygon_file, turning_file
+from reports.lectures.drawing.sheets.polygons.polygon_instant import placed_at_angle, placed_at_time
+from reports.lectures.drawing.sheets.polygons.polygon_page import INSTANTS, polygon_page
+from reports.lectures.drawing.sheets.polygons.polygon_sheet import (
+    PolygonSheet,
+    draw_lines,
+    draw_sheet,
+    laid_out,
+)
 from reports.logs.map_file import Map
 from reports.logs.of_motion import log_of_motion
-from reports.sheets.paper import Paper
-from reports.sheets.polygons.logged_instant import DIFFERENCED, REPORTED, LoggedInstant, LogInstants
-from reports.sheets.polygons.polygon_files import polygon_file, turning_file
-from reports.sheets.polygons.polygon_instant import placed_at_angle, placed_at_time
-from reports.sheets.polygons.polygon_page import INSTANTS, polygon_page
-from reports.sheets.polygons.polygon_sheet import PolygonSheet, draw_lines, draw_sheet, laid_out
 from tests.reports.sheets.measured import TENTH_MM, drawn_lines
 from tests.worlds.tiers import few, slow
 

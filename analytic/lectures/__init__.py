@@ -1,0 +1,1 @@
+"""Theory that lecturers use and no engine is compared with."""

@@ -1,0 +1,154 @@
+"""A kinematic chain: links, and the joints of one freedom that hold two of them each.
+
+::
+
+    four links, four joints          as a graph: links are corners, joints are edges
+
+         o=======o                        1 --- 2
+        /         \\                       |     |
+       o===========o                      0 --- 3
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+from analytic.lectures.chains.canonical import Labelled, canonical
+
+Joint = tuple[int, int]
+"""The two links of a joint, the lower number first."""
+NAMES_OF_LINKS = {2: "binary", 3: "ternary", 4: "quaternary", 5: "quinary", 6: "senary"}
+
+
+@dataclass(frozen=True)
+class Chain:
+    """``links`` many links, numbered from 0, and their simple ``joints``, two links in each.
+
+    ``sliders`` holds the joints that are prismatic; the others are pins.
+    """
+
+    links: int
+    joints: tuple[Joint, ...]
+    sliders: frozenset[Joint] = frozenset()
+
+    @staticmethod
+    def of(links: int, joints: Iterable[Joint], sliders: Iterable[Joint] = ()) -> Chain:
+        """The chain of these joints, in order."""
+        return Chain(links, tuple(sorted(map(_sorted, joints))), frozenset(map(_sorted, sliders)))
+
+    @property
+    def mobility(self) -> int:
+        """W = 3 (n - 1) - 2 p of its links against one of them."""
+        return mobility_by_count(self.links, len(self.joints))
+
+    @property
+    def loops(self) -> int:
+        """Its independent loops."""
+        return len(self.joints) - self.links + 1
+
+    @cached_property
+    def degrees(self) -> tuple[int, ...]:
+        """The joints of each link."""
+        count = Counter(link for joint in self.joints for link in joint)
+        return tuple(count[link] for link in range(self.links))
+
+    @property
+    def assortment(self) -> tuple[int, ...]:
+        """How many links are binary, ternary, and so on."""
+        count = Counter(self.degrees)
+        return tuple(count[k] for k in range(2, max(count, default=2) + 1))
+
+    @cached_property
+    def neighbours(self) -> tuple[frozenset[int], ...]:
+        """The links that share a joint with each."""
+        beside: list[set[int]] = [set() for _ in range(self.links)]
+        for a, b in self.joints:
+            beside[a].add(b)
+            beside[b].add(a)
+        return tuple(map(frozenset, beside))
+
+    def joints_of(self, link: int) -> list[Joint]:
+        """The joints of a link."""
+        return [joint for joint in self.joints if link in joint]
+
+    def labelled(self, ground: int | None = None) -> Labelled:
+        """The canonical labelling, with a link marked as the ground or with none."""
+        marks = [int(link == ground) for link in range(self.links)]
+        kinds = {joint: 2 if joint in self.sliders else 1 for joint in self.joints}
+        return canonical(self.links, kinds, marks)
+
+    def relabelled(self) -> Chain:
+        """The same chain with its links in canonical order: isomorphic chains become equal."""
+        place = self.labelled().labellings[0]
+        return Chain.of(
+            self.links,
+            [(place[a], place[b]) for a, b in self.joints],
+            [(place[a], place[b]) for a, b in self.sliders],
+        )
+
+
+def mobility_by_count(links: int, joints: int) -> int:
+    """W = 3 (n - 1) - 2 p of a planar chain against one of its links (Kutzbach and Gruebler)."""
+    return 3 * (links - 1) - 2 * joints
+
+
+def joints_for(links: int, mobility: int) -> int | None:
+    """The joints of one freedom that give a mobility; None where no whole number does."""
+    twice = 3 * (links - 1) - mobility
+    return twice // 2 if twice >= 0 and twice % 2 == 0 else None
+
+
+def assortments(links: int, mobility: int) -> list[tuple[int, ...]]:
+    """How many binary, ternary, ... links there may be: all that the counts allow.
+
+    They are the solutions of sum n_k = n and sum k n_k = 2 p in whole numbers, with no link of
+    more joints than loops and one (J. Uicker, G. Pennock, J. Shigley, Theory of Machines and
+    Mechanisms, chapter 1).
+    """
+    joints = joints_for(links, mobility)
+    if joints is None or joints < links:
+        return []
+    most = joints - links + 2
+    return sorted(_split(links, 2 * joints, most), key=lambda one: (len(one), one[::-1]))
+
+
+def _split(links: int, ends: int, most: int) -> list[tuple[int, ...]]:
+    """Counts of links with 2 to ``most`` joints that have so many ``ends`` of joints."""
+    if most == 2:
+        return [(links,)] if 2 * links == ends else []
+    ways: list[tuple[int, ...]] = []
+    for count in range(min(links, (ends - 2 * links) // (most - 2)) + 1):
+        ways += (
+            (*rest, *[0] * (most - 2 - len(rest)), count) if count else rest
+            for rest in _split(links - count, ends - most * count, most - 1)
+        )
+    return ways
+
+
+def assortment_in_words(counts: tuple[int, ...]) -> str:
+    """4 binary, 2 ternary."""
+    return ", ".join(
+        f"{count} {NAMES_OF_LINKS.get(k, f'{k}-joint')}"
+        for k, count in enumerate(counts, 2)
+        if count
+    )
+
+
+def has_rigid_part(chain: Chain) -> bool:
+    """Whether links of it, but not all, have by count no freedom among themselves."""
+    mask = [sum(1 << other for other in beside) for beside in chain.neighbours]
+    inside = [0] * (1 << chain.links)  # joints among the links of each set
+    for part in range(1, (1 << chain.links) - 1):
+        low = (part & -part).bit_length() - 1
+        rest = part & (part - 1)
+        inside[part] = inside[rest] + (mask[low] & rest).bit_count()
+        if part.bit_count() > 1 and mobility_by_count(part.bit_count(), inside[part]) <= 0:
+            return True
+    return False
+
+
+def _sorted(joint: Joint) -> Joint:
+    return (joint[0], joint[1]) if joint[0] < joint[1] else (joint[1], joint[0])

@@ -1,0 +1,226 @@
+"""Both polygons of a mechanism at one instant, drawn group by group."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from analytic.lectures.drawings.arms import NodeMotion, Origin
+from analytic.lectures.drawings.body_rates import STILL, BodyRates
+from analytic.lectures.drawings.dyad_polygon import DyadPolygon, Known, dyad_polygon
+from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMechanism, quarter_turn
+from analytic.lectures.drawings.polygon import (
+    DrawingStep,
+    Polygon,
+    Quantity,
+    Vector,
+    end_of,
+    images_of,
+    name_of,
+)
+from analytic.lectures.drawings.vector_equation import (
+    FLAT,
+    ParallelError,
+    Term,
+    Way,
+    crossing,
+    sine_between,
+)
+from analytic.structure.cranked import refuse_other_than_cranked
+from analytic.structure.groups import Bridge, Group, Triad
+from models.array import Array
+from models.scene import GROUND, Scene
+
+QUANTITIES: tuple[Quantity, Quantity] = ("velocity", "acceleration")
+
+
+@dataclass(frozen=True)
+class DrawnPolygons:
+    """The polygons of a mechanism as it stands in ``placement``, and how its bodies move by them.
+
+    ``undetermined`` names the groups that could not be drawn, and why; ``flat`` those whose
+    directions hardly cross, at which angle.
+    """
+
+    placement: PlacedMechanism
+    velocity: Polygon
+    acceleration: Polygon
+    rates: Mapping[str, BodyRates]
+    flat: tuple[str, ...] = ()
+
+    @property
+    def undetermined(self) -> tuple[str, ...]:
+        return self.velocity.undetermined
+
+
+def draw_polygons(scene: Scene, driver: DriverState) -> DrawnPolygons:
+    """The velocity and the acceleration polygon of a scene with its driver in a state.
+
+    Where two directions of a group are parallel (a limit position, a change point) it and what
+    hangs on it is left out and named. Raises as `analytic.kinematics.solve`, and CrankcheckError
+    where the driver is no crank or a group is of class III.
+    """
+    return polygons_of(PlacedMechanism.of(scene, driver))
+
+
+def polygons_of(placement: PlacedMechanism) -> DrawnPolygons:
+    """As `draw_polygons`, of a mechanism that stands already."""
+    refuse_other_than_cranked(placement.scene, "a vector polygon", placement.structure)
+    table = _Table(placement)
+    table.draw_driver()
+    undetermined = [
+        said
+        for part in placement.structure.order
+        if not isinstance(part, Triad) and (said := table.draw(part))
+    ]
+    velocity, acceleration = (
+        Polygon(
+            quantity,
+            tuple(table.steps[quantity]),
+            images_of(placement, table.rates, quantity),
+            tuple(undetermined),
+        )
+        for quantity in QUANTITIES
+    )
+    return DrawnPolygons(placement, velocity, acceleration, table.rates, tuple(table.flat))
+
+
+@dataclass
+class _Table:
+    """What is on the drawing table: the steps of both polygons, and the bodies that are known."""
+
+    placement: PlacedMechanism
+    rates: dict[str, BodyRates] = field(default_factory=lambda: {GROUND: STILL})
+    steps: dict[Quantity, list[DrawingStep]] = field(
+        default_factory=lambda: {q: [] for q in QUANTITIES}
+    )
+    flat: list[str] = field(default_factory=list)
+
+    def draw_driver(self) -> None:
+        """The crank's points from the pole: a^n towards the pivot, a^t across."""
+        scene, state = self.placement.scene, self.placement.driver
+        link, pivot = scene.driver.link, scene.driver_pivot
+        place = self.placement.points[pivot]
+        still = np.zeros(2)
+        self.rates[link] = BodyRates(place, still, still, state.omega, state.alpha)
+        velocity, acceleration, nodes = [], [], {}
+        for point in scene.links[link].points:
+            if point in scene.ground:
+                continue
+            arm = self.placement.points[point] - place
+            subscript = point + pivot
+            whole = Term(subscript, "rotation", state.omega * quarter_turn(arm))
+            parts = [Term(subscript, "normal", -(state.omega**2) * arm)]
+            if state.alpha:
+                parts.append(Term(subscript, "tangential", state.alpha * quarter_turn(arm)))
+            velocity += _laid("velocity", still, [whole])
+            acceleration += _laid("acceleration", still, parts)
+            nodes[point] = place + arm
+        title = f"driver {link}"
+        self._add("velocity", title, velocity, nodes)
+        self._add("acceleration", title, acceleration, nodes)
+
+    def draw(self, part: Group | Bridge) -> str:
+        """A group or a redundant link; what is said where it can not be drawn."""
+        if missing := self._missing(part):
+            return f"{_title(part)}: hangs on {missing}, which is not determined"
+        if isinstance(part, Bridge):
+            self._bridge(part)
+            return ""
+        dyad = dyad_polygon(self.placement, self.rates, part)
+        try:
+            self._draw_dyad(dyad)
+        except ParallelError:
+            told = " and ".join(arm.velocity_way().unknown.direction for arm in dyad.arms)
+            return f"{_title(part)}: both directions ({told}) are parallel"
+        return ""
+
+    def _draw_dyad(self, dyad: DyadPolygon) -> None:
+        ways = [arm.velocity_way() for arm in dyad.arms]
+        velocity, drawn_v = self._crossed("velocity", ways, dyad)
+        ways = [arm.acceleration_way(velocity) for arm in dyad.arms]
+        acceleration, drawn_a = self._crossed("acceleration", ways, dyad)
+        title, node = _title(dyad.group), {dyad.node: velocity}
+        if abs(sine := sine_between(*ways)) < FLAT:
+            told = f"{math.degrees(math.asin(abs(sine))):.2g} deg"
+            self.flat.append(f"{title}: its directions cross at {told}, near a limit position")
+        self.steps["velocity"].append(DrawingStep(title, drawn_v[0], drawn_v[1] | node))
+        node = {dyad.node: acceleration}
+        self.steps["acceleration"].append(DrawingStep(title, drawn_a[0], drawn_a[1] | node))
+        self.rates |= dyad.rates(self.placement, NodeMotion(velocity, acceleration))
+
+    def _crossed(
+        self, quantity: Quantity, ways: list[Way], dyad: DyadPolygon
+    ) -> tuple[Array, tuple[tuple[Vector, ...], dict[str, Array]]]:
+        """The node, and the vectors to it with what they begin at and was not drawn before."""
+        lengths = crossing(*ways)
+        vectors: list[Vector] = []
+        begun: dict[str, Array] = {}
+        for way, length, arm in zip(ways, lengths, dyad.arms, strict=True):
+            if self._is_new(quantity, arm.origin) and arm.origin.name not in begun:
+                begun[arm.origin.name] = way.start
+                whole = Term(arm.origin.name, "whole", way.start)
+                vectors += _laid(quantity, np.zeros(2), [whole])
+            vectors += _laid(quantity, way.start, way.with_length(length))
+        one = ways[0]
+        return one.before + lengths[0] * one.unknown.value, (tuple(vectors), begun)
+
+    def _is_new(self, quantity: Quantity, origin: Origin) -> bool:
+        """Whether a point has no image yet; the ground's is the pole."""
+        drawn = any(origin.name in step.nodes for step in self.steps[quantity])
+        return not drawn and origin.body is not STILL
+
+    def _missing(self, part: Group | Bridge) -> str:
+        """A body that a part hangs on and that is not known."""
+        structure = self.placement.structure
+        if isinstance(part, Bridge):
+            known = Known(self.placement, self.rates)
+            without = [pin for pin in part.pins if not known.has(pin)]
+            return "" if len(part.pins) - len(without) > 1 else f"pin {without[0]}"
+        for kind, joint in zip(part.kind[::2], (part.outer1, part.outer2), strict=True):
+            bodies = structure.pins[joint] if kind == "R" else structure.prismatics[joint]
+            if not any(body in self.rates for body in bodies):
+                return next(body for body in bodies if body not in part.bodies)
+        return ""
+
+    def _bridge(self, part: Bridge) -> None:
+        """A redundant link, by two of its pins."""
+        known = Known(self.placement, self.rates)
+        one, other = [known.pin(pin) for pin in part.pins if known.has(pin)][:2]
+        across = quarter_turn(other.place - one.place)
+        size = float(across @ across)
+        self.rates[part.link] = BodyRates(
+            one.place,
+            one.velocity,
+            one.acceleration,
+            float(across @ (other.velocity - one.velocity)) / size,
+            float(across @ (other.acceleration - one.acceleration)) / size,
+        )
+
+    def _add(
+        self, quantity: Quantity, title: str, vectors: list[Vector], places: Mapping[str, Array]
+    ) -> None:
+        body = self.rates[self.placement.scene.driver.link]
+        nodes = {name: end_of(body, at, quantity) for name, at in places.items()}
+        self.steps[quantity].append(DrawingStep(title, tuple(vectors), nodes))
+
+
+def _laid(quantity: Quantity, start: Array, terms: Iterable[Term]) -> list[Vector]:
+    """Vectors end to end."""
+    vectors = []
+    for term in terms:
+        end = np.asarray(start + term.value)
+        name = name_of(quantity, term.kind, term.subscript)
+        vectors.append(Vector(name, term.kind, start, end, term.direction))
+        start = end
+    return vectors
+
+
+def _title(part: Group | Bridge) -> str:
+    """A group as it is called on the sheet."""
+    if isinstance(part, Bridge):
+        return f"redundant link {part.link}"
+    return f"{part.kind} ({part.first}, {part.second})"

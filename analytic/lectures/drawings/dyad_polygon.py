@@ -1,0 +1,182 @@
+"""The two ways of every Assur group to the image that it is drawn by, and what they say of its
+bodies.
+
+======  ======================================  =========================
+group   the node                                its two ways
+======  ======================================  =========================
+RRR     the inner pin                           about both outer pins
+RRP     the inner pin                           about a pin; along a line
+RPR     the guide's point under the other pin   about a pin; along a line
+PRP     the inner pin                           along two lines
+RPP     the inner body's point under the pin    along two lines
+======  ======================================  =========================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from analytic.lectures.drawings.arms import Arm, NodeMotion, Origin, RotatingArm, SlidingArm
+from analytic.lectures.drawings.body_rates import BodyRates
+from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
+from analytic.structure.groups import Group
+from models.array import Array
+from models.joints import sliding_body
+from models.scene import GROUND
+
+
+@dataclass(frozen=True)
+class DyadPolygon:
+    """A group and its two arms to ``node``."""
+
+    group: Group
+    arms: tuple[Arm, Arm]
+
+    @property
+    def node(self) -> str:
+        return self.arms[0].node
+
+    def rates(self, placement: PlacedMechanism, node: NodeMotion) -> dict[str, BodyRates]:
+        """How the bodies of the group move."""
+        return _RATES[self.group.kind](self, placement, node)
+
+
+class Known:
+    """The bodies that are drawn already."""
+
+    def __init__(self, placement: PlacedMechanism, rates: Mapping[str, BodyRates]) -> None:
+        self.placement, self.rates = placement, rates
+
+    def has(self, point: str) -> bool:
+        """Whether a pin is on one of them."""
+        return any(body in self.rates for body in self.placement.structure.pins[point])
+
+    def pin(self, point: str) -> Origin:
+        """A pin of one of them."""
+        body = next(b for b in self.placement.structure.pins[point] if b in self.rates)
+        return Origin(point, self.placement.points[point], self.rates[body])
+
+    def under(self, point: str, slider: str) -> tuple[Origin, BodyRates]:
+        """The point, under a named one, of the known body of a slider's pair, and that body."""
+        ends = self.placement.structure.prismatics[slider]
+        body = next(b for b in ends if b in self.rates)
+        rates = self.rates[body]
+        name = (
+            "" if body == GROUND else f"{point}({body})"
+        )  # the ground's has its image in the pole
+        return Origin(name, self.placement.points[point], rates), rates
+
+    def rotating(self, outer: str, inner: str) -> RotatingArm:
+        return RotatingArm(self.pin(outer), inner, self.placement.points[inner])
+
+    def sliding(self, inner: str, slider: str, node: str = "") -> SlidingArm:
+        origin, body = self.under(inner, slider)
+        along = self.placement.along(slider)
+        return SlidingArm(origin, node or inner, along, slider, body)
+
+
+def dyad_polygon(
+    placement: PlacedMechanism, rates: Mapping[str, BodyRates], group: Group
+) -> DyadPolygon:
+    """The group with its arms, the bodies that it hangs on being known by their ``rates``."""
+    return DyadPolygon(group, _ARMS[group.kind](Known(placement, rates), group))
+
+
+def _rrr(known: Known, g: Group) -> tuple[Arm, Arm]:
+    return known.rotating(g.outer1, g.inner), known.rotating(g.outer2, g.inner)
+
+
+def _rrp(known: Known, g: Group) -> tuple[Arm, Arm]:
+    return known.rotating(g.outer1, g.inner), known.sliding(g.inner, g.outer2)
+
+
+def _prp(known: Known, g: Group) -> tuple[Arm, Arm]:
+    return known.sliding(g.inner, g.outer1), known.sliding(g.inner, g.outer2)
+
+
+def _rpr(known: Known, g: Group) -> tuple[Arm, Arm]:
+    guide, pin, pivot = _guide_of(known.placement, g)
+    origin = known.pin(pin)
+    node = f"{pin}({guide})"
+    about = RotatingArm(known.pin(pivot), node, origin.place)
+    along = known.placement.along(g.inner)
+    return about, SlidingArm(origin, node, along, g.inner, about)
+
+
+def _rpp(known: Known, g: Group) -> tuple[Arm, Arm]:
+    node = f"{g.outer1}({g.second})"
+    outer = known.sliding(g.outer1, g.outer2, node)
+    along = known.placement.along(g.inner)
+    return SlidingArm(known.pin(g.outer1), node, along, g.inner, outer.frame), outer
+
+
+def _guide_of(placement: PlacedMechanism, g: Group) -> tuple[str, str, str]:
+    """The guide of an RPR group, the pin of what slides on it, and its own pin."""
+    guide = placement.scene.sliders[g.inner].on
+    pins = (g.outer1, g.outer2) if guide == g.second else (g.outer2, g.outer1)
+    return guide, *pins
+
+
+def _rates_rrr(d: DyadPolygon, _: PlacedMechanism, node: NodeMotion) -> dict[str, BodyRates]:
+    one, other = d.arms
+    assert isinstance(one, RotatingArm)
+    assert isinstance(other, RotatingArm)
+    return {d.group.first: one.rates(node), d.group.second: other.rates(node)}
+
+
+def _rates_rrp(
+    d: DyadPolygon, placement: PlacedMechanism, node: NodeMotion
+) -> dict[str, BodyRates]:
+    one, other = d.arms
+    assert isinstance(one, RotatingArm)
+    assert isinstance(other, SlidingArm)
+    return {d.group.first: one.rates(node), d.group.second: _carried(other, one.place, node)}
+
+
+def _rates_rpr(
+    d: DyadPolygon, placement: PlacedMechanism, node: NodeMotion
+) -> dict[str, BodyRates]:
+    about, along = d.arms
+    assert isinstance(about, RotatingArm)
+    assert isinstance(along, SlidingArm)
+    rates, at = about.rates(node), along.origin
+    slides = sliding_body(placement.scene.sliders[d.group.inner])
+    guide = placement.scene.sliders[d.group.inner].on
+    carried = replace(rates, place=at.place, velocity=at.velocity, acceleration=at.acceleration)
+    return {guide: rates, slides: carried}
+
+
+def _rates_prp(
+    d: DyadPolygon, placement: PlacedMechanism, node: NodeMotion
+) -> dict[str, BodyRates]:
+    place = placement.points[d.group.inner]
+    one, other = d.arms
+    assert isinstance(one, SlidingArm)
+    assert isinstance(other, SlidingArm)
+    first, second = _carried(one, place, node), _carried(other, place, node)
+    return {d.group.first: first, d.group.second: second}
+
+
+def _rates_rpp(
+    d: DyadPolygon, placement: PlacedMechanism, node: NodeMotion
+) -> dict[str, BodyRates]:
+    pinned, outer = d.arms
+    assert isinstance(pinned, SlidingArm)
+    assert isinstance(outer, SlidingArm)
+    at = pinned.origin
+    carried = _carried(outer, at.place, node)
+    first = replace(carried, velocity=at.velocity, acceleration=at.acceleration)
+    return {d.group.first: first, d.group.second: carried}
+
+
+def _carried(arm: SlidingArm, place: Array, node: NodeMotion) -> BodyRates:
+    """A body that turns as the line does, by its point at the node."""
+    turning = arm.turning(node)
+    return replace(turning, place=place, velocity=node.velocity, acceleration=node.acceleration)
+
+
+_ARMS = {"RRR": _rrr, "RRP": _rrp, "RPR": _rpr, "PRP": _prp, "RPP": _rpp}
+_RATES = {
+    "RRR": _rates_rrr, "RRP": _rates_rrp, "RPR": _rates_rpr, "PRP": _rates_prp, "RPP": _rates_rpp,
+}  # fmt: skip

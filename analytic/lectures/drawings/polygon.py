@@ -1,0 +1,122 @@
+"""The vector polygons of a mechanism: velocities and accelerations, group by group from the pole.
+
+Every vector is found as one draws it: what is known is laid end to end from the pole, and where two
+directions cross stands the image of the group's inner joint
+(`analytic.lectures.drawings.dyad_polygon`). The rates of the reference do not go in, only its
+positions, so that the two are two computations.
+
+Source: lecture "Phan tich dong hoc", part III: v_B = v_A + v_BA; a_B = a_A + a^n + a^t;
+v_A2 = v_A1 + v_A2A1; a_A2 = a_A1 + a^k + a^r, a^k = 2 omega v_A2A1 turned in the sense of omega.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from analytic.lectures.drawings.body_rates import BodyRates
+from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
+from analytic.lectures.drawings.vector_equation import SUPERSCRIPTS, Kind
+from models.array import Array
+from models.scene import GROUND
+
+Quantity = Literal["velocity", "acceleration"]
+SYMBOLS: Mapping[Quantity, str] = {"velocity": "v", "acceleration": "a"}
+UNITS: Mapping[Quantity, str] = {"velocity": "m/s", "acceleration": "m/s^2"}
+
+
+@dataclass(frozen=True)
+class Vector:
+    """A drawn vector from ``start`` to ``end`` (2,) [m/s or m/s^2], the pole at the origin.
+
+    ``name`` is as in books (v_CB, a^n_CB); ``direction`` says what it is parallel or perpendicular
+    to where its length was found by a crossing, and is empty where all of it was known before.
+    """
+
+    name: str
+    kind: Kind
+    start: Array
+    end: Array
+    direction: str = ""
+
+    @property
+    def value(self) -> Array:
+        return np.asarray(self.end - self.start)
+
+    @property
+    def size(self) -> float:
+        """Its length [m/s or m/s^2]."""
+        return float(np.hypot(*self.value))
+
+
+@dataclass(frozen=True)
+class DrawingStep:
+    """What is drawn at once: the driver, or a group; ``nodes`` are the images that it gives."""
+
+    title: str
+    vectors: tuple[Vector, ...]
+    nodes: Mapping[str, Array]
+
+
+@dataclass(frozen=True)
+class Polygon:
+    """A polygon with its steps in the order of drawing.
+
+    ``images`` holds for every moving link the ends of the vectors of its points, by name (2,):
+    similar to the link, and turned. ``undetermined`` names groups that could not be drawn, and why.
+    """
+
+    quantity: Quantity
+    steps: tuple[DrawingStep, ...]
+    images: Mapping[str, Mapping[str, Array]]
+    undetermined: tuple[str, ...] = ()
+
+    @property
+    def vectors(self) -> tuple[Vector, ...]:
+        return tuple(vector for step in self.steps for vector in step.vectors)
+
+    @property
+    def nodes(self) -> dict[str, Array]:
+        """Every image drawn, by the name of its point; the pole is at the origin."""
+        return {name: at for step in self.steps for name, at in step.nodes.items()}
+
+    @property
+    def ends(self) -> dict[str, Array]:
+        """The ends of the vectors of all points of moving links, and the other images, by name."""
+        of_links = {name: at for image in self.images.values() for name, at in image.items()}
+        return of_links | self.nodes
+
+    @property
+    def largest(self) -> float:
+        """The greatest distance of two of its points [m/s or m/s^2]."""
+        ends = [np.zeros(2), *self.nodes.values()]
+        ends += [end for vector in self.vectors for end in (vector.start, vector.end)]
+        places = np.array(ends)
+        return float(np.linalg.norm(places[:, None] - places[None], axis=-1).max())
+
+
+def name_of(quantity: Quantity, kind: Kind, subscript: str) -> str:
+    """A vector's name: v_CB, a^n_CB."""
+    raised = SUPERSCRIPTS[kind] if quantity == "acceleration" else ""
+    return f"{SYMBOLS[quantity]}{'^' * bool(raised)}{raised}_{subscript}"
+
+
+def images_of(
+    placement: PlacedMechanism, rates: Mapping[str, BodyRates], quantity: Quantity
+) -> dict[str, dict[str, Array]]:
+    """The ends of the vectors of all points of all moving links that are placed."""
+    return {
+        name: {
+            point: end_of(rates[name], placement.points[point], quantity) for point in link.points
+        }
+        for name, link in placement.scene.links.items()
+        if name in rates and name != GROUND
+    }
+
+
+def end_of(body: BodyRates, place: Array, quantity: Quantity) -> Array:
+    """The vector of a body's point at a place, from the pole (2,)."""
+    return body.velocity_at(place) if quantity == "velocity" else body.acceleration_at(place)

@@ -1,0 +1,235 @@
+"""The flywheel that makes a machine run as evenly as wanted: exact, and as the textbooks draw it.
+
+::
+
+    W  work since the start              the steeper line, of slope tan psi_max, touches the closed
+    |        _B__ /                      curve from above; tan psi_min touches it from below. They
+    |      /    |/                       meet in the origin of the energy-mass diagram, which lies a
+    |     (    /|                        flywheel to the left of where the curve's J begins.
+    |    /`--A' |
+    +---------------- J  own reduced moment of inertia
+
+With k = w^2 / 2 of the largest and the smallest speed, w = mean (1 +- delta/2), the flywheel is
+(max(W - k_max J) - min(W - k_min J)) / (k_max - k_min). That is exact where no torque follows the
+speed; else W is that of the very cycle that the flywheel makes, and is found with it.
+
+Sources: F. Wittenbauer, Graphische Dynamik (the tangents); I. I. Artobolevskii, Theory of
+Mechanisms, on flywheels (own inertia at mean speed, after N. I. Mertsalov); problem book "Bai tap
+co hoc may", chapter on real motion and its regulation (surplus of work).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.lectures.regulation.cycle_search import cycle_of, steady_cycle
+from analytic.lectures.regulation.periodic_solution import StallError
+from analytic.lectures.regulation.steady_cycle import SteadyCycle
+from analytic.lectures.regulation.turning_machine import TurningMachine
+from models.array import Array
+from models.errors import CrankcheckError
+
+MOST_TRIES = 40
+MET = 1e-12
+"""How near the coefficient comes to the one that was asked for, over it."""
+LEAST = 1e-6
+"""A coefficient; of a smaller one `MET` is below the rounding of a speed."""
+EVEN = 1e-4
+"""The share of a coefficient that changes no torque."""
+FINER = 20
+"""Places at which a curve is looked at, to the place of the cycle's own samples."""
+
+
+class CoefficientError(CrankcheckError):
+    """A coefficient of fluctuation that no machine is given a flywheel for."""
+
+
+@dataclass(frozen=True)
+class EnergyMass:
+    """Wittenbauer's diagram: the work W since the start [J] over the machine's own reduced moment
+    of inertia J [kg m^2], (T,) each."""
+
+    inertia: Array
+    work: Array
+
+    def tangent(self, slope: float, *, above: bool) -> tuple[float, int]:
+        """Where a line of a slope [J/(kg m^2)] that touches the curve passes J = 0 [J], and the
+        sample that it touches."""
+        height = self.work - slope * self.inertia
+        at = int(np.argmax(height) if above else np.argmin(height))
+        return float(height[at]), at
+
+    def flywheel(self, steep: float, flat: float) -> float:
+        """How far to the left of J = 0 two tangents meet [kg m^2]."""
+        above, below = self.tangent(steep, above=True)[0], self.tangent(flat, above=False)[0]
+        return (above - below) / (steep - flat)
+
+
+@dataclass(frozen=True)
+class Approximations:
+    """Flywheels [kg m^2] as the textbooks have them, with torques as at the mean speed.
+
+    ``by_surplus`` is the surplus of work over delta w^2, less the mean of the machine's own moment
+    of inertia. ``by_own_energy`` takes what of that varies, at the mean speed, off the work; the
+    rest, its least, turns as a flywheel does. ``by_tangents`` are Wittenbauer's, with
+    tan psi = w^2 (1 +- delta) / 2.
+    """
+
+    by_surplus: float
+    by_own_energy: float
+    by_tangents: float
+
+
+@dataclass(frozen=True)
+class WantedFlywheel:
+    """A flywheel of ``inertia_kg_m2`` on the driver, with which the machine runs as ``cycle``, with
+    the coefficient of fluctuation ``delta``; ``bare`` is the cycle without it, or None where the
+    machine stops without."""
+
+    delta: float
+    inertia_kg_m2: float
+    cycle: SteadyCycle
+    bare: SteadyCycle | None
+    approximations: Approximations
+
+    @property
+    def slopes(self) -> tuple[float, float]:
+        """tan psi_max and tan psi_min, half the squares of the extreme speeds [J/(kg m^2)]."""
+        high, low = self.cycle.extreme_speeds_rad_s
+        return 0.5 * high**2, 0.5 * low**2
+
+    @property
+    def diagram(self) -> EnergyMass:
+        """Of the cycle with the flywheel, whose energy is not in it."""
+        return energy_mass(self.cycle)
+
+
+def wanted_flywheel(scene_machine: TurningMachine, delta: float) -> WantedFlywheel:
+    """The flywheel for a coefficient of fluctuation.
+
+    Raises
+    ------
+    CrankcheckError
+        A coefficient that is none, or that the machine keeps without a flywheel; no steady cycle,
+        whatever flywheel it has.
+    """
+    _check(delta)
+    machine, bare = _bare(scene_machine)
+    if bare is not None and bare.delta <= delta:
+        raise CrankcheckError(
+            f"{machine.scene.name}: no flywheel is needed for a coefficient of {delta:g}: without "
+            f"one more it is {bare.delta:.4g} already; give a smaller one"
+        )
+    least = _heavy(machine, delta)
+    near = _classical(least, delta)
+    cycle = _exact(machine, delta, max(near.by_tangents, 1e-9 * least.solution.flywheel))
+    return WantedFlywheel(delta, cycle.solution.flywheel, cycle, bare, near)
+
+
+def _check(delta: float) -> None:
+    if delta == 0.0:
+        why = "an even run takes a flywheel without end; give one above 0, such as 0.02"
+    elif not 0.0 < delta < 2.0:  # or no number
+        why = (
+            "a machine that goes on all the time has one above 0 and below 2, usual ones are 0.005 "
+            "to 0.2"
+        )
+    elif delta < LEAST:
+        why = f"rounding hides so small a fluctuation of speed; give {LEAST:g} or more"
+    else:
+        return
+    raise CoefficientError(f"delta {delta:g}: {why}")
+
+
+def _bare(machine: TurningMachine) -> tuple[TurningMachine, SteadyCycle | None]:
+    """The machine, turning as its loads turn it, and its cycle without a flywheel if there is
+    one."""
+    try:
+        cycle = cycle_of(machine)
+    except StallError:
+        return machine, None
+    return cycle.machine, cycle
+
+
+def _heavy(machine: TurningMachine, delta: float) -> SteadyCycle:
+    """The cycle with so much of a flywheel that the speed hardly changes: torques are those of
+    constant speed."""
+    own = machine.inertia(np.linspace(0.0, machine.cycle_rad, 361))[0]
+    inertia = 10.0 * float(np.max(own)) or 1.0
+    for _ in range(MOST_TRIES):
+        try:
+            cycle = steady_cycle(machine, inertia)
+        except StallError:
+            inertia *= 10.0
+            continue
+        if cycle.delta <= EVEN * delta:
+            return cycle
+        inertia *= 2.0 * cycle.delta / (EVEN * delta)
+    raise CrankcheckError(
+        f"{machine.scene.name}: no flywheel up to {inertia:.3g} kg m^2 makes it run with a "
+        f"coefficient of {delta:g}; look at its loads"
+    )
+
+
+def energy_mass(cycle: SteadyCycle) -> EnergyMass:
+    """The diagram of a cycle; the moment of inertia is without the flywheel that was put on."""
+    u = np.linspace(0.0, cycle.machine.cycle_rad, FINER * (len(cycle.fine) - 1) // 4 + 1)
+    u = np.unique(np.concatenate([u, cycle.solution.cells.borders, [cycle.fastest, cycle.slowest]]))
+    energy = cycle.energy(u)
+    return EnergyMass(cycle.machine.inertia(u)[0], energy - cycle.solution.at_borders[0])
+
+
+def _classical(heavy: SteadyCycle, delta: float) -> Approximations:
+    """The approximations, from torques at constant speed."""
+    diagram, square = energy_mass(heavy), heavy.mean_rad_s**2
+    own = diagram.inertia
+    mean = float(np.mean(heavy.machine.inertia(heavy.fine[:-1])[0]))
+    free = diagram.work - 0.5 * square * own
+    return Approximations(
+        by_surplus=float(np.ptp(diagram.work)) / (delta * square) - mean,
+        by_own_energy=float(np.ptp(free)) / (delta * square) - float(own.min()),
+        by_tangents=diagram.flywheel(0.5 * square * (1.0 + delta), 0.5 * square * (1.0 - delta)),
+    )
+
+
+def _exact(machine: TurningMachine, delta: float, first: float) -> SteadyCycle:
+    """The cycle that has the coefficient, by the secant method: 1 / delta goes nearly straight with
+    the flywheel."""
+    tried: list[tuple[float, SteadyCycle]] = []
+    inertia = first
+    for _ in range(MOST_TRIES):
+        try:
+            cycle = steady_cycle(machine, inertia)
+        except StallError:
+            inertia *= 2.0
+            continue
+        tried.append((inertia, cycle))
+        if abs(cycle.delta / delta - 1.0) <= MET:
+            return cycle
+        if len(tried) > 2 and abs(tried[-1][0] / tried[-2][0] - 1.0) <= 1e-15:
+            return cycle
+        inertia = _next(tried, delta)
+    best = min(
+        (cycle for _, cycle in tried), key=lambda each: abs(each.delta - delta), default=None
+    )
+    if best is not None and abs(best.delta / delta - 1.0) <= 1e-9:
+        return best
+    raise CrankcheckError(
+        f"{machine.scene.name}: no flywheel was found for a coefficient of {delta:g}; give another"
+    )
+
+
+def _next(tried: list[tuple[float, SteadyCycle]], delta: float) -> float:
+    """The next flywheel to try."""
+    inertia, cycle = tried[-1]
+    off = 1.0 / cycle.delta - 1.0 / delta
+    own = cycle.inertia_range[0] - inertia
+    if len(tried) < 2:
+        found = (inertia + own) * cycle.delta / delta - own
+    else:
+        before, other = tried[-2]
+        slope = (1.0 / cycle.delta - 1.0 / other.delta) / (inertia - before)
+        found = inertia - off / slope if slope > 0.0 else 2.0 * inertia
+    return min(max(found, 0.2 * inertia), 5.0 * inertia)

@@ -1,0 +1,142 @@
+"""The cycle that a machine repeats: how fast it is where, how evenly it runs, what does the work.
+
+Source: problem book "Bai tap co hoc may", chapter on real motion and its regulation;
+I. I. Artobolevskii, Theory of Mechanisms, on the regulation of periodic fluctuations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from analytic.lectures.regulation.periodic_solution import PeriodicSolution
+from analytic.lectures.regulation.turning_machine import TurningMachine
+from models.array import Array
+
+NO_WORK = 1e-12
+"""A work of the cycle below this, over all that is turned over in it, is rounding."""
+SAMPLES = 720
+"""Of a turn."""
+
+
+@dataclass(frozen=True)
+class SteadyCycle:
+    """A machine over the cycle that it repeats.
+
+    ``fastest`` and ``slowest`` are the angles u turned since the start at which the speed is
+    largest and smallest [rad]. Torques count along the motion: what is positive drives.
+    """
+
+    solution: PeriodicSolution
+    fastest: float
+    slowest: float
+
+    @property
+    def machine(self) -> TurningMachine:
+        return self.solution.machine
+
+    @cached_property
+    def turnover_j(self) -> float:
+        """The work of all torques over the cycle, whatever its sign: what rounding is measured
+        by."""
+        return self.solution.cells.integral(np.abs(self.solution.torque))
+
+    @cached_property
+    def drive_n_m(self) -> float:
+        """The constant torque of the drive, along the motion; 0 of a machine that is let go."""
+        return self._clean(self.solution.drive * self.machine.cycle_rad) / self.machine.cycle_rad
+
+    def _clean(self, work: float) -> float:
+        """A work of the cycle [J], 0 where it is rounding."""
+        return work if abs(work) > NO_WORK * self.turnover_j else 0.0
+
+    @cached_property
+    def extreme_speeds_rad_s(self) -> tuple[float, float]:
+        """The largest and the smallest speed of the driver."""
+        high, low = self.solution.speed_at(np.array([self.fastest, self.slowest]))
+        return float(high), float(low)
+
+    @property
+    def mean_rad_s(self) -> float:
+        """Half the sum of the largest and the smallest speed."""
+        return 0.5 * sum(self.extreme_speeds_rad_s)
+
+    @property
+    def delta(self) -> float:
+        """The coefficient of fluctuation, (w_max - w_min) / mean."""
+        high, low = self.extreme_speeds_rad_s
+        return (high - low) / self.mean_rad_s
+
+    @cached_property
+    def period_s(self) -> float:
+        """How long a cycle takes."""
+        return self.solution.cells.integral(1.0 / self.solution.speed)
+
+    @property
+    def time_mean_rad_s(self) -> float:
+        """The angle of a cycle over its time."""
+        return self.machine.cycle_rad / self.period_s
+
+    @property
+    def settling(self) -> float:
+        """What a change of the energy at the start becomes in a cycle: below 1 it dies away; 1
+        where no torque follows the speed."""
+        return self.solution.gain
+
+    @cached_property
+    def works_j(self) -> Mapping[str, float]:
+        """The work of a cycle by what does it: each load, spring and friction by its key in the
+        file, weights, and the drive."""
+        cells, speed = self.solution.cells, self.solution.speed
+        torques = self.machine.torques_by_source(cells.nodes, speed)
+        works = {n: self._clean(cells.integral(torque)) for n, torque in torques.items()}
+        if self.drive_n_m:
+            works["drive"] = self.drive_n_m * self.machine.cycle_rad
+        return works
+
+    @property
+    def work_j(self) -> float:
+        """What drives in a cycle: the sum of the works that are positive."""
+        return sum(work for work in self.works_j.values() if work > 0.0)
+
+    @property
+    def power_w(self) -> float:
+        """The mean power of what drives."""
+        return self.work_j / self.period_s
+
+    @cached_property
+    def surplus_j(self) -> float:
+        """The surplus of work: by how much the work since the start is larger where it is largest
+        than where it is smallest."""
+        work = self.energy(
+            self.solution.cells.borders, self.solution.cells.nodes.ravel(), self.fine
+        )
+        return float(np.ptp(work))
+
+    @cached_property
+    def inertia_range(self) -> tuple[float, float]:
+        """The smallest and the largest reduced moment of inertia, with flywheels [kg m^2]."""
+        own = self.solution.inertia_at(self.fine)
+        return float(own.min()), float(own.max())
+
+    @cached_property
+    def fine(self) -> Array:
+        """Angles u over the cycle [rad], both ends included."""
+        count = SAMPLES * max(1, round(self.machine.cycle_rad / (2.0 * np.pi)))
+        return np.linspace(0.0, self.machine.cycle_rad, count + 1)
+
+    def energy(self, *angles: Array) -> Array:
+        """The kinetic energy at angles u [J]."""
+        return self.solution.energy_at(np.concatenate(angles))
+
+    def time_s(self, u: Array) -> Array:
+        """When the driver has turned by angles u."""
+        return self.solution.cells.integrated(1.0 / self.solution.speed, u)
+
+    def driver_rad(self, u: float) -> float:
+        """The driver's own angle, in [0, 2 pi) of the first turn, on into the next ones."""
+        theta = float(self.machine.theta(np.array(u)))
+        return float(np.mod(theta, self.machine.cycle_rad))

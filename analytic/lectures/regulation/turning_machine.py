@@ -1,0 +1,140 @@
+"""A machine over the angle that its driver has turned: reduced moment of inertia, and torques.
+
+The angle u counts along the motion, and so do torques: positive ones drive::
+
+    d/du (J w^2 / 2) = M(u, w)          theta = start + way u,   way = 1 or -1
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from analytic.dyads.chunk import Chunk
+from analytic.forces.bounded import Bounded
+from analytic.forces.reduced_machine import inertia_and_slope, loaded_bodies
+from analytic.forces.rubbing import put_constant_friction, rubbing_joints
+from analytic.forces.springs import apply_springs
+from analytic.forces.virtual_power import torque_by_power
+from analytic.kinematics import driven_chunk, unit_chunk
+from analytic.lectures.regulation.cycle_angle import cycle_angle
+from analytic.structure.mobility import analyse
+from models.array import Array
+from models.characteristics import Constant
+from models.errors import CrankcheckError
+from models.loads import Load
+from models.scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class TurningMachine:
+    """A scene whose driver turns on, from ``start_rad`` by ``cycle_rad`` in a cycle, to the side
+    ``way``."""
+
+    scene: Scene
+    way: float
+    start_rad: float
+    cycle_rad: float
+    _steady: Scene = field(init=False, repr=False)
+    _rated: Scene = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        scene = self.scene
+        fast = {n: load for n, load in scene.loads.items() if follows_speed(load)}
+        slow = {n: load for n, load in scene.loads.items() if n not in fast}
+        dampers = {n: replace(s, rate=0.0) for n, s in scene.springs.items() if s.damping}
+        springs = {n: replace(s, damping=0.0) for n, s in scene.springs.items() if s.rate}
+        steady = replace(scene, loads=slow, springs=springs)
+        rated = replace(scene, loads=fast, springs=dampers, friction={}, gravity_m_s2=(0.0, 0.0))
+        object.__setattr__(self, "_steady", steady)
+        object.__setattr__(self, "_rated", rated)
+
+    @staticmethod
+    def of(scene: Scene) -> TurningMachine:
+        """That of a scene; to the side that its driver starts to, and left-handed from rest.
+        Raises CrankcheckError as `cycle_angle`, and for elastic links."""
+        if scene.elastic:
+            raise CrankcheckError(
+                f"{scene.name}: {next(iter(scene.elastic))} is elastic; the steady cycle of a "
+                "machine, and its flywheel, are those of rigid links: leave [elastic.LINK] out"
+            )
+        whole = cycle_angle(scene)
+        theta, omega, _ = scene.driver.law.at(np.zeros(1))
+        return TurningMachine(scene, math.copysign(1.0, omega[0]), float(theta[0]), whole)
+
+    @property
+    def is_rated(self) -> bool:
+        """Whether any torque follows the speed."""
+        return bool(self._rated.loads or self._rated.springs)
+
+    def theta(self, u: Array) -> Array:
+        """The driver's angle [rad]."""
+        return self.start_rad + self.way * u
+
+    def inertia(self, u: Array) -> tuple[Array, Array]:
+        """J and dJ/du [kg m^2]. Raises CrankcheckError where J has no bound."""
+        pair = inertia_and_slope(self.scene, self._unit(u.ravel()))
+        inertia, slope = (each.reshape(u.shape) for each in pair)
+        if (off := ~(np.isfinite(inertia) & np.isfinite(slope))).any():
+            where = math.degrees(self.theta(u)[off].ravel()[0]) % 360.0
+            raise CrankcheckError(
+                f"{self.scene.name}: the driver stands in a dead point at {where:.6g} deg, where "
+                "its moment of inertia grows without bound; drive another link"
+            )
+        return inertia, self.way * slope
+
+    def mechanism(self, u: Array) -> Chunk:
+        """The positions (T,), with rates and accelerations per unit of the driver's rate."""
+        return self._unit(u)
+
+    def steady_torque(self, u: Array) -> Array:
+        """The torque of all that does not follow the speed [N m]."""
+        return self._torque(self._steady, u, 1.0)
+
+    def rated_torque(self, u: Array, speed: Array) -> Array:
+        """The torque of all that follows the speed, at speeds [rad/s] of the driver, above 0.
+        Raises CrankcheckError for a table that does not reach as far."""
+        if not self.is_rated:
+            return np.zeros_like(u)
+        return self._torque(self._rated, u, speed)
+
+    def torque(self, u: Array, speed: Array) -> Array:
+        """M [N m]."""
+        return self.steady_torque(u) + self.rated_torque(u, speed)
+
+    def torques_by_source(self, u: Array, speed: Array) -> dict[str, Array]:
+        """The torque of weights, and of each load, spring and friction, by its key in the file."""
+        scene = self.scene
+        bare = replace(scene, loads={}, springs={}, friction={}, gravity_m_s2=(0.0, 0.0))
+        parts = {f"loads.{n}": replace(bare, loads={n: x}) for n, x in scene.loads.items()}
+        parts |= {f"springs.{n}": replace(bare, springs={n: x}) for n, x in scene.springs.items()}
+        parts |= {
+            f"friction.{n}": replace(bare, friction={n: x}) for n, x in scene.friction.items()
+        }
+        if any(scene.gravity_m_s2):
+            parts["weights"] = replace(bare, gravity_m_s2=scene.gravity_m_s2)
+        return {name: self._torque(part, u, speed) for name, part in parts.items()}
+
+    def _unit(self, u: Array) -> Chunk:
+        return unit_chunk(self.scene, self.theta(u), bound=False)
+
+    def _torque(self, part: Scene, u: Array, speed: Array | float) -> Array:
+        """The torque of what acts in ``part``, the same mechanism with less that acts on it."""
+        flat = u.ravel()
+        rate = self.way * np.broadcast_to(speed, u.shape).ravel()
+        chunk = driven_chunk(self.scene, self.theta(flat), rate)
+        free = loaded_bodies(part, chunk, np.zeros_like(flat))
+        apply_springs(part, chunk, free)
+        if part.friction:
+            displaced = {name: Bounded(one.s, None) for name, one in chunk.sliders.items()}
+            joints = rubbing_joints(part, analyse(self.scene), chunk, free, displaced)
+            put_constant_friction(joints, free)
+        found = -self.way * np.asarray(torque_by_power(free, self._unit(flat), chunk).value)
+        return np.broadcast_to(found, flat.shape).reshape(u.shape)
+
+
+def follows_speed(load: Load) -> bool:
+    """Whether a load depends on how fast the machine goes."""
+    return load.over in ("speed", "omega") and not isinstance(load.characteristic, Constant)

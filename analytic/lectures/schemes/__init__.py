@@ -1,0 +1,1 @@
+"""Mobility of schemes before dimensions, planar and spatial, and classes of joints."""

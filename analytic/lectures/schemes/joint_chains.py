@@ -1,0 +1,102 @@
+"""Each joint as a row of turns and displacements, one after the other, that its freedoms make.
+
+The pose of the second link in the first one is exp(s1 q1) exp(s2 q2) ..., with the screws s where
+they are in the drawn position, and that is exact however far the joint moves. Higher pairs are
+given by what is true of them over more than the instant: a planar contact by the centres of
+curvature of its two profiles (exact to the second order, for circles and straight lines always),
+gears by the line of centres, about whose two ends they roll.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.lectures.schemes.screws import across, rotation, translation
+from models.array import Array
+from models.lectures.scheme import SchemeJoint
+
+UP = (0.0, 0.0, 1.0)
+"""The normal of the plane of a planar scheme."""
+
+
+@dataclass(frozen=True)
+class Element:
+    """A screw, and how much of the freedom numbered ``freedom`` it makes."""
+
+    twist: Array
+    freedom: int
+    factor: float = 1.0
+
+
+def chain_of(joint: SchemeJoint) -> tuple[Element, ...]:
+    """The row of screws that a joint leaves, from the first link to the second."""
+    found = _KINDS[joint.kind](joint)
+    if joint.kind == "gear":
+        _, _, roll = found
+        first, second = joint.radii
+        # About the line of centres the second gear turns r1 / r2 as much as the first one.
+        return (Element(found[0], 0), Element(found[1], 1), Element(roll, 0, first / second))
+    return tuple(Element(twist, freedom) for freedom, twist in enumerate(found))
+
+
+def curvature_centres(joint: SchemeJoint) -> tuple[Array | None, Array | None]:
+    """The centres of curvature of a planar contact's profiles, None for a straight one."""
+    at, normal = np.array(joint.at), np.array(joint.axes[0])
+    first, second = joint.radii
+    return (
+        None if math.isinf(first) else at - first * normal,
+        None if math.isinf(second) else at + second * normal,
+    )
+
+
+def gear_centres(joint: SchemeJoint) -> tuple[Array, Array]:
+    """The centres of two gears."""
+    at = np.array(joint.at)
+    return at, at + abs(sum(joint.radii)) * np.array(joint.axes[0])
+
+
+def _contact(joint: SchemeJoint) -> list[Array]:
+    tangent = np.cross(UP, joint.axes[0])
+    return [
+        translation(tangent) if centre is None else rotation(centre, UP)
+        for centre in curvature_centres(joint)
+    ]
+
+
+def _gear(joint: SchemeJoint) -> list[Array]:
+    first, second = gear_centres(joint)
+    return [rotation(first, UP), translation(joint.axes[0]), rotation(second, UP)]
+
+
+def _turns(joint: SchemeJoint) -> list[Array]:
+    return [rotation(joint.at, axis) for axis in np.eye(3)]
+
+
+def _slides(normal: tuple[float, float, float]) -> list[Array]:
+    return [translation(axis) for axis in across(normal)]
+
+
+_KINDS: Mapping[str, Callable[[SchemeJoint], list[Array]]] = {
+    "pin": lambda j: [rotation(j.at, UP)],
+    "slider": lambda j: [translation(j.axes[0])],
+    "contact": _contact,
+    "gear": _gear,
+    "revolute": lambda j: [rotation(j.at, j.axes[0])],
+    "prismatic": lambda j: [translation(j.axes[0])],
+    "screw": lambda j: [rotation(j.at, j.axes[0], j.lead / (2.0 * math.pi))],
+    "cylindrical": lambda j: [translation(j.axes[0]), rotation(j.at, j.axes[0])],
+    "universal": lambda j: [rotation(j.at, j.axes[0]), rotation(j.at, j.axes[1])],
+    "spherical": _turns,
+    "planar": lambda j: [*_slides(j.axes[0]), rotation(j.at, j.axes[0])],
+    "ball-in-tube": lambda j: [translation(j.axes[0]), *_turns(j)],
+    "cylinder-on-plane": lambda j: [
+        *_slides(j.axes[1]),
+        rotation(j.at, j.axes[1]),
+        rotation(j.at, j.axes[0]),
+    ],
+    "ball-on-plane": lambda j: [*_slides(j.axes[0]), *_turns(j)],
+}

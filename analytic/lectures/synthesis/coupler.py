@@ -1,0 +1,165 @@
+"""A body carried by the coupler of a four-bar through two, three, four or five positions."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+
+from analytic.lectures.synthesis.burmester import five_positions, four_positions
+from analytic.lectures.synthesis.design import Proposal
+from analytic.lectures.synthesis.driving_dyad import swings_little, with_driving_dyad
+from analytic.lectures.synthesis.fourbar_draft import PIVOTS, CarriedBody
+from analytic.lectures.synthesis.guided_body import (
+    Dyad,
+    about_bisector,
+    about_circumcentre,
+    about_given_pivot,
+)
+from analytic.lectures.synthesis.guiding_steps import curve_steps, guiding_steps
+from analytic.lectures.synthesis.pose import Pose, refuse_coinciding
+from analytic.lectures.synthesis.sound_pairs import sound_pairs
+from models.errors import CrankcheckError
+from models.lectures.tasks.coupler import CouplerTask
+
+DISTANCES = (0.5, 1.0, 2.0)
+"""Of two positions, where a task is silent: fixed pivots so far from the middles of the ways, over
+the longest way, on either side."""
+CURVE_DYADS = 240
+"""So many of Burmester's curves are paired with each other."""
+CHOSEN = 40
+"""Pairs of four positions that are examined, the best transmitting in the positions first."""
+FALLEN_BACK = 3
+"""Pairs that are examined where all have a defect."""
+Pair = tuple[Dyad, Dyad]
+
+
+def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
+    """The four-bars of a task, and how many pairs of cranks were looked at.
+
+    Raises
+    ------
+    CrankcheckError
+        Positions that coincide; a point that stays, or runs on a line; no crank that holds the
+        body in all positions.
+    """
+    body = carried_body(task)
+    size = max(abs(b.point - a.point) for a, b in itertools.combinations(body.poses, 2))
+    size += max(map(abs, body.points.values()))
+    refuse_coinciding(body.poses, size)
+    count = len(body.poses)
+    if count == 2:
+        pairs = list(_two(task, body))
+    elif count == 3:
+        pairs = [_three(task, body)]
+    else:
+        return _many(task, body)
+    proposals = [
+        proposal for pair, chosen in pairs for proposal in _driven(task, body, pair, chosen)
+    ]
+    if task.driving_dyad:
+        proposals = [
+            six for four in proposals if swings_little(four) for six in with_driving_dyad(four)
+        ]
+        if not proposals:
+            raise CrankcheckError(
+                f"{task.name}: no driving dyad: the input link of every four-bar turns by half a "
+                "turn between the positions; take other distances_m"
+            )
+    return proposals, len(proposals)
+
+
+def carried_body(task: CouplerTask) -> CarriedBody:
+    """The body of a task in its positions."""
+    poses = tuple(Pose(point, angle) for point, angle in task.poses)
+    return CarriedBody(task.name, task.source, poses, task.own_points)
+
+
+def _moving(task: CouplerTask, body: CarriedBody) -> tuple[complex, complex]:
+    """The two moving pivots in the body's frame."""
+    if task.moving_m is not None:
+        one, other = (body.poses[0].back(complex(*place)) for place in task.moving_m)
+    else:
+        one, other = body.points.values()
+    if one == other:
+        raise CrankcheckError(f"{task.name}: the two moving pivots coincide; take two points apart")
+    return one, other
+
+
+def _two(task: CouplerTask, body: CarriedBody) -> Iterator[tuple[Pair, dict[str, str]]]:
+    """Two positions: the fixed pivots anywhere on the bisectors."""
+    moving = _moving(task, body)
+    ways = [abs(body.poses[1].at(z) - body.poses[0].at(z)) for z in moving]
+    if task.distances_m is not None:
+        choices = [(task.distances_m[0], task.distances_m[1])]
+    else:
+        steps = [sign * share * max(ways) for share in DISTANCES for sign in (1.0, -1.0)]
+        choices = list(itertools.product(steps, steps))
+    for first, second in choices:
+        pair = (
+            about_bisector(body.poses, moving[0], first),
+            about_bisector(body.poses, moving[1], second),
+        )
+        told = {f"{pivot} from the middle": f"{distance:.6g} m"
+                for pivot, distance in zip(PIVOTS, (first, second), strict=True)}  # fmt: skip
+        yield pair, told
+
+
+def _three(task: CouplerTask, body: CarriedBody) -> tuple[Pair, dict[str, str]]:
+    """Three positions: from moving pivots by circles, from fixed ones by inversion."""
+    if task.fixed_m is not None:
+        one, other = (
+            about_given_pivot(body.poses, complex(*place), letter)
+            for place, letter in zip(task.fixed_m, PIVOTS, strict=True)
+        )
+    else:
+        one, other = (
+            about_circumcentre(body.poses, moving, body.letter(moving, which))
+            for which, moving in enumerate(_moving(task, body))
+        )
+    return (one, other), {}
+
+
+def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
+    """Four positions: pairs along Burmester's curves; five: of all cranks that there are."""
+    is_four = len(body.poses) == 4
+    curves = four_positions(body.poses) if is_four else []
+    dyads = _wished(task, curves) if is_four else five_positions(body.poses)
+    if len(dyads) < 2:
+        raise CrankcheckError(
+            f"{task.name}: {len(dyads)} cranks hold the body in all {len(body.poses)} positions "
+            "(real Burmester pairs), and a four-bar needs two; change a position, or leave one out "
+            "and take one of the curves of the other four"
+        )
+    if curves:
+        sound = sound_pairs(body.poses, dyads)
+        count = min(CHOSEN, sound.sound) or FALLEN_BACK
+        chosen = [(dyads[i], dyads[k]) for i, k in sound.pairs[:count].tolist()]
+        steps = tuple(curve_steps(body, curves))
+        return [body.four_bar(pair, steps=steps) for pair in chosen], len(sound.pairs)
+    pairs = list(itertools.combinations(dyads, 2))
+    proposals = [one for pair in pairs for one in _driven(task, body, pair, {})]
+    return proposals, len(proposals)
+
+
+def _wished(task: CouplerTask, pieces: Sequence[Sequence[Dyad]]) -> list[Dyad]:
+    """Cranks along the curves: those whose fixed pivots stand where they are wished, if two do."""
+    every = [dyad for piece in pieces for dyad in piece]
+    region = task.pivots_in
+    inside = [dyad for dyad in every if region is not None and region.holds(dyad.fixed)]
+    return _spread(inside if len(inside) > 1 else every, CURVE_DYADS)
+
+
+def _spread(every: Sequence[Dyad], count: int) -> list[Dyad]:
+    """About so many cranks, evenly."""
+    return list(every[:: max(1, len(every) // count)])
+
+
+def _driven(
+    task: CouplerTask, body: CarriedBody, pair: Pair, chosen: dict[str, str]
+) -> Iterator[Proposal]:
+    """The four-bar of a pair, driven at the sides that are asked for."""
+    steps = tuple(guiding_steps(body, pair, inverted=task.fixed_m is not None))
+    if task.driver != "second":
+        yield body.four_bar(pair, chosen=chosen, steps=steps)
+    if task.driver != "first":
+        yield body.four_bar(pair, driven=1, chosen=chosen, steps=steps)

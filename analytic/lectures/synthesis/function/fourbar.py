@@ -1,0 +1,181 @@
+"""Four-bars that meet 3, 4 or 5 points of a function: Freudenstein's equation.
+
+::
+
+               B            a = O2 A at phi (input), b = A B, c = O4 B at psi (output), d = O2 O4.
+         b  ./  \\           That b keeps its length is
+       A ./      \\ c
+      a /         \\  psi        k1 cos psi - k2 cos phi + k3 = cos(phi - psi),
+       /phi        \\
+     O2 ----- d ----O4      k1 = d/a,  k2 = d/c,  k3 = (a^2 - b^2 + c^2 + d^2)/(2 a c).
+
+Source: F. Freudenstein, Approximate synthesis of four-bar linkages, Transactions of the ASME 77
+(1955), pages 853 to 861; R. S. Hartenberg and J. Denavit, Kinematic Synthesis of Linkages, chapter
+10.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.lectures.synthesis.function.generator import Generator, opposite, toggled
+from analytic.lectures.synthesis.function.pencil import one_vector, vectors_of
+from models.array import Array
+
+NOTHING = 1e-14
+"""Of a vector: an end of it that is shorter is none, and the lengths over it are without end."""
+Numbers = tuple[float, float, float]
+Found = tuple[Numbers, float, float]
+"""k1, k2, k3 with their signs, and the starts of input and output [rad]."""
+
+
+@dataclass(frozen=True)
+class FourBarGenerator(Generator):
+    """A four-bar in units of its ground d."""
+
+    @property
+    def positive(self) -> FourBarGenerator:
+        """In Freudenstein's equation k3 changes its sign with that of either length."""
+        k1, k2, k3 = self.k
+        return FourBarGenerator(
+            (abs(k1), abs(k2), k3 if k1 * k2 > 0.0 else -k3),
+            opposite(self.input_start) if k1 < 0.0 else self.input_start,
+            opposite(self.output_start) if k2 < 0.0 else self.output_start,
+            toggled(self.turned, ("input",) * (k1 < 0.0) + ("output",) * (k2 < 0.0)),
+        )
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """a, b and c."""
+        k1, k2, k3 = self.k
+        if k1 == 0.0 or k2 == 0.0:
+            return math.inf, math.inf, math.inf
+        a, c = 1.0 / k1, 1.0 / k2
+        return abs(a), math.sqrt(max(a**2 + c**2 + 1.0 - 2.0 * a * c * k3, 0.0)), abs(c)
+
+    def _sides(self, phi: Array) -> tuple[Array, Array, Array]:
+        """Those of p cos psi + q sin psi = r."""
+        k1, k2, k3 = self.k
+        return k1 - np.cos(phi), -np.sin(phi), k2 * np.cos(phi) - k3
+
+    def discriminant(self, phi: Array) -> Array:
+        p, q, r = self._sides(phi)
+        return np.asarray(p**2 + q**2 - r**2)
+
+    def output(self, phi: Array, sign: float | Array) -> Array:
+        p, q, r = self._sides(phi)
+        root = self.discriminant(phi)
+        half = np.arctan2(np.sqrt(np.where(root >= 0.0, root, np.nan)), r)
+        return np.asarray(np.arctan2(q, p) + sign * half)
+
+    def slopes(self, phi: Array, output: Array) -> Array:
+        p, q, _ = self._sides(phi)
+        over = p * np.sin(output) - q * np.cos(output)  # less the derivative by psi
+        by_phi = np.sin(phi - output) + self.k[1] * np.sin(phi)
+        with np.errstate(divide="ignore", invalid="ignore"):  # in a dead point there are none
+            return np.stack([np.cos(output), -np.cos(phi), np.ones_like(phi), by_phi]) / over
+
+    def apart(self, asked: Array, output: Array) -> Array:
+        off = asked - output
+        return np.asarray(off - math.tau * np.round(off / math.tau))
+
+
+def fourbars(
+    turns: Array, ways: Array, input_start: float | None = None, output_start: float | None = None
+) -> list[Generator]:
+    """All four-bars whose input and output go through precision points.
+
+    Parameters
+    ----------
+    turns, ways : Array
+        The angles of input and output from their starts [rad], (n,).
+    input_start, output_start : float or None
+        The starts [rad]: both of three points, one of four, none of five; the others are found.
+
+    Returns
+    -------
+    list of Generator
+        At most one of three points, two of four, three of five; none with an infinite length, or
+        without one. That a start was turned is told only of a given one.
+
+    Raises
+    ------
+    CrankcheckError
+        Points that a whole family of four-bars meets.
+    """
+    if input_start is not None and output_start is not None:
+        found = [_of_both(turns, ways, input_start, output_start)]
+    elif input_start is not None:
+        found = _of_input(turns, ways, input_start)
+    elif output_start is not None:
+        found = _of_output(turns, ways, output_start)
+    else:
+        found = _of_none(turns, ways)
+    return [FourBarGenerator(*each).positive for each in found if all(np.isfinite(each[0]))]
+
+
+def _of_both(turns: Array, ways: Array, phi0: float, psi0: float) -> Found:
+    """Linear in k1, k2, k3."""
+    phi, psi = phi0 + turns, psi0 + ways
+    rows = np.stack([np.cos(psi), -np.cos(phi), np.ones_like(phi), -np.cos(phi - psi)], axis=1)
+    x = one_vector(rows)
+    return over((x[0], x[1], x[2]), x[3]), phi0, psi0
+
+
+def _of_input(turns: Array, ways: Array, phi0: float) -> list[Found]:
+    """Linear in k1 (cos, sin) psi0, k2, k3 and (cos, sin) psi0."""
+    phi = phi0 + turns
+    left = [np.cos(ways), -np.sin(ways), -np.cos(phi), np.ones_like(phi)]
+    rows = np.stack([*left, -np.cos(phi - ways), -np.sin(phi - ways)], axis=1)
+    every = vectors_of(rows, lambda x: float(x[0] * x[5] - x[1] * x[4]), 2)
+    found = []
+    for x in every:
+        psi0, size = math.atan2(x[5], x[4]), math.hypot(x[5], x[4])
+        k1 = x[0] * math.cos(psi0) + x[1] * math.sin(psi0)
+        found.append((over((k1, x[2], x[3]), size), phi0, psi0))
+    return found
+
+
+def _of_output(turns: Array, ways: Array, psi0: float) -> list[Found]:
+    """Seen from the other side, the output half a turn on is the input of the same equation, and
+    k1 and k2 change their places."""
+    changed = _of_input(ways, turns, opposite(psi0))
+    return [((k2, k1, k3), opposite(phi0), psi0) for (k1, k2, k3), _, phi0 in changed]
+
+
+def _of_none(turns: Array, ways: Array) -> list[Found]:
+    """Linear in k1 (cos, sin) psi0, k2 (cos, sin) phi0, k3 and (cos, sin)(phi0 - psi0): that these
+    angles belong together is a cubic."""
+    left = [np.cos(ways), -np.sin(ways), -np.cos(turns), np.sin(turns), np.ones_like(turns)]
+    rows = np.stack([*left, -np.cos(turns - ways), np.sin(turns - ways)], axis=1)
+    found = []
+    for x in vectors_of(rows, _belonging, 3):
+        of_psi, of_phi, between = _ends(x)
+        # Of the two signs of the vector, that with which both lengths are positive.
+        sign = math.copysign(1.0, (of_phi * (of_psi * between).conjugate()).real)
+        k = over((abs(of_psi), abs(of_phi), sign * x[4]), abs(between))
+        found.append((k, cmath.phase(sign * of_phi), cmath.phase(sign * of_psi)))
+    return found
+
+
+def _belonging(x: Array) -> float:
+    """The sine of the angle between two directions that are one, times three sizes."""
+    of_psi, of_phi, between = _ends(x)
+    return (of_phi * (of_psi * between).conjugate()).imag
+
+
+def _ends(x: Array) -> tuple[complex, complex, complex]:
+    """k1 exp(i psi0), k2 exp(i phi0) and exp(i (phi0 - psi0)), times one number."""
+    return complex(x[0], x[1]), complex(x[2], x[3]), complex(x[5], x[6])
+
+
+def over(k: Numbers, size: float) -> Numbers:
+    """Numbers over one that may be nothing: then they are infinite."""
+    if abs(size) <= NOTHING * max(map(abs, k)):
+        return math.inf, math.inf, math.inf
+    k1, k2, k3 = (float(each / size) for each in k)
+    return k1, k2, k3

@@ -1,0 +1,136 @@
+"""Four-bars that lead through a path, as fits leave them: sorted out, and with their cognates."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import isotonic_regression  # type: ignore[import-untyped]  # ships no stubs
+
+from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, cognates, real_size
+from analytic.lectures.synthesis.path.fit import TOO_LARGE, Fitted
+from analytic.lectures.synthesis.path.task import PathTask
+from analytic.lectures.synthesis.path.unit_four_bar import least_sine
+from models.array import Array
+
+APART = 0.02
+"""Of its size: two mechanisms that differ by less, in each of their lengths and places, are one."""
+STEP = 1e-6
+"""The crank's angle [rad] between points that are nearest to one place of the curve, or change
+their order there, as noisy points do."""
+EQUAL = 6
+"""Decimals of the error over the path's radius in which candidates are told apart."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A four-bar, its crank's angles in the points [rad], and their distances from them [m]."""
+
+    four_bar: CouplerCurve
+    crank_rad: Array
+    off_m: Array
+
+    @property
+    def rms_m(self) -> float:
+        """The root of the mean square of the distances [m]."""
+        return float(np.sqrt(np.mean(self.off_m**2)))
+
+    @property
+    def largest_m(self) -> float:
+        """The largest distance [m]."""
+        return float(np.max(self.off_m))
+
+    @property
+    def least_sine(self) -> float:
+        """The least sine of the transmission angle: over a turn, or between the angles."""
+        four_bar = self.four_bar
+        phi = self.crank_rad - cmath.phase(four_bar.o4 - four_bar.o2)
+        low, high = float(np.min(phi)), float(np.max(phi))
+        if four_bar.family != "limited":
+            low, high = 0.0, math.pi  # a turn is the same on both sides of the ground
+        return least_sine(four_bar.shape, low, high)
+
+    def same_as(self, other: Candidate) -> bool:
+        """Whether two are one mechanism, driven at the same pivot."""
+        one, two = _numbers(self.four_bar), _numbers(other.four_bar)
+        near = bool(np.max(np.abs(one - two)) < APART * max(np.max(np.abs(one[2:])), 1e-300))
+        return near and self.four_bar.sign == other.four_bar.sign
+
+
+def _numbers(one: CouplerCurve) -> Array:
+    """Its places, from the pivot, and its lengths [m]."""
+    return np.array(
+        [
+            one.o2.real,
+            one.o2.imag,
+            one.o4.real - one.o2.real,
+            one.o4.imag - one.o2.imag,
+            one.crank,
+            one.coupler,
+            one.rocker,
+            one.arm.real,
+            one.arm.imag,
+        ]
+    )
+
+
+def candidates(fits: Iterable[Fitted], task: PathTask) -> list[Candidate]:
+    """The distinct four-bars of fits whose crank leads through the points in their order, and those
+    of their cognates that do; the nearest to the points first, of equal ones that of the better
+    transmission angle."""
+    own = [each for fit in fits for each in _of_fit(fit, task)]
+    every = [each for one in distinct(own, task) for each in (one, *_cognates(one, task))]
+    return distinct(every, task)
+
+
+def distinct(every: Sequence[Candidate], task: PathTask) -> list[Candidate]:
+    """Each mechanism once, in order."""
+    kept: list[Candidate] = []
+
+    def order(one: Candidate) -> tuple[float, float]:
+        return round(one.rms_m / task.radius_m, EQUAL), -one.least_sine
+
+    for one in sorted(every, key=order):
+        if not any(one.same_as(other) for other in kept):
+            kept.append(one)
+    return kept
+
+
+def _of_fit(fit: Fitted, task: PathTask) -> Iterator[Candidate]:
+    """The four-bar of a fit, if its crank leads through the points."""
+    four_bar, angles = real_size(fit)
+    own = four_bar.moved(complex(task.radius_m), task.middle)
+    yield from _leading(own, angles if task.is_timed else in_order(angles), task)
+
+
+def _cognates(one: Candidate, task: PathTask) -> Iterator[Candidate]:
+    """Its cognates, driven at either pivot, whose crank leads through the points; with timing, by
+    the same angles."""
+    at = [cognates(one.four_bar, angle) for angle in one.crank_rad.tolist()]
+    for way in zip(*at, strict=True):
+        angles = np.unwrap(np.array([angle for _, angle in way]))
+        if task.is_timed and np.max(np.abs(np.diff(angles) - np.diff(one.crank_rad))) > STEP:
+            continue
+        yield from _leading(way[0][0], angles, task)
+
+
+def _leading(four_bar: CouplerCurve, angles: Array, task: PathTask) -> Iterator[Candidate]:
+    """A four-bar, unless its crank does not lead through its angles, or it is far too large."""
+    small = math.isfinite(four_bar.size) and four_bar.size <= TOO_LARGE * task.radius_m
+    if not small or not four_bar.leads_through(angles):
+        return
+    if task.closed and four_bar.family == "limited":
+        return
+    yield Candidate(four_bar, angles, np.abs(four_bar.at(angles) - task.array))
+
+
+def in_order(angles: Array) -> Array:
+    """Angles [rad] that grow, or fall, throughout: the nearest ones of least squares, each a little
+    after the one before."""
+    sense = 1.0 if angles[-1] >= angles[0] else -1.0
+    apart = STEP * np.arange(len(angles))
+    ordered = isotonic_regression(sense * angles - apart).x
+    return np.asarray(sense * (ordered + apart))

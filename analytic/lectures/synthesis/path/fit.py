@@ -1,0 +1,204 @@
+"""The least-squares fit of a coupler curve to points, from a start on.
+
+The unknowns are the three numbers of a shape, the three complex numbers that place it, and the
+crank's angles: one in all with timing, one for each point without. Then the residuals are those to
+the nearest points of the curve, which is an orthogonal fit. Derivatives are exact. Each number but
+the angles stays in its box, as the sine of an unknown: so a crank that turns fully goes on to.
+
+Source: G. H. Golub and V. Pereyra, SIAM Journal on Numerical Analysis 10 (1973) (that the placing
+numbers, in which the curve is linear, follow from the others, gives the starts here); S. J. Ahn,
+Least Squares Orthogonal Distance Fitting of Curves and Surfaces in Space, chapter 2.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import least_squares  # type: ignore[import-untyped]  # ships no stubs
+
+from analytic.lectures.synthesis.path.task import UnitPath
+from analytic.lectures.synthesis.path.unit_four_bar import (
+    BOUNDS,
+    Complexes,
+    Family,
+    direction,
+    lengths,
+    lengths_jacobian,
+    turn,
+)
+from models.array import Array
+
+LARGEST = 12.0
+"""Of the placing numbers, over the radius of the path."""
+TOO_LARGE = 2.0 * LARGEST
+"""Of a link, over the radius of the path: larger mechanisms are of no use."""
+PENALTY = 3.0
+"""The weight of a dyad that does not close, over the radius of the path."""
+STRICT = 20.0
+"""The weight of a transmission angle that is too small, over that of all points."""
+INSIDE = 0.999
+"""Of the half width of the box, a start is at most: at its wall the sine does not change."""
+BOXED = slice(0, 9)
+"""The unknowns in a box: three numbers of a shape, and three complex numbers that place it."""
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A four-bar near the points of a unit path: numbers of its shape, placing numbers O, G, Q,
+    and the crank's angles [rad] from the ground on.
+
+    ``cost`` is the mean square of the distances, ``mirrored`` whether they are from the mirror
+    image of the points.
+    """
+
+    family: Family
+    x: Array
+    placing: Complexes
+    phi: Array
+    cost: float
+    mirrored: bool = False
+
+    @property
+    def size(self) -> float:
+        """The longest of its links, over the radius of the path."""
+        _, ground, arm = self.placing
+        shape = lengths(self.family, self.x)
+        far = np.abs([arm, arm - ground * shape[1]])
+        return float(max(np.abs(ground) * max(1.0, *(float(each) for each in shape)), *far))
+
+
+def placed(lengths_of: tuple[Array, Array, Array], phi: Array, points: Complexes) -> Complexes:
+    """The placing numbers O, G, Q that fit points best, by linear least squares, (3,)."""
+    u, _ = direction(lengths_of, phi)
+    columns = np.stack([np.ones_like(u), lengths_of[0] * np.exp(1j * phi), u], axis=1)
+    return np.asarray(np.linalg.lstsq(columns, points, rcond=1e-9)[0])
+
+
+def refit(start: Fitted, path: UnitPath, evaluations: int, transmission_rad: float = 0.0) -> Fitted:
+    """The four-bar of least squares near a start: after so many evaluations, at most; of a crank
+    that turns fully with a transmission angle of no less than one [rad], or little less."""
+    problem = _Problem(start.family, path, transmission_rad)
+    result = least_squares(
+        problem.residuals,
+        problem.packed(start),
+        problem.jacobian,
+        method="lm",
+        x_scale="jac",
+        ftol=1e-12,
+        xtol=1e-12,
+        gtol=1e-14,
+        max_nfev=evaluations,
+    )
+    return replace(
+        problem.unpacked(result.x),
+        cost=2.0 * float(result.cost) / len(path.points),
+        mirrored=start.mirrored,
+    )
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """Residuals over the unknowns, both as real numbers."""
+
+    family: Family
+    path: UnitPath
+    transmission_rad: float = 0.0
+
+    @property
+    def box(self) -> tuple[Array, Array]:
+        """The middle and the half width of shape and placing numbers, (9,)."""
+        low, high = (np.array(side) for side in zip(*BOUNDS[self.family], strict=True))
+        middle = np.concatenate([0.5 * (low + high), np.zeros(6)])
+        return middle, np.concatenate([0.5 * (high - low), np.full(6, LARGEST)])
+
+    def packed(self, fit: Fitted) -> Array:
+        """The unknowns of a four-bar: what lies in a box as the arc sine of its share of it."""
+        placing = np.stack([fit.placing.real, fit.placing.imag], axis=1).ravel()
+        angles = fit.phi if self.path.turned is None else fit.phi[:1]
+        middle, half = self.box
+        share = (np.concatenate([fit.x, placing]) - middle) / half
+        return np.concatenate([np.arcsin(np.clip(share, -INSIDE, INSIDE)), angles])
+
+    def unpacked(self, z: Array) -> Fitted:
+        """The four-bar of unknowns."""
+        middle, half = self.box
+        inner = middle + half * np.sin(z[BOXED])
+        placing = inner[3::2] + 1j * inner[4::2]
+        return Fitted(self.family, inner[:3], placing, self._phi(z), 0.0)
+
+    def residuals(self, z: Array) -> Array:
+        """The distances from the points, then how far the dyad is open where it may be."""
+        fit = self.unpacked(z)
+        a, b, c = (float(each) for each in lengths(self.family, fit.x))
+        at = turn((a, b, c), fit.phi)
+        origin, ground, arm = fit.placing
+        off = origin + ground * a * np.exp(1j * fit.phi) + arm * at.u - self.path.points
+        opened = [PENALTY * at.excess] if self.family == "limited" else []
+        strained = [self._strained((a, b, c))[0]] if self._is_strict else []
+        return np.concatenate([off.real, off.imag, *opened, *strained, np.zeros(self._spare)])
+
+    def jacobian(self, z: Array) -> Array:
+        """Their derivatives, (residuals, unknowns)."""
+        fit = self.unpacked(z)
+        a, b, c = (float(each) for each in lengths(self.family, fit.x))
+        at = turn((a, b, c), fit.phi)
+        _, ground, arm = fit.placing
+        e, one = a * np.exp(1j * fit.phi), np.ones_like(at.u)
+        by_shape = lengths_jacobian(self.family, fit.x)
+        by_angle = 1j * ground * e + arm * at.d_phi
+        by_lengths = arm * at.d_shape
+        by_lengths[0] += ground * e / a
+        columns = [*(by_shape @ by_lengths), one, 1j * one, e, 1j * e, at.u, 1j * at.u]
+        fixed = np.array(columns).T
+        off = np.hstack([fixed, self._spread(by_angle)])
+        rows = [off.real, off.imag]
+        if self.family == "limited":
+            shut = np.zeros((len(e), 9))
+            shut[:, :3] = (by_shape @ at.d_excess).T
+            rows.append(
+                PENALTY
+                * np.hstack([shut, self._spread(at.d_excess_phi.astype(np.complex128)).real])
+            )
+        if self._is_strict:
+            strained = np.zeros((2, 9 + self._angles))
+            strained[:, :3] = self._strained((a, b, c))[1] @ by_shape.T
+            rows.append(strained)
+        every = np.concatenate([*rows, np.zeros((self._spare, rows[0].shape[1]))])
+        every[:, BOXED] *= self.box[1] * np.cos(z[BOXED])
+        return np.asarray(every)
+
+    @property
+    def _angles(self) -> int:
+        """The crank's angles among the unknowns."""
+        return len(self.path.points) if self.path.turned is None else 1
+
+    @property
+    def _spare(self) -> int:
+        """Residuals of 0 that few points need: the library wants as many as there are unknowns."""
+        return max(0, 9 + self._angles - 2 * len(self.path.points))
+
+    @property
+    def _is_strict(self) -> bool:
+        """Whether the transmission angle counts: with limits, it is small at these in any case."""
+        return self.transmission_rad > 0.0 and self.family != "limited"
+
+    def _strained(self, shape: tuple[float, float, float]) -> tuple[Array, Array]:
+        """By how much the cosines of the transmission angle, where A is nearest to O4 and farthest,
+        are beyond what is allowed, (2,), and the changes of that with a, b, c, (2, 3)."""
+        a, b, c = shape
+        rho, by_a = np.array([abs(1.0 - a), 1.0 + a]), np.array([math.copysign(1.0, a - 1.0), 1.0])
+        cosine = (b**2 + c**2 - rho**2) / (2.0 * b * c)
+        change = np.stack([-rho * by_a / (b * c), 1.0 / c - cosine / b, 1.0 / b - cosine / c])
+        weight = STRICT * math.sqrt(len(self.path.points))
+        beyond = np.maximum(np.abs(cosine) - math.cos(self.transmission_rad), 0.0)
+        return weight * beyond, weight * (np.where(beyond > 0.0, np.sign(cosine), 0.0) * change).T
+
+    def _phi(self, z: Array) -> Array:
+        turned = self.path.turned
+        return z[9:].copy() if turned is None else np.asarray(z[9] + turned)
+
+    def _spread(self, column: Complexes) -> Complexes:
+        """A derivative by each point's own angle, or by the one that all share."""
+        return np.diag(column) if self.path.turned is None else column[:, None]

@@ -1,0 +1,187 @@
+"""Path generation: the four-bars whose coupler curves go nearest to given points.
+
+Starts come from looks at tens of thousands of four-bars: with timing at what they leave of the
+points, without it at the shapes of their curves. Least squares then goes on from the best ones, in
+rounds that take more of the points, fewer of the starts, and longer. What is left is sorted out,
+given its cognates, and examined by the reference: a mechanism with a defect is not returned.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.lectures.synthesis.design import Proposal
+from analytic.lectures.synthesis.examine import Examined, examine
+from analytic.lectures.synthesis.path.atlas import closed_starts
+from analytic.lectures.synthesis.path.candidate import Candidate, candidates
+from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve
+from analytic.lectures.synthesis.path.fit import Fitted, placed
+from analytic.lectures.synthesis.path.path_draft import proposed
+from analytic.lectures.synthesis.path.pieces import open_starts
+from analytic.lectures.synthesis.path.rounds import Clock, Progress, fitted
+from analytic.lectures.synthesis.path.task import PathTask, UnitPath
+from analytic.lectures.synthesis.path.timed_starts import timed_starts
+from analytic.lectures.synthesis.path.unit_four_bar import BOUNDS, lengths
+from models.array import Array
+from models.errors import CrankcheckError
+
+STARTS = 48
+SOURCE = "Crankcheck: path generation by least squares"
+STRAYED = 0.12
+"""Of the box of shapes: how far those starts are, at most, from an entry that are not one."""
+MOST_TRANSMISSION, MARGIN = math.radians(60.0), math.radians(1.0)
+"""The largest least transmission angle, of which few four-bars keep more, and by how much more of
+it least squares asks for, which gives way a little."""
+OWN = 0.7
+"""The share of starts without timing that are entries themselves; the rest strays from them."""
+
+
+@dataclass(frozen=True)
+class PathFit:
+    """A four-bar that goes through a path as well as it can: where its crank is in the points
+    [rad], how far it is from them [m], and what the reference says of it."""
+
+    four_bar: CouplerCurve
+    crank_rad: Array
+    rms_m: float
+    largest_m: float
+    examined: Examined
+
+    @property
+    def proposal(self) -> Proposal:
+        """The same as a proposal."""
+        return self.examined.proposal
+
+
+@dataclass(frozen=True)
+class PathSearch:
+    """The mechanisms that a search found, the nearest to the points first; ``complete`` is whether
+    it came to its end within its time."""
+
+    fits: tuple[PathFit, ...]
+    complete: bool
+
+
+def generate(
+    task: PathTask,
+    *,
+    name: str = "path",
+    count: int = 5,
+    starts: int = STARTS,
+    seed: int = 0,
+    time_s: float = math.inf,
+    progress: Progress | None = None,
+    least_transmission_rad: float = 0.0,
+) -> PathSearch:
+    """Four-bars whose coupler point goes through the points of a task, or as near as they can.
+
+    Parameters
+    ----------
+    task
+        The points [m], and the crank's angles if they are given.
+    name
+        Of the scenes; a number is put after it.
+    count
+        The largest number of mechanisms.
+    starts
+        From which least squares goes on. The same starts and seed give the same answer.
+    seed
+        Of the starts.
+    time_s
+        After which no further fit is begun [s]; those found by then are returned.
+    progress
+        Is told, after each fit, the share that is done, and the least RMS distance by then [m].
+    least_transmission_rad
+        The least transmission angle of a mechanism over its way [rad]. Without one, the nearest
+        mechanisms to a path that none follows well are often near a dead centre.
+
+    Returns
+    -------
+    PathSearch
+        Distinct four-bars without a branch, circuit or order defect, cognates among them; by their
+        RMS distance from the points, and where these are equal by transmission angle.
+
+    Raises
+    ------
+    CrankcheckError
+        No start, or no mechanism asked for; no mechanism found that leads through the points.
+    """
+    if starts < 1 or count < 1:
+        raise CrankcheckError(
+            f"{count} mechanisms from {starts} starts were asked for; ask for at least one of each"
+        )
+    if not 0.0 <= least_transmission_rad <= MOST_TRANSMISSION:
+        raise CrankcheckError(
+            f"a transmission angle of {math.degrees(least_transmission_rad):g} deg, at least, was "
+            f"asked for; ask for 0 to {math.degrees(MOST_TRANSMISSION):g} deg"
+        )
+    strict = least_transmission_rad + MARGIN * (least_transmission_rad > 0.0)
+    clock = Clock(starts, time.monotonic() + time_s, task.radius_m, progress)
+    fits = fitted(list(_starts(task, starts, seed)), task.unit, clock, strict)
+    sound: list[PathFit] = []
+    refused: list[str] = []
+    least_sine = math.sin(least_transmission_rad)
+    for candidate in candidates(fits, task):
+        if len(sound) == count:
+            break
+        if candidate.least_sine < least_sine:
+            refused.append("its transmission angle is smaller than asked for")
+            continue
+        one = _examined(f"{name}-{len(sound) + 1}", candidate, task)
+        if isinstance(one, PathFit):
+            sound.append(one)
+        else:
+            refused.append(one)
+    if not sound:
+        nearest = f"; of the nearest one: {refused[0]}" if refused else ""
+        raise CrankcheckError(
+            f"no four-bar was found that leads through the {len(task.points)} points in their "
+            f"order ({len(fits)} fits from {starts} starts{nearest}); take more starts or time, "
+            "points that lie more evenly, or leave the crank's angles free"
+        )
+    clock.tell(1.0)
+    return PathSearch(tuple(sound), clock.complete)
+
+
+def _starts(task: PathTask, count: int, seed: int) -> Iterator[Fitted]:
+    """Where least squares begins, the most promising first."""
+    if task.is_timed:
+        yield from timed_starts(task.unit, count, seed, limited=not task.closed)
+        return
+    entries = (closed_starts if task.closed else open_starts)(task.unit, count)
+    own = max(1, math.ceil(OWN * count))
+    rng = np.random.default_rng(seed)
+    strayed = (_strayed(entry, task.unit, rng) for entry in entries)
+    yield from itertools.chain(entries[:own], itertools.islice(strayed, count - own))
+
+
+def _strayed(entry: Fitted, path: UnitPath, rng: np.random.Generator) -> Fitted:
+    """A start beside an entry: another shape, put over the points anew."""
+    low, high = (np.array(side) for side in zip(*BOUNDS[entry.family], strict=True))
+    off = STRAYED * (high - low) * rng.uniform(-1.0, 1.0, 3)
+    x = np.clip(entry.x + off, low, high)
+    own = path.mirrored if entry.mirrored else path
+    return replace(entry, x=x, placing=placed(lengths(entry.family, x), entry.phi, own.points))
+
+
+def _examined(name: str, candidate: Candidate, task: PathTask) -> PathFit | str:
+    """A candidate that the reference finds no defect in, or why it is none."""
+    try:
+        examined = examine(proposed(name, SOURCE, candidate, task))
+    except CrankcheckError as error:
+        return str(error)  # such as a point on a pin, or a change point
+    if examined.defects:
+        return ", ".join(examined.defects)
+    return PathFit(
+        candidate.four_bar,
+        candidate.crank_rad,
+        candidate.rms_m,
+        candidate.largest_m,
+        examined,
+    )

@@ -1,0 +1,184 @@
+"""A crank-rocker for a rocker's swing: by its angle, or between two positions of a body on it."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from analytic.lectures.synthesis.asked import Asked, AskedAngle, AskedPlace, PrecisionPosition
+from analytic.lectures.synthesis.construction import Circle, Dot, Element, Segment, Step
+from analytic.lectures.synthesis.design import Proposal
+from analytic.lectures.synthesis.fourbar_draft import letters_beside
+from analytic.lectures.synthesis.pose import Pose, bisector, pole, refuse_coinciding, turn_between
+from analytic.lectures.synthesis.to_and_fro import ToAndFro, choices
+from models.errors import CrankcheckError
+from models.lectures.draft import Draft, bar, plate
+from models.lectures.tasks.rocker import RockerTask
+
+O2, O4 = "O2", "O4"
+
+
+@dataclass(frozen=True)
+class Swung:
+    """A rocker in two positions: its pivot, its pin in both, its own angles, the points of it in
+    its own frame (O4 at its origin), how it is drawn; ``pin`` is the point that is the pin, if one
+    is."""
+
+    pivot: complex
+    ends: tuple[complex, complex]
+    poses: tuple[Pose, Pose]
+    points: Mapping[str, complex]
+    steps: tuple[Step, ...]
+    pin: str = ""
+
+
+def rocker_proposals(task: RockerTask) -> tuple[list[Proposal], int]:
+    """The crank-rockers of a task, and how many there are.
+
+    Raises
+    ------
+    CrankcheckError
+        Positions that coincide, or whose pole is at infinity; a crank's pivot between the ends.
+    """
+    swung = _by_positions(task) if task.positions else _by_angle(task)
+    crank = 0.5 * abs(swung.ends[1] - swung.ends[0])
+    found = [
+        _proposal(task, swung, distance, beyond)
+        for distance in choices(crank, task.distance_m)
+        for beyond in (2, 1)
+    ]
+    return found, len(found)
+
+
+def _by_angle(task: RockerTask) -> Swung:
+    """O4 at the origin, the rocker's ends on either side of the y-axis."""
+    assert task.swing_deg is not None
+    assert task.rocker_m is not None
+    half = math.radians(0.5 * task.swing_deg)
+    angles = (0.5 * math.pi + half, 0.5 * math.pi - half)
+    one, other = (cmath.rect(task.rocker_m, angle) for angle in angles)
+    step = Step(
+        f"the rocker O4 B in its end positions, {task.swing_deg:g} deg apart",
+        (
+            Dot(0j, O4, "given", fixed=True),
+            Segment(0j, one, "given"),
+            Segment(0j, other, "given"),
+            Dot(one, "B1", "given"),
+            Dot(other, "B2", "given"),
+        ),
+    )
+    poses = (Pose(0j, angles[0]), Pose(0j, angles[1]))
+    return Swung(0j, (one, other), poses, {}, (step,))
+
+
+def _by_positions(task: RockerTask) -> Swung:
+    """The rotopole of the two positions is O4; B lies on the line from it to the first point."""
+    first, second = (Pose(point, angle) for point, angle in task.body.poses)
+    own = task.body.own_points
+    size = abs(second.point - first.point) + max(map(abs, own.values()))
+    refuse_coinciding((first, second), size)
+    pivot = pole(first, second)
+    if pivot is None:
+        across = math.degrees(cmath.phase(1j * (second.point - first.point))) % 180.0
+        raise CrankcheckError(
+            f"{task.name}: the body is moved without being turned, so its pole is at infinity, "
+            f"along {across:.4g} deg: no rocker does that; a coupler can (`crankcheck synth "
+            "coupler`)"
+        )
+    near = 1e-9 * (size + abs(pivot))
+    off_pole = [name for name in own if abs(first.at(own[name]) - pivot) > near]
+    if not off_pole and task.rocker_m is None:
+        raise CrankcheckError(
+            f"{task.name}: {', '.join(own)} is the pole, and so the rocker's pivot O4: give "
+            "rocker_m, how far its pin is from there"
+        )
+    # Of a body whose one point is the pole, the pin lies along its own x-axis.
+    letter = off_pole[0] if off_pole else ""
+    towards = first.at(own[letter]) - pivot if letter else cmath.exp(1j * first.angle)
+    arm_m, arm = abs(towards), towards / abs(towards)
+    radius = task.rocker_m or arm_m
+    is_pin = bool(letter) and abs(radius - arm_m) <= 1e-9 * arm_m
+    pin = letter if is_pin else letters_beside(own, 2)[1]
+    turn = cmath.exp(1j * turn_between(first, second))
+    ends = (pivot + radius * arm, pivot + radius * arm * turn)
+    # The rocker's own frame: O4 at its origin, B on its x-axis.
+    poses = (Pose(pivot, cmath.phase(arm)), Pose(pivot, cmath.phase(arm * turn)))
+    # A point in the pole stays there whatever the rocker does.
+    points = {name: poses[0].back(first.at(own[name])) for name in off_pole}
+    if is_pin:
+        points[letter] = complex(radius)
+    steps = (*_pole_steps((first, second), own, pivot), _pin_step(pivot, ends, pin, letter))
+    return Swung(pivot, ends, poses, points, steps, pin if is_pin else "")
+
+
+def _pole_steps(
+    places: tuple[Pose, Pose], own: Mapping[str, complex], pivot: complex
+) -> Iterator[Step]:
+    """The body in its positions, and the bisectors that meet in the pole."""
+    elements: list[Element] = [
+        Dot(pose.at(each), f"{name}{number}", "given")
+        for number, pose in enumerate(places, 1)
+        for name, each in own.items()
+    ]
+    if len(own) > 1:
+        one, other = own.values()
+        elements = [*(Segment(pose.at(one), pose.at(other), "given") for pose in places), *elements]
+    yield Step("the body in its two positions", tuple(elements))
+    ways = [(places[0].at(each), places[1].at(each)) for each in own.values()]
+    yield Step(
+        f"the bisectors of {' and '.join(f'{n}1{n}2' for n in own)} meet in the rotopole O4"
+        if len(own) > 1
+        else "the body turns from one into the other about the rotopole O4",
+        (
+            *(Segment(bisector(a, b).middle, pivot, beyond=0.15) for a, b in ways if a != b),
+            Dot(pivot, O4, "result", fixed=True),
+        ),
+    )
+
+
+def _pin_step(pivot: complex, ends: tuple[complex, complex], pin: str, letter: str) -> Step:
+    """The rocker's pin in both positions."""
+    words = f"{pin} on the line from O4 to {letter}1, and on the same arc in position 2"
+    return Step(
+        words if letter else f"{pin} at its distance from O4, in both positions",
+        (
+            Circle(pivot, abs(ends[0] - pivot)),
+            *(Segment(pivot, end) for end in ends),
+            *(Dot(end, f"{pin}{number}") for number, end in enumerate(ends, 1)),
+        ),
+    )
+
+
+def _proposal(task: RockerTask, swung: Swung, distance_m: float, beyond: int) -> Proposal:
+    """The crank-rocker with O2 so far from the chord's middle, beyond B1 or B2."""
+    found = ToAndFro.of(*swung.ends, distance_m, beyond=beyond)
+    crank_pin, free = letters_beside(swung.points, 2)
+    rocker_pin = swung.pin or free
+    radius = abs(swung.ends[0] - swung.pivot)
+    own = {O4: 0j, rocker_pin: complex(radius), **swung.points}
+    draft = Draft(
+        task.name,
+        task.source,
+        {O2: found.pivot, O4: swung.pivot},
+        {
+            "crank": bar(O2, crank_pin, found.crank_m),
+            "coupler": bar(crank_pin, rocker_pin, found.coupler_m),
+            "rocker": plate(own) if swung.points else bar(O4, rocker_pin, radius),
+        },
+        {},
+    )
+    positions = tuple(
+        PrecisionPosition(angle, _asked(swung, pose))
+        for angle, pose in zip(found.angles, swung.poses, strict=True)
+    )
+    steps = (*swung.steps, *found.steps(swung.ends, (O2, crank_pin, rocker_pin)))
+    links = Step("the rocker", (Segment(swung.pivot, swung.ends[0], "result"),))
+    told = {"O2 from the chord's middle": f"{distance_m:.6g} m", "beyond": f"{rocker_pin}{beyond}"}
+    return Proposal(draft, "crank", positions, told, (*steps, links), turns_back="rocker")
+
+
+def _asked(swung: Swung, pose: Pose) -> tuple[Asked, ...]:
+    places = (AskedPlace(name, pose.at(place)) for name, place in swung.points.items())
+    return (AskedAngle("rocker", pose.angle), *places)

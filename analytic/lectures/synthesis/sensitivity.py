@@ -1,0 +1,222 @@
+"""What tolerances of lengths and clearances of joints do to the positions that are asked.
+
+A scene is varied and solved again by the reference, its driver at the same angles. Derivatives are
+central differences, of steps that leave some nine digits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.kinematics import solve_driven
+from analytic.lectures.synthesis.asked import Asked
+from analytic.lectures.synthesis.asked_motion import asked_motion
+from analytic.lectures.synthesis.examine import Examined, way_of
+from models.array import Array
+from models.errors import CrankcheckError, ReachError
+from models.lectures.draft import Draft, plate
+from models.scene import Scene
+from models.scene_text import Table
+
+SINGULAR = 1e-3
+"""A least sine of transmission below which differences say nothing."""
+STEP = 1e-5
+"""Of the longest link: a difference is off by the square of it, and by rounding over it."""
+ON_THE_WAY = 49
+"""Looks at the driver's way of a mechanism that is drawn at random."""
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A number of a scene: a coordinate of a point on a body (0 along x, 1 along y)."""
+
+    body: str
+    point: str
+    axis: int
+
+    @property
+    def words(self) -> str:
+        """What a table calls it."""
+        return f"{self.body} {self.point} {'xy'[self.axis]}"
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """``slopes`` (P, N): by how much each thing that is asked (P, over the positions) changes with
+    each dimension (N) [m/m or rad/m]; ``asked`` with the number of its position."""
+
+    examined: Examined
+    asked: tuple[tuple[int, Asked], ...]
+    dimensions: tuple[Dimension, ...]
+    slopes: Array
+
+    def worst(self, tolerance_m: float) -> Array:
+        """The largest change of each thing where every dimension may be off by so much (P,)."""
+        return np.asarray(np.abs(self._lengths).sum(axis=1) * tolerance_m)
+
+    def usual(self, tolerance_m: float) -> Array:
+        """The root of the sum of squares (P,), of dimensions that are off independently."""
+        return np.asarray(np.sqrt(np.square(self._lengths).sum(axis=1)) * tolerance_m)
+
+    @property
+    def _lengths(self) -> Array:
+        """The slopes of what is measured on a drawing."""
+        keep = [is_measured(self.examined, one) for one in self.dimensions]
+        return np.asarray(self.slopes[:, np.array(keep)])
+
+    def largest_clearance(self, limits: Sequence[float]) -> tuple[float, int]:
+        """The radial clearance of all joints [m] with which everything asked stays within its limit
+        (P,), the pins free to lie to any side; and which of them sets it."""
+        joints: dict[str, list[int]] = {}
+        pins = pinned(self.examined.scene)
+        for k, one in enumerate(self.dimensions):
+            if one.point in pins:
+                joints.setdefault(one.point, []).append(k)
+        effect = np.zeros(len(self.asked))
+        for rows in joints.values():
+            # The pin moves against one of its two bodies, whichever that is: the first, by x and y.
+            effect += np.hypot(self.slopes[:, rows[0]], self.slopes[:, rows[1]])
+        with np.errstate(divide="ignore"):
+            allowed = np.asarray(limits) / effect
+        k = int(np.argmin(allowed))
+        return float(allowed[k]), k
+
+
+@dataclass(frozen=True)
+class Spread:
+    """What a Monte Carlo gave: of each thing asked the largest change (P,), and the share of the
+    mechanisms that met everything; ``lost`` could not be assembled."""
+
+    largest: Array
+    share_within: float
+    count: int
+    lost: int
+
+
+def sensitivity(examined: Examined) -> Sensitivity:
+    """The slopes of a mechanism that meets its positions.
+
+    Raises
+    ------
+    CrankcheckError
+        A mechanism that passes a change point, or a dead one: next to it there are no slopes.
+    """
+    if examined.least_sine < SINGULAR:
+        raise CrankcheckError(
+            f"{examined.scene.name}: it passes a position in which links are in line, where a "
+            "change of length as small as one likes leads into another assembly"
+        )
+    draft = as_plates(examined)
+    step = STEP * examined.scene.longest_m
+    dimensions = tuple(_dimensions(draft))
+    asked = tuple(
+        (number, one)
+        for number, position in enumerate(examined.positions, 1)
+        for one in position.asked
+    )
+    slopes = np.empty((len(asked), len(dimensions)))
+    for k, dimension in enumerate(dimensions):
+        ahead, back = (
+            _values(examined, _varied(draft, {dimension: sign * step}).scene) for sign in (1, -1)
+        )
+        slopes[:, k] = _distances(ahead, back) / (2.0 * step)
+    return Sensitivity(examined, asked, dimensions, slopes)
+
+
+def monte_carlo(
+    examined: Examined, tolerance_m: float, limits: Sequence[float], count: int, seed: int = 19
+) -> Spread:
+    """So many mechanisms whose dimensions are off by up to a tolerance [m], evenly and each by
+    itself; ``limits`` (P,) of what is asked [m, rad]. Those that can not be assembled all along the
+    driver's way are lost."""
+    draft, draw = as_plates(examined), np.random.default_rng(seed)
+    dimensions = [one for one in _dimensions(draft) if is_measured(examined, one)]
+    exact, way = _values(examined, draft.scene), way_of(examined.scene.driver.law, ON_THE_WAY)
+    largest, within, lost = np.zeros(len(exact)), 0, 0
+    for _ in range(count):
+        off = draw.uniform(-tolerance_m, tolerance_m, len(dimensions)).tolist()
+        try:
+            scene = _varied(draft, dict(zip(dimensions, off, strict=True))).scene
+            values = _values(examined, scene)
+            solve_driven(scene, way, np.ones(1), np.zeros(1), points=(), sliders=(), bound=False)
+        except ReachError:
+            lost += 1
+            continue
+        change = _distances(values, exact)
+        largest = np.maximum(largest, change)
+        within += bool(np.all(change <= limits))
+    return Spread(largest, within / count, count, lost)
+
+
+def pinned(scene: Scene) -> set[str]:
+    """The points in which two bodies meet, a slider's block one of them."""
+    shared = {name for name, bodies in scene.pins.items() if len(bodies) > 1}
+    return shared | {slider.point for slider in scene.sliders.values()}
+
+
+def is_measured(examined: Examined, one: Dimension) -> bool:
+    """Whether a dimension is one of a drawing: of a bar its length, and not where a point lies that
+    is asked for and holds nothing."""
+    if one.body == "ground":
+        return True
+    if one.point not in pinned(examined.scene):
+        return False
+    link = examined.draft.links[one.body]
+    return "bar" not in link or (one.axis == 0 and one.point == list(_points_of(link))[1])
+
+
+def as_plates(examined: Examined) -> Draft:
+    """The draft that the examined scene was read from, every bar as a link of points."""
+    links = {name: plate(_points_of(link)) for name, link in examined.draft.links.items()}
+    return replace(examined.draft, links=links)
+
+
+def _points_of(link: Table) -> dict[str, complex]:
+    """The points of a link's table in its own frame."""
+    if "bar" in link:
+        (one, other), length = cast(Sequence[str], link["bar"]), cast(float, link["length_m"])
+        return {one: 0j, other: complex(length)}
+    points = cast(Mapping[str, tuple[float, float]], link["points"])
+    return {name: complex(*place) for name, place in points.items()}
+
+
+def _dimensions(draft: Draft) -> Iterator[Dimension]:
+    """The coordinates of all points of the ground and of the links."""
+    for body, points in (("ground", draft.ground), *_bodies(draft)):
+        yield from (Dimension(body, point, axis) for point in points for axis in (0, 1))
+
+
+def _bodies(draft: Draft) -> list[tuple[str, dict[str, complex]]]:
+    return [(name, _points_of(link)) for name, link in draft.links.items()]
+
+
+def _varied(draft: Draft, by: Mapping[Dimension, float]) -> Draft:
+    """The draft with dimensions changed [m]."""
+    ground, links = dict(draft.ground), dict(_bodies(draft))
+    for one, delta in by.items():
+        points = ground if one.body == "ground" else links[one.body]
+        points[one.point] += delta if one.axis == 0 else 1j * delta
+    return replace(
+        draft, ground=ground, links={name: plate(points) for name, points in links.items()}
+    )
+
+
+def _values(examined: Examined, scene: Scene) -> NDArray[np.complex128]:
+    """What is asked, as it is at the positions' driver angles (P,): places, turns exp(i angle)."""
+    motion = asked_motion(scene, examined.positions)
+    return np.array(
+        [
+            one.value(motion)[k]
+            for k, position in enumerate(examined.positions)
+            for one in position.asked
+        ]
+    )
+
+
+def _distances(one: NDArray[np.complex128], other: NDArray[np.complex128]) -> Array:
+    return np.asarray(np.abs(one - other))

@@ -1,0 +1,1 @@
+"""Vibration of elastic links at a speed, over speeds and over inertia."""

@@ -1,0 +1,181 @@
+"""Vibration over the speed of the driver: deflection, spectrum, multipliers, critical speeds.
+
+By the linearised equations, stiffness that links gain by being pulled included: next to a resonance
+they tell where it is, and not how far links bend there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from analytic.elastic.discretisation import Modes
+from analytic.elastic.linearised import LinearForm
+from analytic.elastic.natural import lowest_rad_s, natural_modes
+from analytic.elastic.reduced import ReducedForm
+from analytic.elastic.resonance import MOST, Sensitivity, sensitivity
+from analytic.lectures.vibration.any_speed import AnySpeed
+from analytic.lectures.vibration.floquet import (
+    Deviation,
+    Stability,
+    looked_at,
+    stability,
+    window_count,
+)
+from analytic.lectures.vibration.monodromy import Monodromy, Windows
+from analytic.lectures.vibration.swing import Swing, swings
+from models.array import Array
+from models.scene import Scene
+
+HIGHEST = 24
+"""Orders up to which critical speeds are told: what is higher the driver hardly excites."""
+ASIDE, ROUNDS = 1e-3, 4
+"""How far off a critical speed it is looked at how strong the resonance is; rounds until one is
+found to less than that."""
+
+
+@dataclass(frozen=True)
+class AtSpeed:
+    """Vibration at a speed [rad/s]: how the links swing, what a period makes of deviations, how the
+    motion hangs on stiffness. ``ratio`` is the lowest natural frequency of a link over the
+    speed."""
+
+    speed_rad_s: float
+    ratio: float
+    swings: Mapping[str, Swing]
+    stability: Stability
+    sensitivity: Sensitivity
+
+    @property
+    def deviations(self) -> tuple[Deviation, ...]:
+        return self.stability.deviations
+
+    @property
+    def share(self) -> float:
+        """The largest deflection of a link over its length."""
+        return max(swing.share for swing in self.swings.values())
+
+
+@dataclass(frozen=True)
+class CriticalSpeed:
+    """A speed at which the driver meets an order of a mode, and how far off it, as a share, the
+    motion hangs on stiffness too much to be told (`resonance.MOST`)."""
+
+    speed_rad_s: float
+    ratio: float
+    mode: int
+    order: int
+    band: float
+
+
+@dataclass(frozen=True)
+class OverSpeeds:
+    """The vibration of a scene at ascending speeds."""
+
+    every: AnySpeed
+    form: ReducedForm
+    points: tuple[AtSpeed, ...]
+
+    @property
+    def scene(self) -> Scene:
+        return self.every.scene
+
+    @property
+    def speeds(self) -> Array:
+        """[rad/s], (S,)."""
+        return np.array([point.speed_rad_s for point in self.points])
+
+    @cached_property
+    def critical(self) -> list[CriticalSpeed]:
+        """The speeds within them at which a mode resonates that the driver excites, the widest band
+        first."""
+        found = []
+        for one, other in pairwise(self.points):
+            for k, (before, after) in enumerate(zip(one.deviations, other.deviations, strict=True)):
+                for order in _between(before.order, after.order):
+                    speed = self._met(k, order, (one, before.order), (other, after.order))
+                    hangs = self._sensitivity((1.0 + ASIDE) * speed)
+                    if hangs.order == order:
+                        band = math.sqrt(hangs.size / MOST) * ASIDE
+                        ratio = one.ratio * one.speed_rad_s / speed
+                        found.append(CriticalSpeed(speed, ratio, before.mode, order, band))
+        return sorted(found, key=lambda each: -each.band)
+
+    def _met(
+        self, k: int, order: int, low: tuple[AtSpeed, float], high: tuple[AtSpeed, float]
+    ) -> float:
+        """The speed between two, each with the order of a mode, at which that is whole."""
+        (a, before), (b, after) = ((at.speed_rad_s, own - order) for at, own in (low, high))
+        speed = b
+        for _ in range(ROUNDS):
+            if before == after:
+                break
+            speed = a - before * (b - a) / (after - before)
+            linear = self.every.linear(speed)
+            off = stability(linear, math.tau / speed, HIGHEST).deviations[k].order - order
+            if not math.isfinite(off) or off == 0.0:
+                break
+            if off * before > 0.0:
+                a, before = speed, off
+            else:
+                b, after = speed, off
+        return speed
+
+    def _sensitivity(self, speed: float) -> Sensitivity:
+        return _solved(self.form, self.every.linear(speed), math.tau / speed)[2]
+
+
+def _solved(
+    form: ReducedForm, linear: LinearForm, period_s: float
+) -> tuple[Array, Stability, Sensitivity]:
+    """The coefficients at the instants of linearised equations (N, m), and what is told of them.
+
+    By windows, each with matrices of its own: the one large matrix of harmonic balance
+    (`periodic.linear_motion`) takes ten times as long where processors are busy.
+    """
+    count = len(linear.force)
+    modes = natural_modes(linear.mass, linear.stiffness)
+    each = math.ceil(window_count(modes, period_s, HIGHEST) / count)
+    windows = Windows.of(linear, period_s, each * count)
+    monodromy = windows.over(linear.force)
+    z = windows.periodic(linear.force, monodromy)[::each]
+    asked = z @ form.stiffness
+    pushed = Monodromy(monodromy.matrix, windows.over(asked).particular)
+    change = windows.periodic(asked, pushed)[::each]
+    stable = looked_at(monodromy, each * count, linear, modes, period_s)
+    return z, stable, sensitivity(form, z, change)
+
+
+def over_speeds(scene: Scene, by: Modes, speeds: Array) -> OverSpeeds:
+    """The vibration at ascending speeds [rad/s], (S,), all above 0.
+
+    Raises
+    ------
+    CrankcheckError
+        Loads that do not repeat each turn at these speeds; joints that can not be closed.
+    """
+    every = AnySpeed(scene, by, float(speeds[0]), float(speeds[-1]))
+    form, lowest = every.form(float(speeds[0])), lowest_rad_s(scene)
+    found = []
+    for speed in map(float, speeds):
+        z, own, hangs = _solved(form, every.linear(speed), math.tau / speed)
+        found.append(AtSpeed(speed, lowest / speed, swings(form, z), own, hangs))
+    return OverSpeeds(every, form, tuple(found))
+
+
+def _between(before: float, after: float) -> Iterator[int]:
+    """The whole orders between two."""
+    if math.isfinite(before) and math.isfinite(after):
+        low, high = min(before, after), max(before, after)
+        yield from range(max(math.ceil(low), 1), min(math.floor(high), HIGHEST) + 1)
+
+
+def spectra(over: OverSpeeds, link: str) -> Array:
+    """The amplitudes of a link over its length at all speeds and orders, (S, orders)."""
+    each = [point.swings[link] for point in over.points]
+    return np.array([swing.amplitudes / swing.length_m for swing in each])

@@ -1,1 +1,0 @@
-"""Figures of the vibration of elastic links: over a turn, over speeds, over inertia."""

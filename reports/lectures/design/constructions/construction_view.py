@@ -1,0 +1,132 @@
+"""What is seen of a construction: the mechanism and what is near it, and words for what is not."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
+from analytic.lectures.synthesis.construction import Circle, Curve, Dot, Element, Segment, Step
+from analytic.lectures.synthesis.design import Proposal
+from analytic.lectures.synthesis.examine import Examined, examine
+from models.array import Array
+from models.errors import CrankcheckError
+from reports.lectures.design.constructions.precision_placements import placements_of
+from reports.lectures.design.constructions.strokes import strokes, xy
+from reports.lectures.drawing.sheets.scheme import extent_of
+from reports.output.numbers import readable
+
+NEAR = {"given": math.inf, "result": 1.5, "auxiliary": 0.5}
+"""What is further from the mechanism than so many times its size does not shrink the figure."""
+FEW_PLACES = 72
+"""Of a circle or a curve that has to be in the figure."""
+
+
+@dataclass(frozen=True)
+class ConstructionView:
+    """A construction with its mechanism in the precision positions, None where it can not be
+    assembled, and the places (n, 2) [m] that the figure has room for."""
+
+    examined: Examined
+    placements: tuple[PlacedMechanism | None, ...]
+    shown: Array
+
+    @staticmethod
+    def of(proposed: Examined | Proposal) -> ConstructionView:
+        """Raises CrankcheckError of a proposal that can not be assembled in its first position."""
+        examined = examine(proposed) if isinstance(proposed, Proposal) else proposed
+        placements = placements_of(examined)
+        if placements[0] is None:
+            name = examined.scene.name
+            raise CrankcheckError(f"{name}: can not be assembled in its first precision position")
+        return ConstructionView(examined, placements, _shown(examined, placements))
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        return self.examined.proposal.steps
+
+    @property
+    def first(self) -> PlacedMechanism:
+        """The mechanism in its first precision position."""
+        assert self.placements[0] is not None
+        return self.placements[0]
+
+    @property
+    def others(self) -> list[PlacedMechanism]:
+        """The mechanism in the other positions that it can be assembled in."""
+        return [each for each in self.placements[1:] if each is not None]
+
+    def far(self, low: Array, high: Array) -> Iterator[tuple[Array, str]]:
+        """What is out of a box [m], where (2,), and in words; letters once."""
+        told = set()
+        for number, step in enumerate(self.steps, 1):
+            for element in step.elements:
+                place, words = _words_of(element, number)
+                if words in told or not _is_out(element, low, high):
+                    continue
+                told.add(words)
+                yield xy(place), f"{words} {_away(xy(place), (low + high) / 2)}"
+
+
+def _shown(examined: Examined, placements: Sequence[PlacedMechanism | None]) -> Array:
+    """The mechanism in its positions, what is given, and what else is near."""
+    there = [extent_of(placed) for placed in placements if placed is not None]
+    elements = [each for step in examined.proposal.steps for each in step.elements]
+    for look, reach in NEAR.items():
+        places = np.concatenate(there)
+        low, high = places.min(axis=0), places.max(axis=0)
+        spare = reach * float(np.max(high - low))
+        for element in (each for each in elements if each.look == look):
+            own = np.reshape([xy(place) for place in _extent(element)], (-1, 2))
+            there.append(own[np.all((own >= low - spare) & (own <= high + spare), axis=1)])
+    return np.concatenate(there)
+
+
+def _extent(element: Element) -> Iterable[complex]:
+    """The places that an element has the figure have room for. What is drawn beyond a line's ends
+    needs none, and neither do curves and circles that are not given."""
+    match element:
+        case Dot(place):
+            return [place]
+        case Segment(start, end):
+            return [start, end]
+        case Circle(centre, radius, "given", arc):
+            first, last = arc or (0.0, math.tau)
+            angles = np.linspace(first, first + ((last - first) % math.tau or math.tau), FEW_PLACES)
+            return [complex(place) for place in centre + radius * np.exp(1j * angles)]
+        case Curve(pieces, "given"):
+            return [place for piece in pieces for place in piece]
+    return []
+
+
+def _is_out(element: Element, low: Array, high: Array) -> bool:
+    """Whether nothing of an element is in a box; of a curve something is, or it is told by none."""
+    if isinstance(element, Dot):
+        place = xy(element.place)
+        return bool(np.any((place < low) | (place > high)))
+    return not strokes(element, low, high)
+
+
+def _words_of(element: Element, number: int) -> tuple[complex, str]:
+    """A place of an element of a step, and what it is called."""
+    match element:
+        case Dot(place, letter):
+            return place, letter or f"a point of step {number}"
+        case Segment(start, end):
+            return 0.5 * (start + end), f"a line of step {number}"
+        case Circle(centre, radius):
+            return centre, f"a circle of step {number} with the radius {readable(radius)} m"
+        case Curve(pieces):
+            every = [place for piece in pieces for place in piece] or [0j]
+            return every[len(every) // 2], f"a curve of step {number}"
+
+
+def _away(place: Array, middle: Array) -> str:
+    """Where a place is from the middle of the figure."""
+    x, y = place - middle
+    angle = round(math.degrees(math.atan2(y, x))) % 360
+    where = f"({readable(float(place[0]))}, {readable(float(place[1]))}) m"
+    return f"at {where}, {readable(math.hypot(x, y))} m from the middle towards {angle}°"

@@ -1,0 +1,246 @@
+"""`crankcheck synth`: from what a mechanism must do to its scenes."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import Progress
+
+from analytic.lectures.synthesis.examine import Examined
+from analytic.lectures.synthesis.sensitivity import monte_carlo, sensitivity
+from analytic.lectures.synthesis.solutions import Solutions, solutions_of
+from models.errors import CrankcheckError
+from models.lectures.tasks.files import load_task, refuse_unknown, shipped_tasks
+from models.lectures.tasks.task import TaskTable
+from reports.lectures.design.constructions.construction_page import construction_page
+from reports.lectures.design.constructions.construction_sheet import construction_sheet
+from reports.lectures.design.constructions.solutions_page import (
+    construction_name,
+    scene_name,
+    solutions_page,
+    solutions_sheet,
+)
+from reports.lectures.design.proof import Met, by_reference, limit_of, proven
+from reports.lectures.design.proof_table import proof_frame, proof_table
+from reports.lectures.design.sensitivity_table import clearance_in_words, sensitivity_table
+from reports.lectures.design.solution_table import counted, solution_frame, solution_table
+from reports.lectures.drawing.sheets.paper import Paper
+from reports.output.columns import plain_table
+from reports.output.frame_file import csv
+from reports.output.numbers import count
+from reports.output.provenance import provenance
+from reports.output.write import check_folder, write
+from reports.plan.chosen import chosen_engines, chosen_profiles
+from reports.requests.options import Engines, PaperSize
+from sim.registry import engine
+
+Proofs = Mapping[int, Sequence[Met]]
+FRAME, PROOF, PAGE = "solutions.csv", "proof.csv", "index.html"
+OURS = re.compile(r"(solution|construction)-\d+\.(toml|svg|html)|proof\.csv")
+"""Files of such names in a folder are of this command."""
+USUAL = ("tuned",)
+"""Profiles of the proof where none is named."""
+SAMPLES = 1000
+"""Mechanisms of the Monte Carlo: two seconds."""
+
+
+@dataclass(frozen=True)
+class SynthRequest:
+    """What `synth` was asked for, as given."""
+
+    kind: Annotated[
+        str | None, typer.Argument(metavar="KIND", help="What kind of task; none lists them.")
+    ] = None
+    task: Annotated[
+        str | None, typer.Argument(metavar="TASK", help="A shipped task, or a task file (.toml).")
+    ] = None
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Folder of scenes, tables, figures."),
+    ] = None
+    best: Annotated[
+        int, typer.Option(min=1, max=1000, help="So many of the solutions are listed and written.")
+    ] = 5
+    prove: Annotated[
+        bool, typer.Option("--prove", help="Run each in every engine, through what is asked.")
+    ] = False
+    engines: Engines = ()
+    profiles: Annotated[
+        Sequence[str], typer.Option("--profile", help="Profile of the engines; default: tuned.")
+    ] = ()
+    steps_per_turn: Annotated[
+        float, typer.Option(min=24, max=1e5, help="Steps in a turn of the proof.")
+    ] = 720.0
+    vary_m: Annotated[
+        float | None,
+        typer.Option(
+            "--vary",
+            metavar="METRES",
+            min=1e-9,
+            max=1e6,
+            help="What dimensions that are off by up to so much do, and clearances.",
+        ),
+    ] = None
+    paper: PaperSize = "A4"
+
+    def run(self, console: Console, progress: Console) -> int:
+        """List, write and prove the solutions. Raises CrankcheckError for what can not be asked."""
+        if self.kind is None or self.task is None:
+            return _list(self.kind, console)
+        paper = Paper.of(self.paper)
+        _check(self)
+        if self.output is not None:
+            check_folder(self.output, "-o")
+        task = load_task(self.kind, self.task)
+        engines = chosen_engines(self.engines) if self.prove else []
+        profiles = [name for name, _ in chosen_profiles(self.profiles or USUAL, engines)]
+        solutions = _searched(task, console)
+        listed = solutions.examined[: self.best]
+        _say(console, f"{task.name}: {task.source}")
+        _say(console, counted(solutions, len(listed)))
+        console.print("", solution_table(listed), sep="\n")
+        if self.vary_m is not None:
+            _show_sensitivity(console, solutions, task, self.vary_m)
+        proofs = {
+            number: [
+                *by_reference(one, task),
+                *(
+                    met
+                    for name in engines
+                    for profile in profiles
+                    for met in proven(one, task, name, profile, self.steps_per_turn)
+                ),
+            ]
+            for number, one in enumerate(listed, 1)
+            if self.prove and not one.defects
+        }
+        facts = provenance({name: engine(name).version() for name in engines})
+        if self.prove:
+            _show_proof(console, proofs, facts, self)
+        if self.output is not None:
+            told = counted(solutions, len(listed))
+            _write(self.output, listed, task, told, proofs, facts, paper, console)
+        met = all(one.within for every in proofs.values() for one in every)
+        return 0 if solutions.sound and met else 1
+
+
+def _check(request: SynthRequest) -> None:
+    """Refuse numbers that are none, and what belongs to a proof that is not asked for."""
+    numbers = {"--steps-per-turn": request.steps_per_turn, "--vary": request.vary_m}
+    for option, number in numbers.items():
+        if number is not None and not math.isfinite(number):
+            raise CrankcheckError(f"{option}: found {number}; give a number")
+    given = {"--engine": request.engines, "--profile": request.profiles}
+    for option, names in given.items():
+        if names and not request.prove:
+            raise CrankcheckError(f"{option} {names[0]}: engines are run by --prove; add it")
+
+
+def _searched(task: TaskTable, console: Console) -> Solutions:
+    """The solutions, with a bar of a search for people who wait."""
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+        line = bar.add_task("searching", total=1.0)
+
+        def tell(share: float, best: float) -> None:
+            near = f"searching, {best:.3g} m RMS" if math.isfinite(best) else "searching"
+            bar.update(line, completed=share, description=near)
+
+        return solutions_of(task, tell)
+
+
+def _list(kind: str | None, console: Console) -> int:
+    """The kinds with their shipped tasks."""
+    if kind is not None:
+        refuse_unknown(kind)
+    table = plain_table(gap=2)
+    for head in ("kind", "shipped tasks"):
+        table.add_column(head, overflow="fold")
+    for name, tasks in shipped_tasks().items():
+        if kind in (None, name):
+            table.add_row(name, ", ".join(tasks))
+    console.print(table)
+    return 0
+
+
+def _show_sensitivity(
+    console: Console, solutions: Solutions, task: TaskTable, tolerance_m: float
+) -> None:
+    """What tolerances and clearances do to the best solution."""
+    if not solutions.sound:
+        _say(console, "\nno sensitivity: no solution is without a defect")
+        return
+    best = solutions.sound[0]
+    limits = [limit_of(one, best.scene, task) for p in best.positions for one in p.asked]
+    try:
+        slopes = sensitivity(best)
+        spread = monte_carlo(best, tolerance_m, limits, SAMPLES)
+    except CrankcheckError as error:
+        _say(console, f"\nno sensitivity: {error}")
+        return
+    console.print("", sensitivity_table(slopes, limits, tolerance_m, spread), sep="\n")
+    _say(console, clearance_in_words(slopes, limits, spread))
+
+
+def _show_proof(
+    console: Console, proofs: Proofs, facts: Mapping[str, str], request: SynthRequest
+) -> None:
+    """The proof, and what it was made with."""
+    if not proofs:
+        _say(console, "\nnothing to prove: no solution listed is without a defect")
+        return
+    console.print("", proof_table(proofs), sep="\n")
+    within = all(one.within for every in proofs.values() for one in every)
+    verdict = "PROVEN: every position is met" if within else "NOT PROVEN: a position is missed"
+    _say(console, f"\n{verdict}")
+    _say(console, f"{request.steps_per_turn:g} steps a turn; " + ", ".join(
+        f"{name} {value}" for name, value in facts.items()))  # fmt: skip
+
+
+def _write(
+    folder: Path,
+    listed: Sequence[Examined],
+    task: TaskTable,
+    counted: str,
+    proofs: Proofs,
+    facts: Mapping[str, str],
+    paper: Paper,
+    console: Console,
+) -> None:
+    """The scenes, the tables, the constructions and the page that leads to them."""
+    texts: dict[str, str | bytes] = {
+        scene_name(number): one.text for number, one in enumerate(listed, 1)
+    }
+    texts[FRAME] = csv(solution_frame(listed))
+    if proofs:
+        texts[PROOF] = csv(proof_frame(proofs))
+    for number, one in enumerate(listed, 1):
+        title = f"{one.scene.name}: construction"
+        sheet = construction_sheet(one, paper)
+        texts[construction_name(number, "svg")] = sheet.saved("svg", title)
+        texts[construction_name(number, "html")] = construction_page(one)
+    every = solutions_sheet(listed, task, paper)
+    drawn = None if every is None else every.saved("svg", f"solutions of {task.name}")
+    texts[PAGE] = solutions_page(listed, task, counted, drawn, proofs, facts)
+    check_folder(folder, "-o", list(texts))
+    left = sorted(
+        path.name
+        for path in folder.glob("*")
+        if OURS.fullmatch(path.name) and path.name not in texts
+    )
+    for name, text in texts.items():
+        write(folder / name, text)
+    _say(console, f"\n{folder / PAGE}: {count(len(listed), 'solution')}, with scenes, tables and "
+         "constructions beside it")  # fmt: skip
+    if left:
+        _say(console, f"left there by an earlier run: {', '.join(left)}")
+
+
+def _say(console: Console, words: str) -> None:
+    console.print(words, highlight=False, markup=False)

@@ -1,0 +1,169 @@
+"""`crankcheck graph`: graphs differentiated and integrated with ruler and pole."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from analytic.lectures.drawings.graphical import METHODS, Method
+from models.errors import CrankcheckError, shown
+from models.files import find_scene, load_scene
+from reports.lectures.drawing.positions import ENDINGS, save_sheet
+from reports.lectures.drawing.sheets.graphs.graph_drawing import DrawnGraphs, drawn_graphs
+from reports.lectures.drawing.sheets.graphs.graph_log import graph_log
+from reports.lectures.drawing.sheets.graphs.graph_orders import (
+    GraphErrors,
+    graph_errors,
+    show_errors,
+    told_floor,
+)
+from reports.lectures.drawing.sheets.graphs.graph_orders_sheet import draw_errors
+from reports.lectures.drawing.sheets.graphs.graph_page import draw_graphs, laid_out
+from reports.lectures.drawing.sheets.graphs.graph_span import OVERS, GraphSpan, Over, over_period
+from reports.lectures.drawing.sheets.graphs.graph_words import (
+    show_graphs,
+    tell,
+    told_errors,
+    told_log,
+)
+from reports.lectures.drawing.sheets.paper import Paper
+from reports.lectures.drawing.sheets.sheet_note import sheet_note
+from reports.output.write import check_file
+from reports.requests.options import Duration, PaperSize, SceneName
+
+LEAST_PARTS, MOST_PARTS, MOST_COUNTS = 4, 1440, 12
+MOST_DIGITS = 9
+"""Of longer numbers none is asked for in earnest, and the longest are not read as such."""
+
+
+@dataclass(frozen=True)
+class GraphRequest:
+    """What `graph` was asked for, as given."""
+
+    scene: SceneName
+    of: Annotated[
+        str, typer.Option("--of", metavar="NAME", help="A link, a slider, or a coordinate: C.x.")
+    ]
+    divisions: Annotated[
+        str,
+        typer.Option(metavar="N[,N...]", help="Parts of the period; of several, the errors."),
+    ] = "24"
+    by: Annotated[
+        str, typer.Option(help="chords, tangents, or integration (of the acceleration).")
+    ] = "chords"
+    over: Annotated[str, typer.Option(help="time, or angle of the driver.")] = "time"
+    log: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="A log of an engine, drawn the same way beside it."),
+    ] = None
+    map: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="TOML that says what its columns mean."),
+    ] = None
+    duration_s: Duration = None
+    paper: PaperSize = "A4"
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Draw it: .svg in layers, or .pdf.")
+    ] = None
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Show or draw graphs. Raises CrankcheckError for what can not be asked."""
+        paper = Paper.of(self.paper)
+        divisions = counts(self.divisions)
+        by, over = _method(self.by), _over(self.over)
+        if self.map is not None and self.log is None:
+            raise CrankcheckError(f"--map {self.map}: it is of a log; give --log as well")
+        if self.output is not None:
+            read = [find_scene(self.scene), self.log, self.map]
+            check_file(self.output, "-o", ENDINGS, inputs=read)
+        scene = load_scene(self.scene)
+        of = over_period(scene, self.of, over, self.duration_s)
+        log = None
+        if self.log is not None:
+            log = graph_log(self.log, self.map, of)
+            of = log.span
+        if len(divisions) > 1:
+            _tell_errors(self, console, graph_errors(of, by, divisions, log), paper)
+        else:
+            _tell_graphs(self, console, drawn_graphs(of, by, divisions[0], log), paper)
+        return 0
+
+
+def _tell_graphs(request: GraphRequest, console: Console, drawn: DrawnGraphs, paper: Paper) -> None:
+    """Draw the sheet, or show the table; then what both are off by."""
+    of = drawn.span
+    told = (
+        f"{of.quantity.name} of {of.scene.name} in {drawn.parts} parts{_by(drawn.by)}{_rigid(of)}; "
+        f"{told_errors(drawn, drawn.reference)}"
+    )
+    if request.output is None:
+        show_graphs(console, drawn)
+        tell(console, told)
+    else:
+        canvas = draw_graphs(laid_out(drawn, paper), sheet_note(of.scene))
+        save_sheet(console, canvas, request.output, told)
+    if drawn.logged is not None:
+        for line in told_log(drawn):
+            tell(console, line)
+
+
+def _tell_errors(
+    request: GraphRequest, console: Console, errors: GraphErrors, paper: Paper
+) -> None:
+    """Show the errors, and draw them where a file is given."""
+    of = errors.span
+    if request.output is not None:
+        told = f"errors of {of.quantity.name} of {of.scene.name} over divisions{_by(errors.by)}"
+        canvas = draw_errors(errors, paper, sheet_note(of.scene))
+        save_sheet(console, canvas, request.output, told)
+    show_errors(console, errors)
+    if errors.log is not None:
+        tell(console, told_floor(errors))
+
+
+def _by(method: Method) -> str:
+    return "" if method == "chords" else f" by {method}"
+
+
+def _rigid(of: GraphSpan) -> str:
+    return ", its elastic links taken as rigid" if of.scene.elastic else ""
+
+
+def counts(text: str) -> Sequence[int]:
+    """Numbers of divisions, rising. Raises CrankcheckError."""
+    words = text.split(",")
+    if not all(word.strip().isdecimal() for word in words):
+        raise CrankcheckError(
+            f"--divisions {shown(text)}: give whole numbers, such as 24, or 12,24,48"
+        )
+    # Zeros in front count as digits, too: what is too long is out of bounds either way.
+    found = [int(word) if len(word.strip()) <= MOST_DIGITS else MOST_PARTS + 1 for word in words]
+    if not all(LEAST_PARTS <= each <= MOST_PARTS for each in found):
+        raise CrankcheckError(
+            f"--divisions {shown(text)}: a period has {LEAST_PARTS} to {MOST_PARTS} parts"
+        )
+    if len(found) > MOST_COUNTS or found != sorted(set(found)):
+        raise CrankcheckError(
+            f"--divisions {shown(text)}: give up to {MOST_COUNTS} numbers, each above the one "
+            "before"
+        )
+    return found
+
+
+def _method(text: str) -> Method:
+    for name in METHODS:
+        if text == name:
+            return name
+    raise CrankcheckError(f"--by {shown(text)}: unknown; use {', '.join(METHODS)}")
+
+
+def _over(text: str) -> Over:
+    for name in OVERS:
+        if text == name:
+            return name
+    raise CrankcheckError(f"--over {shown(text)}: unknown; use {' or '.join(OVERS)}")

@@ -1,0 +1,156 @@
+"""`crankcheck mobility`: the motions of a scheme, by count and by rank."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.text import Text
+
+from analytic.lectures.schemes.higher_pairs import replaced
+from analytic.lectures.schemes.scheme_mobility import SchemeMobility, scheme_mobility
+from models.errors import CrankcheckError, harmless
+from models.lectures.scheme import HIGHER, Scheme
+from models.lectures.scheme_files import find_scheme, load_scheme, shipped_schemes
+from models.lectures.scheme_text import scheme_text
+from reports.output.columns import hanging, plain_table
+from reports.output.write import check_file, write
+
+HEAD = 10
+"""Letters before each paragraph."""
+
+
+@dataclass(frozen=True)
+class MobilityRequest:
+    """What `mobility` was asked for, as given."""
+
+    scheme: Annotated[
+        str | None,
+        typer.Argument(metavar="NAME", help="A shipped name, or a file; all are listed if none."),
+    ] = None
+    replace: Annotated[
+        bool,
+        typer.Option("--replace", help="Links with lower pairs in place of planar higher pairs."),
+    ] = False
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="With --replace: write that scheme as .toml."),
+    ] = None
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Show one scheme, or list the shipped ones. Raises CrankcheckError for what can not be
+        asked."""
+        if self.output is not None and not self.replace:
+            raise CrankcheckError("-o writes the scheme that --replace makes; add --replace")
+        if self.scheme is None:
+            if self.replace:
+                raise CrankcheckError(
+                    "--replace: name a scheme, as in crankcheck mobility cam-roller"
+                )
+            _list(console)
+            return 0
+        scheme = load_scheme(self.scheme)
+        if self.output is not None:
+            check_file(self.output, "-o", (".toml",), inputs=[find_scheme(self.scheme)])
+        show_mobility(console, scheme_mobility(scheme))
+        if self.replace:
+            _show_replaced(console, scheme, self)
+        return 0
+
+
+def show_mobility(console: Console, mobility: SchemeMobility) -> None:
+    """The count, the rank, the mobility, and what is passive or idle by name."""
+    scheme = mobility.scheme
+    hanging(console, f"{scheme.name}: ", scheme.source, "bold")
+    if scheme.note:
+        console.print(Text(scheme.note))
+    for head, text in _paragraphs(mobility):
+        hanging(console, head.ljust(HEAD), text)
+
+
+def _paragraphs(mobility: SchemeMobility) -> list[tuple[str, str]]:
+    scheme = mobility.scheme
+    told = [("count", f"{scheme.count_in_words}, with n = {len(scheme.links)} moving links")]
+    rank = f"{mobility.rank} of {scheme.constraints} constraints are independent"
+    told.append(("rank", f"{rank}, next to the drawn position"))
+    told.append(("mobility", _mobility(mobility)))
+    if mobility.spare:
+        names = f": {mobility.passive}" if str(mobility.passive) else ""
+        told.append(("passive", f"{_number(mobility.spare, 'constraint')}{names}"))
+    else:
+        told.append(("passive", "none"))
+    idle = [f"{_number(mobility.idle_count, 'freedom')}: "] if mobility.idle else ["none"]
+    told.append(("idle", idle[0] + "; ".join(map(str, mobility.idle))))
+    if mobility.margin_is_small:
+        told.append(
+            (
+                "nearly",
+                f"the equations depend on each other but for {mobility.near.margin:.1e}: "
+                "with numbers to more digits the scheme may have a motion more",
+            )
+        )
+    return told
+
+
+def _mobility(mobility: SchemeMobility) -> str:
+    """The real mobility, what of it is idle, and what the drawn position makes of it."""
+    words = f"W = {mobility.real}"
+    if mobility.idle:
+        words += f", {mobility.useful} without what is idle"
+    if mobility.near.is_singular:
+        words += (
+            f"; {mobility.near.here} in the drawn position, which is singular: next to it a motion "
+            "is gone"
+        )
+    if mobility.yielding:
+        words += (
+            f"; {_number(mobility.yielding, 'motion')} of first order more, which gives back: the "
+            "scheme shakes"
+        )
+    if mobility.near.others:
+        others = ", ".join(map(str, mobility.near.others))
+        words += f"; {others} on another branch that begins here"
+    stated = mobility.scheme.mobility
+    if stated is not None and stated != mobility.real:
+        words += f"; the file says {stated}"
+    return words
+
+
+def _show_replaced(console: Console, scheme: Scheme, request: MobilityRequest) -> None:
+    """The scheme with lower pairs alone, as a list of joints, and in a file where asked."""
+    fewer = replaced(scheme)
+    if fewer == scheme:
+        raise CrankcheckError(f"{scheme.name}: no higher pair; there is nothing to replace")
+    own = {joint.name for joint in scheme.joints}
+    gone = [joint.name for joint in scheme.joints if joint.kind in HIGHER]
+    fresh = [joint for joint in fewer.joints if joint.name not in own]
+    words = ", ".join(
+        f"{j.kind} {j.name} ({j.between[0]}, {j.between[1]}) at ({j.at[0]:.6g}, {j.at[1]:.6g}) m"
+        for j in fresh
+    )
+    hanging(console, "replaced".ljust(HEAD), f"{', '.join(gone)} by {words}")
+    real = scheme_mobility(fewer).real
+    hanging(console, "".ljust(HEAD), f"{fewer.count_in_words}; mobility {real}")
+    if request.output is not None:
+        write(request.output, scheme_text(fewer))
+        told = harmless(f"{request.output}: {scheme.name} with lower pairs alone")
+        console.print(told, highlight=False, markup=False, soft_wrap=True)
+
+
+def _list(console: Console) -> None:
+    table = plain_table(gap=2)
+    for head in ("scheme", "space", "count", "mobility", "idle", "source"):
+        table.add_column(head, overflow="fold", no_wrap=head == "scheme")
+    for name in shipped_schemes():
+        scheme = load_scheme(name)
+        mobility = scheme_mobility(scheme)
+        numbers = (scheme.count, mobility.real, mobility.idle_count)
+        table.add_row(name, scheme.space, *map(str, numbers), Text(scheme.source))
+    console.print(table, highlight=False)
+
+
+def _number(count: int, what: str) -> str:
+    return f"{count} {what}{'s' * (count != 1)}"

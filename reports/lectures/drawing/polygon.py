@@ -1,0 +1,188 @@
+"""`crankcheck polygon`: the vector polygons of a position."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from analytic.lectures.drawings.drawn_polygons import DrawnPolygons, polygons_of
+from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
+from analytic.structure.cranked import refuse_other_than_cranked
+from analytic.structure.mobility import analyse
+from models.errors import CrankcheckError, harmless
+from models.files import find_scene, load_scene
+from models.scene import Scene
+from reports.lectures.drawing.sheets.paper import Paper
+from reports.lectures.drawing.sheets.polygons.logged_instant import LoggedInstant, LogInstants
+from reports.lectures.drawing.sheets.polygons.polygon_files import (
+    ANIMATED,
+    ENDINGS,
+    PAGE,
+    polygon_file,
+    turning_file,
+)
+from reports.lectures.drawing.sheets.polygons.polygon_instant import (
+    AT_DEG,
+    placed_at_angle,
+    placed_at_time,
+)
+from reports.lectures.drawing.sheets.polygons.polygon_listing import show_polygons
+from reports.lectures.drawing.sheets.polygons.polygon_sheet import PolygonSheet, laid_out
+from reports.lectures.drawing.sheets.polygons.polygon_words import doubts
+from reports.logs.map_file import Map, read_map
+from reports.output.write import check_file, write
+from reports.requests.options import PaperSize, SceneName, seconds
+
+LEAST_K, MOST_K = 1e-3, 1e3
+
+
+@dataclass(frozen=True)
+class PolygonRequest:
+    """What `polygon` was asked for, as given."""
+
+    scene: SceneName
+    at_deg: Annotated[
+        float | None, typer.Option(metavar="DEG", help="The driver's angle (default 90).")
+    ] = None
+    at_s: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SECONDS",
+            parser=seconds,
+            help="The time, in place of an angle.",
+        ),
+    ] = None
+    omega: Annotated[
+        float | None,
+        typer.Option(metavar="RAD_S", help="The driver's speed, in place of its law's."),
+    ] = None
+    k: Annotated[
+        float | None,
+        typer.Option(
+            "--k", help="Vectors of the crank so many times as long as it is drawn, p b = k AB."
+        ),
+    ] = None
+    log: Annotated[
+        Path | None,
+        typer.Option(metavar="LOG", help="A log of the scene, yours or an engine's: drawn beside."),
+    ] = None
+    map: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="TOML that says what its columns mean.")
+    ] = None
+    paper: PaperSize = "A4"
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            help="Draw the sheet: .svg in layers, .pdf, .gif step by step, or .html over a turn.",
+        ),
+    ] = None
+    turn: Annotated[
+        bool,
+        typer.Option("--turn", help="With -o FILE.gif: over a turn, in place of step by step."),
+    ] = False
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Show the vectors, or draw the sheet. Raises CrankcheckError for what can not be asked."""
+        paper = Paper.of(self.paper)
+        _check(self)
+        scene = load_scene(self.scene)
+        refuse_other_than_cranked(scene, "a vector polygon", analyse(scene))
+        log = _logged(scene, self)
+        placement = log.placement if log is not None else _placed(scene, self)
+        time_s = self.at_s if log is None else log.time_s
+        sheet = laid_out(polygons_of(placement), paper, self.k, log, time_s)
+        if self.output is None:
+            show_polygons(console, sheet)
+            return 0
+        ending = self.output.suffix.lower()
+        steady = self.omega is not None
+        if ending == PAGE:
+            from reports.lectures.drawing.sheets.polygons.polygon_page import (
+                polygon_page,  # the page's machinery, for it alone
+            )
+
+            raw: str | bytes = polygon_page(placement, steady=steady)
+        else:
+            raw = turning_file(sheet, steady=steady) if self.turn else polygon_file(sheet, ending)
+        write(self.output, raw)
+        told = f"{self.output}: {_told(sheet, self)}"
+        console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
+        _tell_doubts(console, sheet.drawn)
+        return 0
+
+
+def _check(request: PolygonRequest) -> None:
+    """Refuse what can not be asked."""
+    inputs = [find_scene(request.scene), request.log, request.map]
+    ending = ""
+    if request.output is not None:
+        check_file(request.output, "-o", ENDINGS, inputs=inputs)
+        ending = request.output.suffix.lower()
+    if request.turn and ending != ANIMATED:
+        raise CrankcheckError(f"--turn: a turn is an animation; give -o FILE{ANIMATED}")
+    if request.k is not None and not LEAST_K <= request.k <= MOST_K:
+        raise CrankcheckError(f"--k {request.k:g}: give a number from {LEAST_K:g} to {MOST_K:g}")
+    if told := _contradiction(request, ending):
+        raise CrankcheckError(f"{told}; leave one out")
+
+
+def _contradiction(request: PolygonRequest, ending: str) -> str:
+    """Two options that do not go together, and why; empty where there are none."""
+    at_time, has_log = request.at_s is not None, request.log is not None
+    if at_time and request.at_deg is not None:
+        return "--at-s with --at-deg: each says the instant"
+    if at_time and request.omega is not None:
+        return "--at-s with --omega: at a time the driver has a speed"
+    if has_log and request.omega is not None:
+        return "--log with --omega: at its sample the driver has a speed"
+    if has_log and (request.turn or ending == PAGE):
+        return f"--log with a turn, --turn or -o FILE{PAGE}: a log is drawn at one instant"
+    if request.map is not None and not has_log:
+        return "--map without --log: it says what the columns of a log mean"
+    return ""
+
+
+def _logged(scene: Scene, request: PolygonRequest) -> LoggedInstant | None:
+    """The log at the instant, where one is drawn beside."""
+    if request.log is None:
+        return None
+    map_ = read_map(request.map) if request.map else Map()
+    instants = LogInstants.of_file(scene, request.log, map_)
+    if request.at_s is not None:
+        return instants.at_time(request.at_s)
+    return instants.at_angle(AT_DEG if request.at_deg is None else request.at_deg)
+
+
+def _placed(scene: Scene, request: PolygonRequest) -> PlacedMechanism:
+    if request.at_s is not None:
+        return placed_at_time(scene, request.at_s)
+    at_deg = AT_DEG if request.at_deg is None else request.at_deg
+    return placed_at_angle(scene, at_deg, request.omega)
+
+
+def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
+    """What was drawn."""
+    name = sheet.drawn.placement.scene.name
+    ending = request.output.suffix.lower() if request.output is not None else ""
+    if request.turn or ending == PAGE:
+        is_free = sheet.drawn.placement.scene.is_free and request.omega is None
+        course = "its motion" if is_free else "a turn"
+        return f"velocities and accelerations of {name} over {course}"
+    at_deg = AT_DEG if request.at_deg is None else request.at_deg
+    of = f"at {at_deg:g} deg" if request.at_s is None else f"at {request.at_s:g} s"
+    beside = f", {request.log} beside" if request.log is not None else ""
+    return (
+        f"velocities and accelerations of {name} {of}{beside}, on {sheet.paper.width:g} x "
+        f"{sheet.paper.height:g} mm"
+    )
+
+
+def _tell_doubts(console: Console, drawn: DrawnPolygons) -> None:
+    for told in doubts(drawn):
+        console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)

@@ -1,0 +1,254 @@
+"""The sheet of instant centres, with the circles and centrodes of a link."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle as Round
+from matplotlib.patches import Rectangle
+
+from analytic.kinematics import solve_driven
+from analytic.lectures.drawings.centrodes import Centrodes, centrodes
+from analytic.lectures.drawings.curvature_circles import CurvatureCircles, curvature_circles
+from analytic.lectures.drawings.drawn_polygons import DrawnPolygons
+from analytic.lectures.drawings.instant_centres import Centre, Pair, instant_centres
+from models.array import Array
+from models.errors import CrankcheckError
+from reports.lectures.drawing.sheets.canvas import Canvas, line
+from reports.lectures.drawing.sheets.centre_column import (
+    FIXED,
+    INFLECTION,
+    MOVING,
+    NO_TANGENTIAL,
+    THEOREM,
+    body_numbers,
+    centre_name,
+    draw_polygon_of_centres,
+    height_of_column,
+    write_legend,
+)
+from reports.lectures.drawing.sheets.cut_lines import arc_places, near_angles
+from reports.lectures.drawing.sheets.driver_range import assembled, range_about
+from reports.lectures.drawing.sheets.letters import Letter, together, write_letters
+from reports.lectures.drawing.sheets.paper import Box, Paper
+from reports.lectures.drawing.sheets.scheme import draw_scheme, extent_of
+from reports.lectures.drawing.sheets.sheet_frame import draw_border, inner_box, write_head
+
+PADDING = 12.0
+NEAR_MM = 0.5
+"""Centres that stand nearer have their names in one label."""
+COLUMN_MM = 46.0
+"""Width of the column on the right."""
+FAR = 1.5
+"""Centres that are further from the mechanism than so many times its size are told, not drawn."""
+POLE = "#d1495b"
+CENTRE_MM, CENTRE_SIZE = 0.8, 7.0
+"""Radius of a centre's circle, and the type of its name [point]."""
+GAP = 3.0
+DENSE = 1441
+"""Places along a centrode."""
+
+
+@dataclass(frozen=True)
+class CentreSheet:
+    """The centres at one position, and what is drawn of the link that was named, if one was."""
+
+    drawn: DrawnPolygons
+    centres: Mapping[Pair, Centre]
+    link: str
+    circles: CurvatureCircles | None
+    centrodes: Centrodes | None
+    scale: float
+    middle: Array
+    paper: Paper
+
+    @property
+    def box(self) -> Box:
+        return _boxes(self.paper)[0]
+
+    def at(self, places: Array) -> Array:
+        """Where places [m], (..., 2), stand on the sheet [mm]."""
+        return np.asarray(self.box.middle + (places - self.middle) / self.scale)
+
+    def is_near(self, place: Array | None) -> bool:
+        """Whether a place [m] is on the sheet."""
+        if place is None:
+            return False
+        away = np.abs(self.at(place) - self.box.middle)
+        return bool(np.all(away < (self.box.width / 2 - 3.0, self.box.height / 2 - 3.0)))
+
+
+def centres_of(drawn: DrawnPolygons, link: str, paper: Paper) -> CentreSheet:
+    """The sheet of a position; ``link`` is "" for the centres alone.
+
+    Raises CrankcheckError for a link that the scene has not, or that does not turn, and for paper
+    on which not all fits.
+    """
+    placement = drawn.placement
+    if drawn.undetermined:
+        raise CrankcheckError(
+            f"{placement.scene.name}: velocities are not determined here, and neither are centres "
+            f"({drawn.undetermined[0]}); take another angle"
+        )
+    centres = instant_centres(placement)
+    circles = curves = None
+    if link:
+        if link not in placement.scene.links:
+            known = ", ".join(placement.scene.links)
+            raise CrankcheckError(f"--link {link}: no such link; there are {known}")
+        circles = curvature_circles(drawn, link)
+        curves = _centrodes_of(drawn, link)
+    _check_room(drawn, paper, with_curves=bool(link))
+    scale, middle = _frame(drawn, centres, circles, paper)
+    return CentreSheet(drawn, centres, link, circles, curves, scale, middle, paper)
+
+
+def _check_room(drawn: DrawnPolygons, paper: Paper, *, with_curves: bool) -> None:
+    """Refuse paper on which the column on the right does not fit."""
+    bodies = len(body_numbers(drawn))
+    column = _boxes(paper)[1]
+    needed = height_of_column(bodies, with_curves=with_curves)
+    if column.height < needed:
+        tall = math.ceil(paper.height - column.height + needed)
+        raise CrankcheckError(
+            f"--paper {paper.width:g}x{paper.height:g}: too low for the names of {bodies} bodies"
+            + (" and of the curves" if with_curves else "")
+            + f"; {paper.width:g}x{tall} would do"
+        )
+
+
+def _centrodes_of(drawn: DrawnPolygons, link: str) -> Centrodes:
+    """The centrodes over what the driver reaches, with gaps at its singular angles."""
+    scene = drawn.placement.scene
+    theta = np.linspace(*range_about(scene, drawn.placement.driver.theta), DENSE)[1:-1]
+    possible = assembled(scene, theta)
+    one = np.ones(1)
+    motion = solve_driven(scene, theta[possible], one, 0.0 * one, bound=False)
+    some = centrodes(motion, link, next(iter(scene.links[link].points)))
+    fixed, moving = (np.full((theta.size, 2), np.nan) for _ in range(2))
+    fixed[possible], moving[possible] = some.fixed, some.moving
+    return Centrodes(fixed, moving)
+
+
+def _frame(
+    drawn: DrawnPolygons,
+    centres: Mapping[Pair, Centre],
+    circles: CurvatureCircles | None,
+    paper: Paper,
+) -> tuple[float, Array]:
+    """The scale [m/mm], and what is in the middle [m]: the mechanism, and what is near it."""
+    points = extent_of(drawn.placement)
+    low, high = points.min(axis=0), points.max(axis=0)
+    about, size = (low + high) / 2, float(np.max(high - low))
+    more = [centre.place for centre in centres.values() if centre.place is not None]
+    if circles is not None:
+        more += [circles.pole, circles.acceleration_pole, circles.inflection.middle]
+    near = [at for at in more if np.abs(at - about).max() < FAR * size]
+    return _boxes(paper)[0].fitted(np.array([*points, *near]), PADDING)
+
+
+def _boxes(paper: Paper) -> tuple[Box, Box]:
+    """The drawing, and the column on its right."""
+    inner = inner_box(paper)
+    wide = inner.width - COLUMN_MM - GAP
+    left = inner.left + wide + GAP
+    return (
+        Box(inner.left, inner.bottom, wide, inner.height),
+        Box(left, inner.bottom, COLUMN_MM, inner.height),
+    )
+
+
+def draw_centres(sheet: CentreSheet, note: str) -> Canvas:
+    """The sheet, in layers."""
+    canvas = Canvas(sheet.paper)
+    _head(canvas.layer("frame"), sheet, note)
+    if sheet.centrodes is not None:
+        _draw_centrodes(canvas.layer("centrodes"), sheet, sheet.centrodes)
+    if sheet.circles is not None:
+        _circles(canvas.layer("circles"), sheet, sheet.circles)
+    draw_scheme(canvas.layer("mechanism"), sheet.drawn.placement, sheet.at)
+    _centres(canvas.layer("centres"), sheet)
+    column = _boxes(sheet.paper)[1]
+    numbers = body_numbers(sheet.drawn)
+    draw_polygon_of_centres(canvas.layer("polygon-of-centres"), sheet.centres, numbers, column)
+    write_legend(canvas.layer("legend"), numbers, sheet.link, column)
+    write_letters(canvas, canvas.layer("letters"), _letters(sheet), sheet.box)
+    return canvas
+
+
+def _head(axes: Axes, sheet: CentreSheet, note: str) -> None:
+    scene, driver = sheet.drawn.placement.scene, sheet.drawn.placement.driver
+    angle = math.degrees(driver.theta) % 360.0
+    title = (
+        f"{scene.name}: instant centres, {scene.driver.link} at {angle:.6g}°, "
+        f"K_l = {sheet.scale:g} m/mm"
+    )
+    write_head(axes, sheet.paper, title, note)
+    for box in _boxes(sheet.paper):
+        draw_border(axes, box)
+
+
+def _draw_centrodes(axes: Axes, sheet: CentreSheet, curves: Centrodes) -> None:
+    """Both curves, as far as they are on the sheet; the moving one as the link stands."""
+    theta = sheet.drawn.placement.angles[sheet.link]
+    first = next(iter(sheet.drawn.placement.scene.links[sheet.link].points))
+    c, s = math.cos(theta), math.sin(theta)
+    turned = curves.moving @ np.array([[c, s], [-s, c]])
+    moving = sheet.drawn.placement.points[first] + turned
+    for places, colour in ((curves.fixed, FIXED), (moving, MOVING)):
+        drawn = sheet.at(places)
+        inside = np.abs(drawn - sheet.box.middle) < (sheet.box.width / 2, sheet.box.height / 2)
+        drawn[~inside.all(axis=1)] = np.nan
+        axes.plot(drawn[:, 0], drawn[:, 1], color=colour, lw=0.7)
+
+
+def _circles(axes: Axes, sheet: CentreSheet, circles: CurvatureCircles) -> None:
+    box = sheet.box
+    edge = Rectangle((box.left, box.bottom), box.width, box.height, transform=axes.transData)
+    for circle, colour in ((circles.inflection, INFLECTION), (circles.still_speed, NO_TANGENTIAL)):
+        if circle is not None:
+            arc = _arc_near(sheet.at(circle.middle), circle.radius / sheet.scale, box)
+            drawn = axes.plot(arc[:, 0], arc[:, 1], color=colour, lw=0.7)[0]
+            drawn.set_clip_path(edge)
+
+
+def _arc_near(middle: Array, radius: float, box: Box) -> Array:
+    """The part of a circle [mm] that may be in a box, (n, 2), closely."""
+    start, end = near_angles(middle, radius, *box.corners)
+    return arc_places(middle, radius, start, end)
+
+
+def _centres(axes: Axes, sheet: CentreSheet) -> None:
+    """Every centre on the sheet, and the lines that cross in it, of the theorem."""
+    for centre in sheet.centres.values():
+        if not sheet.is_near(centre.place):
+            continue
+        assert centre.place is not None
+        here = sheet.at(centre.place)
+        for pairs in centre.by:
+            for pair in pairs:
+                other = sheet.centres[pair].place
+                if other is not None and sheet.is_near(other):
+                    line(axes, here, sheet.at(other), color=THEOREM, linewidth=0.5)
+        axes.add_patch(Round(tuple(here), CENTRE_MM, fc="white", ec=POLE, lw=0.8, zorder=7))
+    if sheet.circles is not None and sheet.is_near(sheet.circles.acceleration_pole):
+        there = sheet.at(sheet.circles.acceleration_pole)
+        axes.add_patch(Round(tuple(there), 0.5 * CENTRE_MM, fc=POLE, ec="none", zorder=7))
+
+
+def _letters(sheet: CentreSheet) -> list[Letter]:
+    numbers, circles = body_numbers(sheet.drawn), sheet.circles
+    places = {centre_name(pair, numbers): centre.place for pair, centre in sheet.centres.items()}
+    if circles is not None:
+        places |= {"P": circles.pole, "Q": circles.acceleration_pole}
+    at = {
+        name: sheet.at(place)
+        for name, place in places.items()
+        if place is not None and sheet.is_near(place)
+    }
+    joined = together(at, NEAR_MM)
+    return [Letter(name, spot, CENTRE_MM, CENTRE_SIZE) for name, spot in joined.items()]

@@ -1,0 +1,186 @@
+"""Letters and numbers beside what they name: clear of all lines and of one another.
+
+A letter stands as near as it can; where all near places are taken it stands farther off, with a
+thin line that leads to what it names. Among faint lines it interrupts these, as draughtsmen do.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.font_manager import FontProperties
+from matplotlib.patches import Rectangle
+from matplotlib.textpath import TextPath
+
+from models.array import Array
+from reports.figures.style import FONT, INK, POINTS, QUIET
+from reports.lectures.drawing.sheets.canvas import Canvas, line, text
+from reports.lectures.drawing.sheets.ink import Ink, ink_of
+from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box
+
+LETTER, NUMBER = 8.0, 5.5
+"""Type of the letters of points, and of numbers along a circle [point]."""
+CLEAR_MM, AIRY_MM = 0.45, 1.0
+"""Room around a text that has to be blank, and that had better be."""
+AWAY_MM = (0.3, 0.6, 1.0, 1.5, 2.0, 2.8, 3.6, 4.5, 6.0, 8.0, 10.0, 13.0, 16.0, 20.0)
+"""How far the edge of a text may be from what it names."""
+LED_MM = 2.6
+"""A text that is farther off than this has a line that leads to it."""
+AROUND = 32
+FRONT = 8
+"""Letters lie over everything in their layer."""
+DARK_COST, FAINT_COST, AIRY_COST, LED_COST = 60.0, 6.0, 0.2, 1.5
+"""Costs, against a millimetre off: of a square millimetre of dark or of faint lines under a text,
+of one of any close by, and of a leading line."""
+COVER_COST, CROSS_COST = 1e4, 30.0
+"""Costs of lying over another text or off the box, and over a place on a line that leads to one."""
+LOOKED_AT = 600
+"""So many of the places that are best but for other texts are looked at."""
+LEADING = np.linspace(0.0, 1.0, 12)
+"""Shares of a leading line at which it is looked at."""
+GROUND_MM = 0.2
+"""A text that interrupts faint lines has so much blank around it."""
+ROUNDING = 1e-6
+"""Ink [mm²] that is the rounding of sums."""
+
+
+@dataclass(frozen=True)
+class Letter:
+    """A text that names one of the places ``at`` (n, 2) [mm], at which a symbol of some radius
+    [mm] is drawn."""
+
+    text: str
+    at: Array
+    radius: float
+    size: float = LETTER
+    color: str = INK
+
+    @property
+    def half(self) -> Array:
+        """Half the width and height of what is printed [mm]."""
+        low, high = _printed(self.text, self.size)
+        return (high - low) / 2
+
+    def base(self, middle: Array) -> Array:
+        """Where the base line begins of a text whose print has its middle at a place [mm]."""
+        low, high = _printed(self.text, self.size)
+        return np.asarray(middle - (low + high) / 2)
+
+
+@lru_cache(maxsize=1024)
+def _printed(words: str, size: float) -> tuple[Array, Array]:
+    """The corners of a text's outlines, from where its base line begins [mm]."""
+    outline = TextPath((0.0, 0.0), words, size, prop=FontProperties(family=FONT)).get_extents()
+    low, high = np.array(outline.min), np.array(outline.max)
+    return MM_PER_IN / POINTS * low, MM_PER_IN / POINTS * high
+
+
+def together(at: Mapping[str, Array], within_mm: float) -> dict[str, Array]:
+    """Names at their places [mm], those that stand within a distance of one another as one."""
+    spots: dict[str, Array] = {}
+    for name, there in at.items():
+        same = [one for one, spot in spots.items() if np.hypot(*(spot - there)) < within_mm]
+        if same:
+            spots = {
+                f"{one}, {name}" if one == same[0] else one: spot for one, spot in spots.items()
+            }
+        else:
+            spots[name] = there
+    return spots
+
+
+def write_letters(
+    canvas: Canvas,
+    axes: Axes,
+    letters: Iterable[Letter],
+    box: Box,
+    ink: tuple[Ink, Ink] | None = None,
+) -> None:
+    """Letters in a box of the sheet, those that come first with the first choice; ``ink`` is what
+    is drawn in the box, where that is known, as looking costs more than all else."""
+    dark, faint = ink or ink_of(canvas.figure)
+    taken: list[tuple[Array, Array]] = []
+    for letter in letters:
+        middle, anchor = _best(letter, dark, faint, taken, box)
+        half = letter.half
+        if faint.within(middle[None], half + GROUND_MM)[0] > ROUNDING:
+            _interrupt(axes, middle, half + GROUND_MM)
+        x, y = letter.base(middle)
+        text(axes, x, y, letter.text, letter.size, color=letter.color, zorder=FRONT)
+        taken.append((middle, half))
+        if (lead := _lead(letter, middle, anchor)) is not None:
+            line(axes, *lead, color=QUIET, linewidth=0.3)
+            taken += [(spot, np.zeros(2)) for spot in _sampled(*lead)]
+
+
+def _interrupt(axes: Axes, middle: Array, half: Array) -> None:
+    """Blank paper under a text."""
+    wide, tall = 2 * half
+    ground = Rectangle(tuple(middle - half), wide, tall, fc="white", ec="none")
+    ground.set_gid("blank")
+    axes.add_patch(ground)
+
+
+def _best(
+    letter: Letter, dark: Ink, faint: Ink, taken: Sequence[tuple[Array, Array]], box: Box
+) -> tuple[Array, Array]:
+    """The middle of the best place for a text, and what it names from there [mm]."""
+    middles, anchors, away = _candidates(letter)
+    half, clear = letter.half, letter.half + CLEAR_MM
+    low = np.array([box.left, box.bottom]) + clear
+    high = np.array([box.left + box.width, box.bottom + box.height]) - clear
+    outside = np.maximum(low - middles, 0.0) + np.maximum(middles - high, 0.0)
+    over = dark.within(middles, clear)
+    cost = (
+        away
+        + LED_COST * (away > LED_MM)
+        + DARK_COST * (over + 0.5 * (over > ROUNDING))
+        + FAINT_COST * faint.within(middles, half + GROUND_MM)
+        + AIRY_COST * (dark.within(middles, half + AIRY_MM) + faint.within(middles, half + AIRY_MM))
+        + COVER_COST * outside.sum(axis=1)
+    )
+    few = np.argsort(cost, kind="stable")[:LOOKED_AT]
+    covered = np.zeros(len(few))
+    # along the line that would lead to it, too
+    ways = anchors[few, None] + LEADING[:, None] * (middles - anchors)[few, None]
+    for middle, size in taken:
+        here = np.all(np.abs(middles[few] - middle) < clear + size, axis=1)
+        covered += (COVER_COST if size.any() else CROSS_COST) * here
+        if size.any():
+            across = np.all(np.abs(ways - middle) < size, axis=2).any(axis=1)
+            covered += COVER_COST * (across & (away[few] > LED_MM))
+    best = few[int(np.argmin(cost[few] + covered))]
+    return middles[best], anchors[best]
+
+
+def _candidates(letter: Letter) -> tuple[Array, Array, Array]:
+    """Middles around each place (k, 2), the place that each is at, and how far off its edge is."""
+    angle = math.tau * np.arange(AROUND) / AROUND + math.pi / 4
+    direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    with np.errstate(divide="ignore"):
+        edge = np.min(letter.half / np.abs(direction), axis=1)
+    away = np.repeat(AWAY_MM, AROUND)
+    reach = np.tile(edge, len(AWAY_MM)) + away + letter.radius
+    around = np.tile(direction, (len(AWAY_MM), 1)) * reach[:, None]
+    at = np.atleast_2d(letter.at)
+    middles = (at[:, None] + around).reshape(-1, 2)
+    return middles, np.repeat(at, len(around), axis=0), np.tile(away, len(at))
+
+
+def _lead(letter: Letter, middle: Array, anchor: Array) -> tuple[Array, Array] | None:
+    """The line from a text to what it names, where it stands far off."""
+    nearest = np.clip(anchor, middle - letter.half - 0.3, middle + letter.half + 0.3)
+    length = float(np.hypot(*(anchor - nearest)))
+    if length - letter.radius < LED_MM:
+        return None
+    return nearest, anchor + (nearest - anchor) * letter.radius / length
+
+
+def _sampled(start: Array, end: Array) -> Array:
+    """Points along a line [mm], closely."""
+    return np.linspace(start, end, max(int(2 * np.hypot(*(end - start))), 1) + 1)

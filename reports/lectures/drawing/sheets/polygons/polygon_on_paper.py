@@ -1,0 +1,132 @@
+"""A vector polygon on paper: its scale, where its pole is, and a log beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.lectures.drawings.polygon import Polygon, Vector
+from analytic.lectures.drawings.similarity import POINT
+from models.array import Array
+from models.errors import CrankcheckError
+from reports.lectures.drawing.sheets.paper import Box
+from reports.lectures.drawing.sheets.polygons.magnified_errors import MagnifiedErrors, outline
+
+PADDING_MM = 9.0
+"""Room for letters around a polygon."""
+BEYOND_MM = 6.0
+"""By how much a dashed direction goes on beyond the crossing."""
+COVERED_MM = 0.1
+"""A line of an image that is nearer to a vector is covered by it."""
+
+
+@dataclass(frozen=True)
+class DrawnPolygon:
+    """A polygon, how much a millimetre of it stands for, and where its pole is [mm]; where a log is
+    drawn beside it, what that is off by [mm], and how it was found."""
+
+    polygon: Polygon
+    scale: float
+    pole: Array
+    logged: MagnifiedErrors | None = None
+    logged_by: str = ""
+
+    def at(self, vector: Array) -> Array:
+        """Where the end of a vector from the pole stands [mm]."""
+        return np.asarray(self.pole + vector / self.scale)
+
+    def size_of(self, vector: Vector) -> float:
+        """How long a vector is [its unit], 0 where that is the rounding of a crossing."""
+        return vector.size if vector.size > POINT * self.polygon.largest else 0.0
+
+    def logged_sizes(self) -> Iterator[tuple[str, float, float, Array]]:
+        """Of each end of a vector that a log has: its name, how long that vector is, and how long
+        the log's is [its unit], and the error (2,) [mm]."""
+        if self.logged is None:
+            return
+        ends = self.polygon.ends
+        for name, error in self.logged.errors.items():
+            own = ends[name] + error * self.scale
+            yield name, float(np.hypot(*ends[name])), float(np.hypot(*own)), error
+
+    def beside(
+        self, errors: Mapping[str, Array], way: str, box: Box, scale: float | None = None
+    ) -> DrawnPolygon:
+        """With the errors of a log's ends of vectors [its unit], (2,) each, in the same box: where
+        they need no magnifying, at a scale at which they have room."""
+        exact = {name: self.at(end) for name, end in self.polygon.ends.items()}
+        on_paper = {name: error / self.scale for name, error in errors.items()}
+        logged = MagnifiedErrors.of(exact, on_paper)
+        if logged.is_large:
+            ends = self.polygon.ends
+            own = [ends[name] + error for name, error in errors.items() if name in ends]
+            roomy = fitted(self.polygon, box, scale, own)
+            logged = replace(
+                logged,
+                exact={name: roomy.at(end) for name, end in ends.items()},
+                errors={name: errors[name] / roomy.scale for name in logged.errors},
+            )
+            return replace(roomy, logged=logged, logged_by=way)
+        return replace(self, logged=logged, logged_by=way)
+
+
+def extent(polygon: Polygon) -> tuple[Array, Array]:
+    """The corners of the box that holds the polygon [its unit]."""
+    ends = [np.zeros(2), *polygon.ends.values()]
+    ends += [end for vector in polygon.vectors for end in (vector.start, vector.end)]
+    places = np.array(ends)
+    return places.min(axis=0), places.max(axis=0)
+
+
+def fitted(
+    polygon: Polygon, box: Box, scale: float | None = None, beside: Sequence[Array] = ()
+) -> DrawnPolygon:
+    """The polygon in the middle of a box, at a scale, or at the finest round one that fits, with
+    the ends ``beside`` it (2,).
+
+    Raises CrankcheckError where a wanted scale makes it larger than the box.
+    """
+    return DrawnPolygon(polygon, *frame_of([polygon], box, scale, beside))
+
+
+def frame_of(
+    polygons: Sequence[Polygon],
+    box: Box,
+    scale: float | None = None,
+    beside: Sequence[Array] = (),
+) -> tuple[float, Array]:
+    """The scale, and the place of the pole [mm], of polygons in a box; as `fitted`."""
+    corners = np.array([*(corner for each in polygons for corner in extent(each)), *beside])
+    finest, middle = box.fitted(corners, PADDING_MM)
+    wide, tall = np.ptp(corners, axis=0) / (scale or finest) + 2 * PADDING_MM
+    if scale is not None and (wide > box.width or tall > box.height):
+        raise CrankcheckError(
+            f"the {polygons[0].quantity} polygon needs {wide:.0f} x {tall:.0f} mm at this scale, "
+            f"and has {box.width:.0f} x {box.height:.0f} mm; take larger paper, or a smaller --k"
+        )
+    scale = scale or finest
+    return scale, np.array(box.middle) - middle / scale
+
+
+def crossing_line(drawn: DrawnPolygon, vector: Vector) -> tuple[Array, Array] | None:
+    """The ends of the dashed line along a direction that crosses another [mm]; None of a vector
+    that was known."""
+    start, end = drawn.at(vector.start), drawn.at(vector.end)
+    length = float(np.hypot(*(end - start)))
+    if not vector.direction or length < 1e-9:
+        return None
+    spare = BEYOND_MM * (end - start) / length
+    return start - spare, end + spare
+
+
+def image_lines(drawn: DrawnPolygon) -> Iterator[tuple[Array, Array]]:
+    """The edges of the images of links [mm], without those that a vector lies on."""
+    vectors = [(drawn.at(vector.start), drawn.at(vector.end)) for vector in drawn.polygon.vectors]
+    for image in drawn.polygon.images.values():
+        for a, b in outline([drawn.at(end) for end in image.values()]):
+            ways = [(s - a, e - b) for s, e in vectors] + [(s - b, e - a) for s, e in vectors]
+            apart = [float(np.hypot(*s) + np.hypot(*e)) for s, e in ways]
+            if min(apart, default=COVERED_MM) >= COVERED_MM:
+                yield a, b

@@ -1,0 +1,194 @@
+"""The scheme of a mechanism as books draw it: bars and plates, pins, hatched ground, blocks, and
+the arrow of the driver's rotation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import chain, pairwise
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Arc, Circle
+from matplotlib.patches import Polygon as Patch
+
+from analytic.lectures.drawings.placed_mechanism import PlacedMechanism, quarter_turn
+from models.array import Array
+from models.laws import Oscillating
+from models.scene import GROUND, Link
+from reports.figures.style import INK
+from reports.lectures.drawing.sheets.canvas import arrow_head, line
+from reports.lectures.drawing.sheets.letters import Letter, together
+from reports.lectures.drawing.sheets.slots import draw_slots, travels
+
+PIN_MM, BLOCK_MM, FOOT_MM = 1.0, (6.0, 3.6), 3.8
+HATCH_MM, HATCHES = 1.3, 6
+TURN_MM, TURN_SHARE, TURN_DEG = (5.0, 9.0), 0.4, (22.0, 85.0)
+"""The arrow of rotation: least and largest radius, share of the crank, and angles off the crank."""
+FOOT_DEG = 42.0
+"""Half the angle about a pin that its foot is in."""
+NEAR_MM = 0.5
+"""Points that stand nearer have their letters in one label."""
+PLATE = "#eef1f4"
+FRONT = 6
+"""Pins lie over everything."""
+
+
+def extent_of(placement: PlacedMechanism) -> Array:
+    """What the scheme has to have room for: points, and ends of slots [m], (n, 2)."""
+    return np.array([*placement.points.values(), *chain(*travels(placement).values())])
+
+
+def draw_scheme(
+    axes: Axes, placement: PlacedMechanism, at: Callable[[Array], Array], plate: str = PLATE
+) -> None:
+    """The mechanism with its places [m] ``at`` those of the sheet [mm]; ``plate`` is the colour of
+    plates, "none" of those that hide nothing."""
+    scene = placement.scene
+    places = {name: at(place) for name, place in placement.points.items()}
+    slots = {name: (at(low), at(high)) for name, (low, high) in travels(placement).items()}
+    draw_slots(axes, placement, places, slots)
+    for name, slider in scene.sliders.items():
+        along = placement.along(name)
+        if slider.link is not None and slider.on == GROUND:
+            bar = [places[point] for point in scene.links[slider.link].points]
+            _rails(axes, np.mean(bar, axis=0), along)
+            continue
+        _block(axes, places[slider.point], along)
+        if slider.on == GROUND:
+            _rails(axes, places[slider.point], along)
+    for link in scene.links.values():
+        corners = np.array([places[point] for point in link.points])
+        if len(corners) > 2 and not _flat(corners):
+            axes.add_patch(Patch(corners, closed=True, fc=plate, ec=INK, lw=1.3, joinstyle="round"))
+        else:
+            for start, end in _segments(corners):
+                line(axes, start, end, f"scheme-{link.name}", linewidth=1.5)
+    pinned = [point for point, bodies in placement.structure.pins.items() if len(bodies) > 1]
+    for point in scene.ground:
+        if point in pinned:
+            draw_foot(axes, places[point])
+    for point, spot in places.items():
+        radius = PIN_MM if point in pinned else 0.5 * PIN_MM
+        face = "white" if point in pinned else INK
+        axes.add_patch(Circle(tuple(spot), radius, fc=face, ec=INK, lw=0.7, zorder=FRONT))
+    if scene.driver.is_crank:
+        _turning(axes, placement, places)
+    else:
+        _moved_joint(axes, placement, places)
+
+
+def draw_outline(
+    axes: Axes, links: Iterable[Link], places: Mapping[str, Array], color: str, width: float
+) -> None:
+    """Links as lines between their points at ``places`` [mm]."""
+    for link in links:
+        ring = [places[name] for name in link.points]
+        ring = [*ring, ring[0]] if len(ring) > 2 else ring
+        for start, end in pairwise(ring):
+            line(axes, start, end, color=color, linewidth=width)
+
+
+def point_letters(placement: PlacedMechanism, places: Mapping[str, Array]) -> list[Letter]:
+    """The letters of the points at ``places`` [mm]; of points that fall together, one label."""
+    joined = together(places, NEAR_MM)
+    return [
+        Letter(names, at, max(symbol_radius(placement, name) for name in names.split(", ")))
+        for names, at in joined.items()
+    ]
+
+
+def symbol_radius(placement: PlacedMechanism, point: str) -> float:
+    """How far what is drawn at a point reaches from it at least [mm]."""
+    sliding = any(slider.point == point for slider in placement.scene.sliders.values())
+    return 0.5 * BLOCK_MM[1] if sliding else PIN_MM
+
+
+def _segments(corners: Array) -> Iterator[tuple[Array, Array]]:
+    """The bar from end to end of points on a line, or of two."""
+    if len(corners) > 1:
+        apart = np.linalg.norm(corners[:, None] - corners[None], axis=-1)
+        i, j = np.unravel_index(int(apart.argmax()), apart.shape)
+        yield corners[i], corners[j]
+
+
+def _flat(corners: Array) -> bool:
+    """Whether points stand in a line."""
+    spread = np.linalg.svd(corners - corners.mean(axis=0), compute_uv=False)
+    return bool(spread[1] < 1e-6 * spread[0])
+
+
+def draw_foot(axes: Axes, place: Array) -> None:
+    """A pin's support on hatched ground."""
+    side, spare = np.array([0.6 * FOOT_MM, 0.0]), np.array([1.0, 0.0])
+    left, right = place - (0.0, FOOT_MM) - side, place - (0.0, FOOT_MM) + side
+    axes.add_patch(Patch([place, left, right], closed=True, fc="white", ec=INK, lw=0.7))
+    _hatched(axes, left - spare, right + spare)
+
+
+def _hatched(axes: Axes, start: Array, end: Array) -> None:
+    """Ground: a line with short strokes on its right side."""
+    along = end - start
+    length = math.hypot(*along)
+    unit = along / length
+    stroke = HATCH_MM * np.array([unit[1] - unit[0], -unit[0] - unit[1]]) / math.sqrt(2)
+    line(axes, start, end, linewidth=0.8)
+    for share in np.linspace(0.15, 1.0, HATCHES):
+        at = start + share * along
+        line(axes, at, at + stroke, linewidth=0.5)
+
+
+def _block(axes: Axes, place: Array, along: Array) -> None:
+    """The block of a slider."""
+    half, aside = 0.5 * BLOCK_MM[0] * along, 0.5 * BLOCK_MM[1] * quarter_turn(along)
+    corners = [
+        place + half + aside,
+        place - half + aside,
+        place - half - aside,
+        place + half - aside,
+    ]
+    axes.add_patch(Patch(corners, closed=True, fc="white", ec=INK, lw=0.8, zorder=3))
+
+
+def _rails(axes: Axes, place: Array, along: Array) -> None:
+    """A guide of the ground, hatched on both sides of what slides in it."""
+    reach, aside = 1.2 * BLOCK_MM[0] * along, 0.5 * BLOCK_MM[1] * quarter_turn(along)
+    for side in (-1.0, 1.0):
+        _hatched(axes, place + side * (aside + reach), place + side * (aside - reach))
+
+
+def _turning(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]) -> None:
+    """The arrow of the driver's rotation about its pivot; one that swings has two heads."""
+    scene, theta = placement.scene, math.degrees(placement.driver.theta)
+    middle = places[scene.driver_pivot]
+    crank = max(math.dist(places[p], middle) for p in scene.links[scene.driver.link].points)
+    radius = min(max(TURN_SHARE * crank, TURN_MM[0]), TURN_MM[1])
+    sense = math.copysign(1.0, placement.driver.omega)
+    near, far = TURN_DEG
+    # before the crank, or behind it where its foot is before it
+    ahead = theta + sense * (near + far) / 2
+    off_foot = abs((ahead + 90.0 + 180.0) % 360.0 - 180.0)
+    start, end = (near, far) if off_foot > FOOT_DEG + (far - near) / 2 else (-far, -near)
+    ends = [theta + sense * start, theta + sense * end]
+    look: dict[str, Any] = {"theta1": min(ends), "theta2": max(ends), "color": INK, "lw": 0.8}
+    axes.add_patch(Arc(tuple(middle), 2 * radius, 2 * radius, **look))
+    heads = [(ends[1], sense)]
+    if isinstance(scene.driver.law, Oscillating):
+        heads.append((ends[0], -sense))
+    for angle, way in heads:
+        radial = np.array([math.cos(math.radians(angle)), math.sin(math.radians(angle))])
+        arrow_head(axes, middle + radius * radial, way * quarter_turn(radial), INK)
+
+
+def _moved_joint(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]) -> None:
+    """What drives but is no crank: a slider with an arrow along its line, a pin with a dot."""
+    driver = placement.scene.driver
+    if driver.slider is None:
+        spot = tuple(places[placement.scene.driver_pivot])
+        axes.add_patch(Circle(spot, 0.5 * PIN_MM, fc=INK, ec=INK, zorder=FRONT + 1))
+        return
+    way = math.copysign(1.0, placement.driver.omega) * placement.along(driver.slider)
+    start = places[placement.scene.sliders[driver.slider].point] + 0.6 * BLOCK_MM[0] * way
+    line(axes, start, start + 4.0 * way, linewidth=0.8)
+    arrow_head(axes, start + 4.0 * way, way, INK)

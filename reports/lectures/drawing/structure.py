@@ -1,0 +1,171 @@
+"""`crankcheck structure`: what a scene is made of, and all its assemblies."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+
+from analytic.lectures.chains.by_driver import ClassedGroup, by_drivers, classed
+from analytic.structure.groups import Bridge
+from analytic.structure.mobility import Structure, analyse
+from models.errors import CrankcheckError
+from models.files import find_scene, load_scene
+from models.scene import Scene
+from reports.describe.driver_at import place_at
+from reports.describe.roman import roman
+from reports.lectures.drawing.assemblies import Assembled, all_assemblies
+from reports.lectures.drawing.positions import ENDINGS, save_sheet
+from reports.lectures.drawing.sheets.assembly_sheet import draw_assemblies
+from reports.lectures.drawing.sheets.paper import Paper
+from reports.lectures.drawing.sheets.sheet_note import sheet_note
+from reports.output.columns import plain_table
+from reports.output.write import check_file
+from reports.requests.options import PaperSize, SceneName
+
+
+@dataclass(frozen=True)
+class StructureRequest:
+    """What `structure` was asked for, as given."""
+
+    scene: SceneName
+    at_deg: Annotated[
+        float | None,
+        typer.Option(metavar="DEG", help="The driver's angle; default: where the scene starts."),
+    ] = None
+    at_m: Annotated[
+        float | None, typer.Option(metavar="M", help="The place of a slider that drives.")
+    ] = None
+    paper: PaperSize = "A4"
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Draw all assemblies: .svg in layers, or .pdf."),
+    ] = None
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Show or draw the structure. Raises CrankcheckError for what can not be asked."""
+        paper = Paper.of(self.paper)
+        if self.output is not None:
+            check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
+        scene = load_scene(self.scene)
+        structure = analyse(scene)
+        coordinate = _coordinate(scene, self)
+        every = all_assemblies(scene, structure, coordinate)
+        at = f"{scene.driver.joint} at {_told(scene, coordinate)}"
+        if self.output is not None:
+            if not every:
+                raise CrankcheckError(
+                    f"{scene.name}: no assembly with {at}; nothing can be drawn, take another "
+                    "place of the driver"
+                )
+            told = f"{scene.name}: {_counted(every)} with {at}"
+            drawn = [(one.placement, _caption(one), one.is_own) for one in every]
+            canvas = draw_assemblies(drawn, told, sheet_note(scene), paper)
+            save_sheet(console, canvas, self.output, told)
+            return 0
+        _say(console, f"{scene.name}: {scene.source}")
+        _say(console, _count_in_words(structure))
+        _show_groups(console, structure)
+        _show_drivers(console, scene, structure)
+        _show_assemblies(console, every, at)
+        return 0
+
+
+def _coordinate(scene: Scene, request: StructureRequest) -> float:
+    """Where the driver stands [rad, m]: as asked, or where the scene starts."""
+    if request.at_deg is not None or request.at_m is not None:
+        return place_at(scene, request.at_deg, request.at_m)
+    return float(scene.driver.law.at(np.zeros(1))[0][0])
+
+
+def _told(scene: Scene, coordinate: float) -> str:
+    """The driver's place for people."""
+    if scene.driver.slider is not None:
+        return f"{coordinate:.6g} m"
+    return f"{math.degrees(coordinate):.6g} deg"
+
+
+def _count_in_words(structure: Structure) -> str:
+    """Links and joints by class, and the mobility."""
+    n, p = len(structure.bodies), structure.pairs
+    sliders = len(structure.prismatics)
+    return (
+        f"{n} moving links ({', '.join(structure.bodies)}); {p} joints of class 5: "
+        f"{p - sliders} pins, {sliders} sliders; none of class 4\n"
+        f"W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p} - 0 = {structure.count}; {structure.words}"
+    )
+
+
+def _show_groups(console: Console, structure: Structure) -> None:
+    """The groups in solving order, and the class of the mechanism."""
+    table = plain_table("Assur groups in solving order", gap=2)
+    for head in ("group", "links", "class", "order"):
+        table.add_column(head, overflow="fold")
+    highest = 1
+    for part in structure.order:
+        if isinstance(part, Bridge):
+            table.add_row("redundant", part.link, "", "")
+            continue
+        group = classed(part)
+        highest = max(highest, group.class_number)
+        links = ", ".join(group.links)
+        table.add_row(group.kind, links, roman(group.class_number), str(group.order))
+    console.print("", table, sep="\n")
+    _say(console, f"the mechanism is of class {roman(highest)}")
+
+
+def _show_drivers(console: Console, scene: Scene, structure: Structure) -> None:
+    """The class for every joint that could drive."""
+    table = plain_table("Driven at another joint (* this scene's)", gap=2)
+    for head in ("", "driver", "class", "groups"):
+        table.add_column(head, overflow="fold")
+    for one in by_drivers(scene, structure):
+        if one.class_number is None:
+            told = f"none: it can not move, or leaves {', '.join(one.left)} loose"
+        else:
+            told = "; ".join(map(_group_in_words, one.groups)) or "the driver alone"
+        number = "" if one.class_number is None else roman(one.class_number)
+        table.add_row("*" if one.is_own else "", one.joint.words, number, told)
+    console.print("", table, sep="\n")
+
+
+def _group_in_words(group: ClassedGroup) -> str:
+    kind = group.kind or f"class {roman(group.class_number)}, order {group.order}"
+    return f"{kind} ({', '.join(group.links)})"
+
+
+def _show_assemblies(console: Console, every: list[Assembled], at: str) -> None:
+    """Every assembly, by the angles of its links."""
+    _say(console, f"\n{_counted(every)} with {at}" + (" (* this scene's)" if every else ""))
+    if not every:
+        return
+    table = plain_table(gap=2)
+    table.add_column("")
+    table.add_column("branch", overflow="fold")
+    links = list(every[0].placement.scene.links)
+    for name in links:
+        table.add_column(f"{name} deg", justify="right")
+    for one in every:
+        angles = (math.degrees(math.remainder(one.placement.angles[n], math.tau)) for n in links)
+        table.add_row(
+            "*" if one.is_own else "", one.words, *(f"{round(a, 9) + 0.0:.6g}" for a in angles)
+        )
+    console.print(table)
+
+
+def _caption(one: Assembled) -> str:
+    return f"branch: {one.words}" + ("; this scene's" if one.is_own else "")
+
+
+def _counted(every: list[Assembled]) -> str:
+    many = len(every)
+    return f"{many or 'no'} assembl{'y' if many == 1 else 'ies'}"
+
+
+def _say(console: Console, words: str) -> None:
+    console.print(words, highlight=False, markup=False)

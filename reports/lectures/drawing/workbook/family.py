@@ -1,0 +1,136 @@
+"""A family of mechanisms that differ in one number, side by side in one table of formulas."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from models.array import Array
+from models.errors import CrankcheckError, suggestion
+from reports.lectures.drawing.workbook.evaluated import evaluated
+from reports.lectures.drawing.workbook.formula_table import (
+    ASSEMBLED,
+    NAME,
+    STATE,
+    Column,
+    FormulaTable,
+    Input,
+)
+
+MOST_MEMBERS = 20
+CLOSE_DEG = 0.1
+"""Of the crank, between two positions that are tried."""
+SHARED = ("n", "time", "phi")
+"""Columns of the drive, which all members share, unless they differ in its speed."""
+OF_ROWS = ("start_deg", "step_deg")
+"""Inputs that say which rows there are, and nothing of the mechanism."""
+
+
+def varied(table: FormulaTable, name: str, values: Sequence[float]) -> Input:
+    """The input that members differ in, by its name or that of the link whose length it is.
+
+    Raises CrankcheckError for one that the table has not; too few, too many or equal values; and
+    one that it can not have.
+    """
+    inputs = [each for each in table.inputs if each.name not in OF_ROWS]
+    one = next((each for each in inputs if name and name in (each.name, each.link)), None)
+    if one is None:
+        names = [*(i.name for i in inputs), *(i.link for i in inputs if i.link)]
+        raise CrankcheckError(f"--family {name}: {suggestion(name, names, 'it has')}")
+    check_values(name, values)
+    wrong = next((value for value in values if not one.allows(value)), None)
+    if wrong is not None:
+        raise CrankcheckError(
+            f"--family {name}={wrong:g}: {one.told}; give numbers that are {one.range}"
+        )
+    return one
+
+
+def check_values(name: str, values: Sequence[float]) -> None:
+    """Refuse too few, too many and equal values. Raises CrankcheckError."""
+    if not 1 < len(values) <= MOST_MEMBERS:
+        raise CrankcheckError(
+            f"--family {name}: {len(values)} values; give 2 to {MOST_MEMBERS}, such as "
+            f"{name}=3.5,2.5"
+        )
+    twice = next((value for k, value in enumerate(values) if value in values[:k]), None)
+    if twice is not None:
+        raise CrankcheckError(f"--family {name}: {twice:g} stands there twice; give it once")
+
+
+def member_columns(
+    table: FormulaTable, one: Input, values: Sequence[float], asked: str
+) -> list[dict[str, Array]]:
+    """The columns of each member, (rows,). Raises CrankcheckError for a member that has no
+    position, or no rates, everywhere on the way of the crank: of ``asked``, the name that was
+    given for ``one``."""
+    found = []
+    for value in values:
+        inputs = [replace(i, value=value) if i is one else i for i in table.inputs]
+        member = replace(table, inputs=inputs)
+        _check_way(member, asked, value)
+        found.append(evaluated(member))
+    return found
+
+
+def _check_way(member: FormulaTable, name: str, value: float) -> None:
+    """Refuse a member that the crank can not be brought all the way with: between rows, too."""
+    (step,) = (each for each in member.inputs if each.name == "step_deg")
+    way_deg = min(step.value * (member.count - 1), 360.0)
+    count = math.ceil(way_deg / CLOSE_DEG)
+    closely = replace(step, value=way_deg / count)
+    inputs = [closely if each is step else each for each in member.inputs]
+    columns = evaluated(replace(member, inputs=inputs, count=count + 1))
+    wrong = columns[STATE] != ASSEMBLED
+    if wrong.any():
+        at = int(np.argmax(wrong))
+        why = "cannot be assembled"
+        if columns[STATE][at] != why:
+            why = "has no determined rates"
+        raise CrankcheckError(
+            f"--family {name}={value:g}: this member {why} with its crank at "
+            f"{np.degrees(columns['phi'][at]):.4g} deg; leave it out, or choose another {name}"
+        )
+
+
+def family(table: FormulaTable, name: str, values: Sequence[float]) -> FormulaTable:
+    """The table with a group of columns for each value of the input ``name``. Raises
+    CrankcheckError as `varied` and `member_columns`."""
+    one = varied(table, name, values)
+    member_columns(table, one, values, name)
+    shared = SHARED[:1] if one.name == "omega" else SHARED
+    members = range(1, len(values) + 1)
+    inputs = [each for each in table.inputs if each is not one]
+    inputs[:0] = [
+        replace(one, name=f"{one.name}_{k}", value=value, told=f"{one.told}, member {k}")
+        for k, value in zip(members, values, strict=True)
+    ]
+    own = [column for column in table.columns if column.name not in shared]
+    columns = [column for column in table.columns if column.name in shared]
+    columns += [_of_member(column, one.name, k, shared) for k in members for column in own]
+    charts = {
+        title: [f"{column}_{k}" for k in members for column in drawn]
+        for title, drawn in table.charts.items()
+    }
+    return FormulaTable(inputs, columns, table.count, charts)
+
+
+def _of_member(column: Column, name: str, k: int, shared: Sequence[str]) -> Column:
+    """A column of the member ``k``, with the member's own inputs and columns in its formula."""
+
+    def own(formula: str) -> str:
+        return NAME.sub(
+            lambda m: (
+                f"{{{m[1]}_{k}}}" if m[1] == name
+                else m[0] if m[1] or m[2] in shared
+                else f"[{m[2]}_{k}{m[3] or ''}]"
+            ),
+            formula,
+        )  # fmt: skip
+
+    first = None if column.first is None else own(column.first)
+    head = f'="{column.head}, {name} = "&{{{name}_{k}}}'
+    return Column(f"{column.name}_{k}", head, own(column.formula), first)

@@ -1,0 +1,160 @@
+"""What is told of a steady vibration: natural frequencies, orders, deflections, notes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.elastic.natural import link_modes, lowest_rad_s
+from analytic.elastic.resonance import Sensitivity
+from analytic.lectures.vibration.floquet import STABLE
+from analytic.lectures.vibration.steady_vibration import SteadyVibration
+from reports.output.numbers import readable
+
+NEAR = 2.0
+"""A sensitivity from which on a resonance is near enough to be told of; without one it is about
+1."""
+THICK = 0.1
+"""Deflections over the length from which on the theory of a bent beam is left."""
+
+
+@dataclass(frozen=True)
+class LinkRow:
+    """A natural frequency of a link between its pins alone [rad/s], and over the driver's speed."""
+
+    link: str
+    kind: str
+    number: int
+    frequency_rad_s: float
+    ratio: float
+
+
+@dataclass(frozen=True)
+class ModeRow:
+    """A mode of the mechanism: its natural frequency with the driver held still, the least and the
+    most over a turn [rad/s] and the mean over the driver's speed; the order of the turning that it
+    vibrates at, and what a turn multiplies a deviation by."""
+
+    mode: int
+    least_rad_s: float
+    most_rad_s: float
+    ratio: float
+    order: float
+    multiplier: float
+
+
+@dataclass(frozen=True)
+class SwingRow:
+    """The largest deflection of a link [m], of its length, where it is [m from the first pin] and
+    with the driver at which angle [deg]; the largest of its middle and its extension [m]; and by
+    what share the linear theories are off the largest."""
+
+    link: str
+    largest_m: float
+    share: float
+    place_m: float
+    at_deg: float
+    middle_m: float
+    extension_m: float
+    linear_off: float
+    unstiffened_off: float
+
+
+def link_rows(vibration: SteadyVibration) -> list[LinkRow]:
+    speed = vibration.speed_rad_s
+    return [
+        LinkRow(m.link, m.kind, m.number, m.frequency_rad_s, m.frequency_rad_s / speed)
+        for m in link_modes(vibration.scene)
+    ]
+
+
+def mode_rows(vibration: SteadyVibration) -> list[ModeRow]:
+    natural, speed = vibration.natural, vibration.speed_rad_s
+    least, most = (own(natural.frequency_rad_s, axis=0) for own in (np.min, np.max))
+    return [
+        ModeRow(
+            each.mode, float(least[each.mode - 1]), float(most[each.mode - 1]),
+            float(natural.mean_rad_s[each.mode - 1]) / speed, each.order, each.size,
+        )
+        for each in vibration.stability.deviations
+    ]  # fmt: skip
+
+
+def swing_rows(vibration: SteadyVibration) -> list[SwingRow]:
+    linear, unstiffened = vibration.theories.values()
+    angles = np.degrees(vibration.angles)
+    return [
+        SwingRow(
+            name, own.largest_m, own.share, own.place_m, float(angles[own.when]) % 360.0,
+            float(np.abs(own.middle).max()), float(np.abs(own.extension).max()),
+            linear[name].largest_m / own.largest_m - 1.0,
+            unstiffened[name].largest_m / own.largest_m - 1.0,
+        )
+        for name, own in vibration.swings.items()
+        if own.largest_m
+    ]  # fmt: skip
+
+
+def heading(vibration: SteadyVibration) -> str:
+    """What the vibration is of."""
+    scene, speed = vibration.scene, vibration.speed_rad_s
+    links = ", ".join(scene.elastic)
+    ratio = lowest_rad_s(scene) / speed
+    return (
+        f"{scene.name}: steady vibration of {links}, {scene.driver.link} at {speed:.6g} rad/s; the "
+        f"lowest natural frequency of a link is {ratio:.4g} times that"
+    )
+
+
+def notes(vibration: SteadyVibration) -> list[str]:
+    """Whether it is to be met, and how the numbers are meant."""
+    told = [stability_text(vibration), resonance_text(vibration.motion.sensitivity)]
+    thick = [row.link for row in swing_rows(vibration) if row.share > THICK]
+    if thick:
+        told.append(
+            f"{', '.join(thick)} bends by more than a tenth of its length: the beam of this theory "
+            "bends less than that."
+        )
+    if any(own.damping_s == 0.0 for own in vibration.scene.elastic.values()):
+        told.append(
+            "Without damping_s the motion from any other start keeps ringing beside this one."
+        )
+    told.append(
+        "Order: how often a mode vibrates in a turn; at a whole one the driver resonates with it. "
+        "Linear: about the rigid motion, with the stiffness that pull gives; not stiffened: "
+        "without, as in the thesis."
+    )
+    return told
+
+
+def stability_text(vibration: SteadyVibration) -> str:
+    """Whether the periodic motion is stable."""
+    largest = vibration.stability.largest
+    damped = any(own.damping_s for own in vibration.scene.elastic.values())
+    if not vibration.stability.is_stable:
+        return (
+            f"UNSTABLE: a turn multiplies deviations by {largest:.4g}: the turning feeds the "
+            "vibration, and the mechanism does not stay on this motion. Take another speed, a "
+            "lighter link that the elastic one moves, or more damping_s."
+        )
+    if damped and largest == 0.0:  # below what a number holds
+        return "Stable: deviations die out within a turn."
+    if damped and largest < 1.0 - STABLE:
+        turns = -math.log(10.0) / math.log(largest)
+        return f"Stable: deviations fall to a tenth in {readable(turns)} turns."
+    return "Stable, without damping: deviations neither grow nor fall."
+
+
+def resonance_text(found: Sensitivity) -> str:
+    """How far it is from a resonance."""
+    if found.size < NEAR:
+        return (
+            f"No resonance is near: 1 % of stiffness changes the deflection by {found.size:.3g} %."
+        )
+    return (
+        f"NEAR A RESONANCE with {found.link} at order {found.order}: 1 % of stiffness changes the "
+        f"deflection by {found.size:.3g} %, so that it is known no better than the stiffness times "
+        "that."
+    )

@@ -1,1 +1,0 @@
-"""The steady vibration of elastic links in numbers: rows, tables, files."""
