@@ -62,21 +62,21 @@ if TYPE_CHECKING:
     from models.scene import Scene
     from reports.causes.cause import Cause
     from reports.compare.errors import Error, Errors
-    from reports.face.cell_verdict import CellVerdict, check
-    from reports.face.comparison import Comparison, compare
-    from reports.face.elastic_solution import ElasticSolution
-    from reports.face.free_solution import FreeSolution
-    from reports.face.log_verdict import LogVerdict, judge
-    from reports.face.model_verdict import ModelVerdict, check_model
-    from reports.face.report import report
-    from reports.face.simulation import Simulation, run
-    from reports.face.solution import Solution
-    from reports.face.solve import solve, solve_driven
-    from reports.face.sweep import Sweep, sweep
     from reports.judge.cell import Cell
     from reports.judge.rules.rule import Finding
     from reports.lectures.design.synthesis import Synthesis, synth
     from reports.lectures.machine.regulation import MachineCycle, MachineFlywheel, cycle, flywheel
+    from reports.requests.check import CellVerdict, check
+    from reports.requests.compare import Comparison, compare
+    from reports.requests.elastic_solution import ElasticSolution
+    from reports.requests.free_solution import FreeSolution
+    from reports.requests.judge import LogVerdict, judge
+    from reports.requests.report import report
+    from reports.requests.run import Simulation, run
+    from reports.requests.solution import Solution
+    from reports.requests.solve import solve, solve_driven
+    from reports.requests.sweep import Sweep, sweep
+    from reports.requests.verify_model import ModelVerdict, check_model
     from sim.engine import Run
 
     __version__: str
@@ -146,29 +146,29 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
             case "Error" | "Errors":
                 from reports.compare import errors as home
             case "CellVerdict" | "check":
-                from reports.face import cell_verdict as home
+                from reports.requests import check as home
             case "Comparison" | "compare":
-                from reports.face import comparison as home
+                from reports.requests import compare as home
             case "ElasticSolution":
-                from reports.face import elastic_solution as home
+                from reports.requests import elastic_solution as home
             case "FreeSolution":
-                from reports.face import free_solution as home
+                from reports.requests import free_solution as home
             case "LogVerdict" | "judge":
-                from reports.face import log_verdict as home
+                from reports.requests import judge as home
             case "ModelVerdict" | "check_model":
-                from reports.face import model_verdict as home
+                from reports.requests import verify_model as home
             case "MachineCycle" | "MachineFlywheel" | "cycle" | "flywheel":
                 from reports.lectures.machine import regulation as home
             case "report":
-                from reports.face import report as home
+                from reports.requests import report as home
             case "Simulation" | "run":
-                from reports.face import simulation as home
+                from reports.requests import run as home
             case "Solution":
-                from reports.face import solution as home
+                from reports.requests import solution as home
             case "solve" | "solve_driven":
-                from reports.face import solve as home
+                from reports.requests import solve as home
             case "Sweep" | "sweep":
-                from reports.face import sweep as home
+                from reports.requests import sweep as home
             case "Synthesis" | "synth":
                 from reports.lectures.design import synthesis as home
             case "Cell":

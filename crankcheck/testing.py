@@ -10,6 +10,6 @@
 docs/python.md has more of it. Nothing needs to be installed in pytest.
 """
 
-from reports.face.within import assert_within
+from reports.requests.within import assert_within
 
 __all__ = ["assert_within"]

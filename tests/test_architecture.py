@@ -28,7 +28,6 @@ FLOORS: Mapping[str, str] = {
     "reports": """
         cli lectures
         requests
-        face
         page figures
         own_model
         diff tune advise history verify selftest

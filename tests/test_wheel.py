@@ -124,12 +124,12 @@ def test_packages_of_our_names_in_the_users_folder_hide_nothing(
 
 
 TYPED = {
-    "solve('shaper', np.zeros(1))": "crankcheck.reports.face.solution.Solution",
+    "solve('shaper', np.zeros(1))": "crankcheck.reports.requests.solution.Solution",
     "solve('shaper', [0.0]).frame()": "pandas.core.frame.DataFrame",
-    "run(Path('a.toml'), 'mujoco', dt_s=1e-3)": "crankcheck.reports.face.simulation.Simulation",
+    "run(Path('a.toml'), 'mujoco', dt_s=1e-3)": "crankcheck.reports.requests.run.Simulation",
     "check('shaper').findings[0].level": "Literal['pass'] | Literal['advice'] | Literal['fail']",
-    "judge('shaper', 'log.csv', target=1e-3)": "crankcheck.reports.face.log_verdict.LogVerdict",
-    "judge('shaper', cc.run('shaper'))": "crankcheck.reports.face.cell_verdict.CellVerdict",
+    "judge('shaper', 'log.csv', target=1e-3)": "crankcheck.reports.requests.judge.LogVerdict",
+    "judge('shaper', cc.run('shaper'))": "crankcheck.reports.requests.check.CellVerdict",
     "compare('shaper', {'t': [0.0]}).errors": "crankcheck.reports.compare.errors.Errors",
     "sweep(['shaper'], 'out').verdict": "Literal['within'] | Literal['out']",
     "report('out')": "pathlib.Path",
@@ -201,7 +201,7 @@ def test_import_is_the_wheel_and_five_lines_print_a_verdict(installed: Path, min
     done = ran(installed / "python", "five.py", cwd=mine)
     assert (done.returncode, done.stderr) == (0, "")
     module, path = done.stdout.splitlines()[-1].split()
-    assert module == "crankcheck.reports.face.solution"
+    assert module == "crankcheck.reports.requests.solution"
     assert Path(path).is_relative_to(installed.parent)
     assert done.stdout.startswith("within\nprofile tuned (gated)\n")
     assert "\nok fourbar-lecture-1      mujoco 1.2e-07 " in done.stdout

@@ -1,12 +1,12 @@
-"""`crankcheck judge`: read a user's log, judge it, show, write."""
+"""`judge`: a log of the user's own, or a run, held to the closed form."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any, overload
 
 import typer
 from rich.console import Console
@@ -14,8 +14,9 @@ from rich.console import Console
 from analytic.free.loosened import loosened
 from models.errors import CrankcheckError, harmless
 from models.files import find_scene, load_scene
+from models.one_or_more import names_in
 from models.scene import Scene
-from reports.judge.tolerance import check_names, parse, refuse_of_other_motion
+from reports.judge.tolerance import DEFAULTS, FREE, check_names, parse, refuse_of_other_motion
 from reports.logs.blank_map import blank_map
 from reports.logs.columns import read_columns
 from reports.logs.map_file import Map, map_text, read_map
@@ -32,7 +33,210 @@ from reports.own_log.markdown import markdown
 from reports.own_log.rows import row_table
 from reports.own_log.table import show
 from reports.plan.elastic import given_of
+from reports.plan.steps import LEAST_STEPS, positive
+from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
+from reports.requests.arguments import SceneLike, is_true, one_of, scene_of, tolerances_of
+from reports.requests.check import CellVerdict, verdict_of_run
+from reports.requests.compare import (
+    LOG_DRIVES,
+    refuse_options,
+    refuse_segments,
+    refuse_without_forces,
+)
 from reports.requests.options import SceneName, SegmentCount, SpringKind, seconds
+from reports.requests.shown import Shown
+from reports.requests.solution import drawn
+from reports.requests.told import in_python, parts_in_python, told_at_the_call
+from sim.engine import Run
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.console import Console
+
+Target = float | Mapping[str, float] | None
+"""The largest error as a pure number: one for all quantities, or one each."""
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class LogVerdict(Shown, JudgedLog):
+    """A log of your own with what came of it.
+
+    ``verdict`` is "within" or "out"; ``findings`` is what every rule says, and those of
+    ``failures`` make the verdict; ``causes`` explain what is out of tolerance, and say
+    what is late within it; ``not_judged`` is what the scene has and the log has not; ``facts``
+    says where the numbers come from.
+    """
+
+    facts: Mapping[str, str]
+
+    def frame(self) -> pd.DataFrame:
+        """One row per error that is held to a limit, with the columns that it was read from."""
+        import pandas as pd
+
+        from reports.own_log.rows import row_table
+
+        return pd.DataFrame(row_table(self))
+
+    def show(self, console: Console) -> None:
+        from reports.own_log.table import show
+
+        show(console, self, self.facts)
+
+    def _drawn(self) -> str:
+        return drawn(self.scene, self.beside.motion)
+
+
+@overload
+def judge(
+    scene: SceneLike,
+    log: Run,
+    *,
+    target: Target = None,
+    step_s: None = None,
+    drive: str = "scene",
+    map: None = None,
+    require: str | Iterable[str] = (),
+    forces: bool = False,
+    free: bool = False,
+) -> CellVerdict: ...
+
+
+@overload
+def judge(
+    scene: SceneLike,
+    log: LogLike,
+    *,
+    target: Target = None,
+    step_s: float | None = None,
+    drive: str = "scene",
+    map: MapLike = None,
+    require: str | Iterable[str] = (),
+    forces: bool = False,
+    free: bool = False,
+    segments: int | None = None,
+    springs: str | None = None,
+) -> LogVerdict: ...
+
+
+@told_at_the_call
+def judge(
+    scene: SceneLike,
+    log: Run | LogLike,
+    *,
+    target: Target = None,
+    step_s: float | None = None,
+    drive: str = "scene",
+    map: MapLike = None,
+    require: str | Iterable[str] = (),
+    forces: bool = False,
+    free: bool = False,
+    segments: int | None = None,
+    springs: str | None = None,
+) -> CellVerdict | LogVerdict:
+    """Hold a log of your own to the closed form, as `crankcheck judge` does.
+
+    Parameters
+    ----------
+    scene : Scene, str or path
+        A shipped name, the path of a scene file, or a scene.
+    log : path, DataFrame, Mapping, Motion or Run
+        A file (.csv, .tsv, .txt, .parquet, .xlsx), a frame, columns by name, or a motion; of a run
+        the verdict is that of `check` without other steps.
+    target : float, Mapping or None
+        The largest error as a pure number (rad; lengths over that of the longest link): one for
+        all quantities, or one each.
+    step_s : float or None
+        The step of the solver [s], from which a budget follows. One of the two is needed.
+    drive : str
+        ``scene``: the scene's driver moves the truth; ``fitted``: speed and start are fitted to the
+        log; ``logged``: the geometry alone is judged, at the logged angle of the driver.
+    map : path, Mapping or None
+        What columns mean, where their names do not say it: a TOML file, or what would stand in it.
+    require : str or Iterable[str]
+        Quantities or bodies that have to be in the log.
+    forces : bool
+        Judge its columns of forces and torque as well; of a run, those that it was asked for.
+    free : bool
+        The log is of a driven scene that was let go at time 0; of a run this is known.
+    segments, springs : int or None, str or None
+        What elastic links were given to the solver as, as of `run`; of a run this is known.
+
+    Raises
+    ------
+    CrankcheckError
+        A log that can not be read, or of which nothing is of the scene; no target and no step.
+    """
+    options: dict[str, Any] = {"step_s": step_s, "drive": drive, "map": map, "require": require}
+    options |= {"forces": is_true(forces, "forces"), "free": is_true(free, "free")}
+    options |= {"segments": segments, "springs": springs}
+    return judged(scene, log, target_of(target), **options)
+
+
+def judged(
+    scene: SceneLike,
+    log: Run | LogLike,
+    limits: Mapping[str, float],
+    *,
+    step_s: float | None,
+    drive: str,
+    map: MapLike,
+    require: str | Iterable[str],
+    forces: bool = False,
+    free: bool = False,
+    segments: int | None = None,
+    springs: str | None = None,
+) -> CellVerdict | LogVerdict:
+    """As `judge`, of either kind, within limits by quantity, that of all others under `EVERY`."""
+    scene = scene_of(scene)
+    check_names(scene)
+    required = names_in(require, "--require")
+    if isinstance(log, Run):
+        refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)
+        refuse_segments(log, segments, springs)
+        refuse_other_scene(scene, log)
+        refuse_without_forces(log, forces=forces)
+        every = limits.get(EVERY)
+        scene = scene_of_run(scene, log)
+        of_some = [*limits.keys() - {EVERY}]
+        refuse_of_other_motion("--target", of_some, [scene.is_free], bends=bool(scene.elastic))
+        _refuse_few_steps(scene, log)
+        every_name = FREE if scene.is_free else DEFAULTS
+        named = limits if every is None else {name: limits.get(name, every) for name in every_name}
+        return verdict_of_run(scene, log, named)
+    if free:
+        scene = loosened(scene)
+    of_some = [*limits.keys() - {EVERY}]
+    refuse_of_other_motion("--target", of_some, [scene.is_free], bends=bool(scene.elastic))
+    given = given_of(scene, segments, springs)
+    request = LogRequest(
+        target=limits,
+        step_s=0.0 if step_s is None else positive("--step", step_s, "seconds"),
+        drive=chosen_drive(one_of(drive, "--drive", LOG_DRIVES)),
+        require=required,
+        segments=given.segments,
+        springs=given.springs,
+    )
+    refuse_geometry_alone(request.drive, forces=forces)
+    found = judge_log(log_of(scene, log, map, forces=forces), request)
+    notes = tuple(in_python(note) for note in found.notes)
+    return LogVerdict(**parts_in_python(found) | {"notes": notes}, facts=provenance({}))
+
+
+def _refuse_few_steps(scene: Scene, run: Run) -> None:
+    """Refuse a free run that has hardly begun, whose drift and order are those of its start."""
+    if scene.is_free and run.steps < LEAST_STEPS:
+        raise CrankcheckError(
+            f"{scene.name}: the run has {run.steps} steps; free motion is judged from "
+            f"{LEAST_STEPS} on: take shorter ones, or a longer time"
+        )
+
+
+def target_of(target: Target) -> dict[str, float]:
+    """The target by quantity, that for all of them under `EVERY`. Raises CrankcheckError."""
+    if target is None or isinstance(target, Mapping):
+        return tolerances_of(target, "--target")
+    return {EVERY: positive("--target", target, "pure numbers, such as 1e-3")}
+
 
 FORMATS = ("text", "md")
 

@@ -1,17 +1,83 @@
-"""`crankcheck report`: a store as one page for people, or as text."""
+"""`report`: the page of a sweep, or its Markdown."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.face.report_text import ENDINGS, Format, report_of
+from reports.output.console import tell
 from reports.output.write import check_file, write
+from reports.requests.arguments import path_of
+from reports.requests.sweep import Sweep
+from reports.requests.told import told_at_the_call
+from reports.stability.matrix import FILE as MATRIX
+from reports.stability.matrix import Matrix, read_matrix
+from reports.store.reader import read_store
+from reports.store.schema import TABLES
+
+Format = Literal["html", "md"]
+ENDINGS: Mapping[Format, tuple[str, ...]] = {
+    "html": (".html", ".htm"),
+    "md": (".md", ".markdown", ".txt"),
+}
+
+
+@dataclass(frozen=True)
+class Made:
+    """A report, and what it is of, in words."""
+
+    text: str
+    content: str
+
+
+def report_of(folder: Path, format: Format) -> Made:
+    """The report of the store in ``folder``, or of the hard cases alone.
+
+    What is damaged in the store is told, and the rest is reported. Raises CrankcheckError for no
+    store there, or none of which a cell can be read.
+    """
+    try:
+        swept = any((folder / table).exists() for table in TABLES)
+        hard = (folder / MATRIX).is_file()
+    except OSError as error:  # a name too long for the system
+        raise CrankcheckError(
+            f"{folder}: can not be read: {error.strerror or error}; name the folder of a sweep"
+        ) from None
+    if hard and not swept:
+        if format == "md":
+            raise CrankcheckError(
+                f"{folder}: hard cases alone, which have a page and no Markdown; leave out --format"
+            )
+        from reports.page.build import stability_page
+
+        matrix = read_matrix(folder)
+        return Made(stability_page(matrix), f"{len(matrix.runs)} runs of hard cases")
+    stored = read_store(folder)
+    tell(stored.notice)
+    content = f"{len(stored.cells)} cells"
+    if format == "md":
+        from reports.page.comment import summary
+
+        return Made(summary(stored), content)
+    from reports.page.build import page
+
+    return Made(page(stored, _beside(folder) if hard else None), content)
+
+
+def _beside(folder: Path) -> Matrix | None:
+    """The hard cases that were run into the folder of a sweep; told, where they are damaged."""
+    try:
+        return read_matrix(folder)
+    except CrankcheckError as error:
+        tell([str(error)])
+        return None
 
 
 def format_of(text: str) -> Format:
@@ -62,3 +128,37 @@ class ReportRequest:
         size = len(made.text.encode()) / 1e6
         console.print(f"{output}: {made.content}, {size:.1f} MB", markup=False, highlight=False)
         return 0
+
+
+@told_at_the_call
+def report(
+    folder: str | PathLike[str] | Sweep, output: str | PathLike[str] = "report.html"
+) -> Path:
+    """Write a sweep as a page that works offline (.html), or as Markdown (.md).
+
+    Parameters
+    ----------
+    folder : str, path or Sweep
+        The folder of a sweep, or of hard cases, or what `sweep` gave.
+    output : str or path
+        The file, whose ending says which of the two.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    CrankcheckError
+        No store there, or a file that can not be written.
+    """
+    from reports.output.write import check_file, write
+    from reports.requests.report import ENDINGS, report_of
+
+    where = folder.folder if isinstance(folder, Sweep) else path_of(folder, "folder")
+    path = path_of(output, "-o")
+    check_file(path, "-o", tuple(ending for endings in ENDINGS.values() for ending in endings))
+    is_page = path.suffix.lower() in ENDINGS["html"]
+    write(path, report_of(where, "html" if is_page else "md").text)
+    return path

@@ -1,20 +1,38 @@
-"""`crankcheck run`: one scene in one engine, logged."""
+"""`run`: a scene in an engine, logged, and not judged."""
 
 from __future__ import annotations
 
 import shlex
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 from rich.console import Console
 
+from analytic.free.loosened import loosened
 from models.errors import CrankcheckError, harmless
 from models.files import find_scene
-from reports.face.simulation import Simulation, simulated
+from models.scene import Scene
+from reports.compare.beside import Truth
+from reports.compare.free.kept_motion import released_state
+from reports.compare.run_truth import run_truth
+from reports.judge.cell import SEGMENTS, Springs
 from reports.output.frame_file import ENDINGS, write_frame
 from reports.output.write import check_file
+from reports.plan.elastic import GivenAs, counted_released, given_of, held_steps
+from reports.plan.free import under_control
+from reports.plan.steps import TURNS, counted, counted_free
+from reports.requests.arguments import (
+    SceneLike,
+    engine_of,
+    is_true,
+    one_of,
+    scene_of,
+    settings_of,
+    whole_of,
+)
 from reports.requests.options import (
     Duration,
     Forces,
@@ -24,12 +42,88 @@ from reports.requests.options import (
     StepS,
     StepsPerTurn,
 )
+from reports.requests.shown import Shown
+from reports.requests.solution import ROWS, drawn, thinned
+from reports.requests.told import told_at_the_call
+from sim import run as stepping
+from sim.engine import Drive, Run, SettingValue
 from sim.registry import FIRST
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+DRIVES = ("prescribed", "servo", "free")
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Simulation(Shown, Run):
+    """A run of a scene in an engine: how it moved and ended, with which settings (`Run`).
+
+    ``mechanism`` is the scene, let go where the run was, and ``scene`` its name. Its elastic links
+    were given to the engine as so many ``segments`` each, with ``springs`` of a kind between them.
+    """
+
+    mechanism: Scene
+    segments: int = SEGMENTS
+    springs: Springs = "plain"
+
+    def frame(self) -> pd.DataFrame:
+        """The log: one row per sample, columns as those of `Solution.frame`, with the gaps of pins
+        (``C_gap_m``); what the engine does not report is left out.
+
+        Where velocities or accelerations belong to other instants than the places,
+        ``velocity_time_s`` and ``acceleration_time_s`` have these.
+        """
+        from reports.describe.frame import run_frame
+
+        return run_frame(self)
+
+    def show(self, console: Console) -> None:
+        from reports.describe.tables import motion_tables
+
+        console.print(self._heading(), highlight=False, markup=False)
+        if self.motion is not None:
+            few = thinned(self.motion, ROWS)
+            for table in motion_tables(self.mechanism, few, console.width):
+                console.print(table, "")
+            left = f"{few.time_s.size} of {self.motion.time_s.size} logged samples"
+            console.print(left, style="dim", highlight=False)
+        style = "" if self.status == "ok" else "red"
+        console.print(self.ending(), style=style, highlight=False, markup=False)
+        for warning in self.warnings:
+            console.print(f"warning: {warning}", style="yellow", highlight=False, markup=False)
+
+    def _heading(self) -> str:
+        """What was run."""
+        logged = "" if self.every == 1 else f", logged every {self.every} steps"
+        return (
+            f"{self.scene}: {self.engine} {self.version}, profile {self.profile}, drive "
+            f"{self.drive}\ndt {self.dt_s:.4g} s, {self._length()}{logged}\n"
+        )
+
+    def _length(self) -> str:
+        """How long it is: in turns of what drives it, or in time."""
+        if self.mechanism.is_free:
+            return f"{self.steps} steps, {self.steps * self.dt_s:.6g} s"
+        per_turn = self.mechanism.driver.law.period_s / self.dt_s
+        turns = self.steps / per_turn
+        return f"{per_turn:.6g} steps a turn, {turns:.6g} turn{'s' * (turns != 1.0)}"
+
+    def ending(self) -> str:
+        """What came of it, in a line."""
+        reason = f": {self.reason}" if self.reason else ""
+        widest = max((float(gap.max()) for gap in self.gaps.values() if gap.size), default=0.0)
+        gaps = f"; pins open by at most {widest:.2g} m" if self.gaps else ""
+        at = f" at t = {self.stopped_at_s:.6g} s" if self.motion is not None else ""
+        return f"ended {self.status}{at}{reason}{gaps}"
+
+    def _drawn(self) -> str:
+        return drawn(self.mechanism, self.motion)
 
 
 @dataclass(frozen=True)
 class RunRequest:
-    """What `run` was asked for, as given."""
+    """What `run` was asked for, as given; ``settings`` in Python alone."""
 
     scene: SceneName
     engine: Annotated[
@@ -54,6 +148,50 @@ class RunRequest:
     forces: Forces = False
     segments: SegmentCount = None
     springs: SpringKind = None
+    settings: Mapping[str, SettingValue] | None = None
+
+    def answer(self) -> Simulation:
+        """The run, logged. Raises CrankcheckError for what can be told before."""
+        scene = under_control(scene_of(self.scene))
+        engine = FIRST if self.engine is None else self.engine
+        name, profile = engine_of(engine, self.profile, self.settings)
+        drive = _drive(scene, self.drive)
+        every = whole_of(self.every, "--every")
+        _refuse_other_length(scene, drive, self)
+        bent = given_of(scene, self.segments, self.springs)
+        per_turn = self.steps_per_turn
+        if scene.elastic and drive != "free" and self.dt_s is None and per_turn is None:
+            per_turn = held_steps(scene, bent.segments, bent.springs)
+        if drive == "free" and self.turns is None and per_turn is None:
+            loose, asked = loosened(scene), (self.dt_s, self.duration_s)
+            dt_s, steps = (
+                counted_released(loose, *asked, bent.segments, bent.springs, every=every, least=1)
+                if scene.elastic
+                else counted_free(loose, *asked, every=every, least=1)
+            )
+        else:
+            turns = TURNS if self.turns is None else self.turns
+            dt_s, steps = counted(scene, self.dt_s, per_turn, turns, every=every, least=1)
+        if drive == "free":
+            scene = loosened(scene)
+        truth = _truth(scene, bent, dt_s, steps)
+        done = stepping.run(
+            scene if truth is None else truth.given,
+            released_state(scene) if truth is None else truth.start,
+            name,
+            profile,
+            dt_s=dt_s,
+            steps=steps,
+            every=every,
+            drive=drive,
+            settings=settings_of(self.settings),
+            with_forces=is_true(self.forces, "forces"),
+        )
+        if truth is not None:
+            done = truth.logged(done)
+        return Simulation(
+            **vars(done), mechanism=scene, segments=bent.segments, springs=bent.springs
+        )
 
     def run(self, console: Console, progress: Console) -> int:
         """Run it, and show or write the log; returns the exit code: 0, or 1 for a run that did not
@@ -64,20 +202,7 @@ class RunRequest:
         """
         if self.output is not None:
             check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
-        done = simulated(
-            self.scene,
-            FIRST if self.engine is None else self.engine,
-            self.profile,
-            steps_per_turn=self.steps_per_turn,
-            dt_s=self.dt_s,
-            turns=self.turns,
-            duration_s=self.duration_s,
-            every=self.every,
-            drive=self.drive,
-            forces=self.forces,
-            segments=self.segments,
-            springs=self.springs,
-        )
+        done = self.answer()
         if done.motion is None:
             raise CrankcheckError(f"{done.scene}, {done.engine}: {done.status}: {done.reason}")
         if self.output is None:
@@ -114,3 +239,108 @@ def _written(request: RunRequest, done: Simulation) -> str:
         judge += ["--segments", str(done.segments)]
         judge += ["--springs", done.springs] * (done.springs != "plain")
     return harmless(f"{told}\nnext: {shlex.join(judge)}")
+
+
+@told_at_the_call
+def run(
+    scene: SceneLike,
+    engine: str = FIRST,
+    profile: str = "tuned",
+    *,
+    steps_per_turn: float | None = None,
+    dt_s: float | None = None,
+    turns: float | None = None,
+    duration_s: float | None = None,
+    every: int = 1,
+    drive: str | None = None,
+    settings: Mapping[str, SettingValue] | None = None,
+    forces: bool = False,
+    segments: int | None = None,
+    springs: str | None = None,
+) -> Simulation:
+    """Run a scene in an engine and log it.
+
+    Parameters
+    ----------
+    scene : Scene, str or path
+        A shipped name, the path of a scene file, or a scene.
+    engine, profile : str
+        As `crankcheck engines` lists them.
+    steps_per_turn, dt_s : float or None
+        The step, by one of the two: steps in a turn of the driver (720), or seconds; of a run that
+        is let go in seconds alone (a millisecond, or a 5000th of what the scene says).
+    turns : float or None
+        Turns (periods) of the driver (2), where one drives it.
+    duration_s : float or None
+        Of a run that is let go: for how long (what the scene says; 10 turns of a driven one's law;
+        with elastic links five swings of the slowest).
+    every : int
+        Log every so many steps.
+    drive : str or None
+        ``prescribed``: the driver follows its law exactly; ``servo``: a motor of limited gain
+        drives it; ``free``: nothing does, after its start, as of `verify --free`. None: ``free``
+        for a scene that is let go, which has no other, and ``prescribed`` for one that is driven.
+    settings : Mapping or None
+        Settings of the engine in place of the profile's.
+    forces : bool
+        Log the reactions and the driving torque as well, in ``motion.forces``.
+    segments, springs : int or None, str or None
+        What elastic links are given to the engine as: so many rigid segments each (16), with
+        springs between them that are ``plain``, or ``corrected`` for the sag of the beam; or, with
+        ``beam``, as many elements of a beam of the engine's own.
+
+    Returns
+    -------
+    Simulation
+        Also for a scene that the engine can not hold, and for a run that came apart: ``status``
+        and ``reason`` say so.
+
+    Raises
+    ------
+    CrankcheckError
+        An argument that is none; an EngineError for an engine, profile or setting; a ReachError
+        for a scene that can not be assembled at its start.
+    """
+    return RunRequest(**locals()).answer()
+
+
+def _truth(scene: Scene, bent: GivenAs, dt_s: float, steps: int) -> Truth | None:
+    """What a run of so many steps starts from, None of one with rigid links that is let go. Raises
+    CrankcheckError."""
+    if scene.is_free and not scene.elastic:
+        return None
+    return run_truth(scene, steps, dt_s, free=scene.is_free, given=(bent.segments, bent.springs))
+
+
+def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> None:
+    """Refuse a length that the run has no use for: turns of a scene that has no law, a duration of
+    what is driven, or both. Raises CrankcheckError."""
+    in_turns = {"--turns": request.turns, "--steps-per-turn": request.steps_per_turn}
+    for option in (name for name, value in in_turns.items() if value is not None):
+        if scene.is_free:
+            raise CrankcheckError(
+                f"{option}: {scene.name} is let go, and has no turns; give --dt and --duration, in "
+                "seconds"
+            )
+        if request.duration_s is not None:
+            raise CrankcheckError(
+                f"--duration and {option}: a run that is let go has its length in seconds, or that "
+                "of turns of the law that drove it; give one of them"
+            )
+    if request.duration_s is not None and drive != "free":
+        raise CrankcheckError(
+            f"--duration: it is of runs that are let go, and {scene.name} is driven; give --turns, "
+            "or let it go with --drive free"
+        )
+
+
+def _drive(scene: Scene, drive: str | None) -> Drive:
+    """What drives a scene. Raises CrankcheckError for a drive of what is let go: it has no law."""
+    if drive is None:
+        return "free" if scene.is_free else "prescribed"
+    driven = cast(Drive, one_of(drive, "--drive", DRIVES))
+    if scene.is_free and driven != "free":
+        raise CrankcheckError(
+            f"--drive {driven}: {scene.name} is let go, and nothing drives it; leave --drive out"
+        )
+    return driven

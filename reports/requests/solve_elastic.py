@@ -11,10 +11,10 @@ from models.scene import Scene
 from reports.describe.elastic_certainty import certainty
 from reports.describe.elastic_course import closely_sampled, drawn_course, elastic_course
 from reports.describe.elastic_motion import elastic_frame, energy_columns
-from reports.face.elastic_choice import ElasticChoice
-from reports.face.elastic_text import show_elastic
 from reports.output.frame_file import write_frame
 from reports.output.write import check_folder, write
+from reports.requests.elastic_choice import ElasticChoice
+from reports.requests.elastic_text import show_elastic
 from reports.requests.solve_free import free_instants, refuse_turns
 from reports.requests.solve_options import PAGE, SolveOptions, instants_of, refuse_times
 
@@ -74,7 +74,7 @@ def _written(motion: ElasticHistory, time_s: Array, request: SolveOptions) -> li
         course = drawn_course(motion, closely_sampled(scene, motion.until_s))
         told.append(written_elastic_figures(course, request.figures))
     if output is not None and output.suffix.lower() == PAGE:
-        from reports.face.scene_report import elastic_page_of
+        from reports.requests.scene_report import elastic_page_of
 
         write(output, elastic_page_of(motion))
         told.append(f"{output}: {scene.name} with elastic links over {motion.until_s:.6g} s")

@@ -14,9 +14,9 @@ from models.errors import CrankcheckError, harmless
 from models.scene import Scene
 from reports.describe.frame import motion_frame
 from reports.describe.free_motion import free_columns
-from reports.face.free_text import show_free
 from reports.output.frame_file import SHEET_ROWS, write_frame
 from reports.output.write import check_folder, write
+from reports.requests.free_text import show_free
 from reports.requests.solve_options import SolveOptions
 
 PAGE = ".html"
@@ -39,7 +39,7 @@ def run_solve_free(scene: Scene, request: SolveOptions, console: Console) -> Non
     if request.figures is not None:
         told.append(written_free_figures(free, request.figures))
     if is_page:
-        from reports.face.scene_report import free_page_of
+        from reports.requests.scene_report import free_page_of
 
         assert request.output is not None
         write(request.output, free_page_of(free))

@@ -14,8 +14,8 @@ import typer
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.face.elastic_choice import ElasticChoice
 from reports.output.frame_file import SHEET_ROWS
+from reports.requests.elastic_choice import ElasticChoice
 from reports.requests.options import SceneName
 
 PAGE, WORKBOOK = ".html", ".xlsx"

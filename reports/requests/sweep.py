@@ -1,26 +1,360 @@
-"""`crankcheck sweep`: run the grid of a study, keep every cell, then time them one by one."""
+"""`sweep`: a grid of cells, kept in a folder, each timed afterwards."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence, Sized
+from contextlib import ExitStack
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
-from typing import Annotated
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 from rich.console import Console
 
-from models.errors import CrankcheckError, shown
-from reports.face.sweep_text import show_sweep
+from models.errors import CrankcheckError, harmless, shown
+from models.files import every_shipped, load_scene
+from models.one_or_more import names_in
+from models.scene_text import scene_text
+from reports.output.numbers import count
 from reports.plan.chosen import left_out_note
-from reports.plan.chosen_study import StudyChoice, chosen_study, refuse_other_engine, study_engines
+from reports.plan.chosen_study import (
+    Overrides,
+    StudyChoice,
+    chosen_study,
+    refuse_other_engine,
+    study_engines,
+)
 from reports.plan.elastic import chosen_segments, chosen_springs, shortened_note
 from reports.plan.forces import silent_note
+from reports.plan.steps import positive
 from reports.plan.study import Study, StudyValue, load_study
+from reports.requests.arguments import (
+    SceneLike,
+    each_of,
+    is_true,
+    kind_of,
+    path_of,
+    scene_of,
+    setting_of,
+    whole_of,
+)
 from reports.requests.options import Duration, Engines, Forces, Jobs, SpringKind
+from reports.requests.shown import Shown
+from reports.requests.told import told_at_the_call
+from reports.results.lines import lines
+from reports.results.recommend import recommendations
+from reports.results.table import noise_line, recommendation_table
+from reports.store.reader import Stored, read_store
+from reports.sweep.running import Done
 from reports.sweep.whole import Manner, swept
 from reports.workers.isolated import checked_limits
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.console import Console
+
+    from reports.sweep.running import Done
+
+MOST_JOBS = 1024
+
+
+def refuse_empty_lists(arguments: Mapping[str, object]) -> None:
+    """Refuse lists and the like without anything in them: () alone leaves what the study has.
+
+    Raises CrankcheckError that names the argument.
+    """
+    for name, value in arguments.items():
+        if _is_empty(value) and not isinstance(value, str | tuple):
+            raise CrankcheckError(
+                f"{name}: found nothing in it ({kind_of(value)}); give at least one, or () for "
+                "those of the study"
+            )
+
+
+def _is_empty(value: object) -> bool:
+    """Whether it has nothing in it; a number that numpy has made an array is no list."""
+    try:
+        return isinstance(value, Sized) and len(value) == 0
+    except TypeError:
+        return False
+
+
+def manner_of(
+    limit_s: float,
+    memory_gb: float,
+    jobs: int,
+    *,
+    timing: bool,
+    keep_trajectories: bool,
+    again: bool,
+) -> Manner:
+    """How cells are run. Raises CrankcheckError for what can not be asked."""
+    limits = checked_limits(
+        positive("--limit-s", limit_s, "seconds"), positive("--memory-gb", memory_gb, "GB")
+    )
+    jobs = whole_of(jobs, "--jobs", 0)
+    if jobs > MOST_JOBS:
+        raise CrankcheckError(f"--jobs {jobs}: at most {MOST_JOBS}; 0 is one per processor")
+    return Manner(
+        limits,
+        jobs,
+        timing=is_true(timing, "timing"),
+        keep_runs=is_true(keep_trajectories, "keep_trajectories"),
+        again=is_true(again, "again"),
+    )
+
+
+def scene_names(scenes: object, kept: ExitStack) -> list[str]:
+    """Names and paths of scenes; one that is neither is written into a file, which is ``kept``.
+
+    Raises CrankcheckError for what is no scene.
+    """
+    names: list[str] = []
+    for each in each_of(scenes):
+        if isinstance(each, str | PathLike):
+            names.append(str(path_of(each, "scenes")))
+            continue
+        scene = scene_of(each)
+        if scene.name in every_shipped() and load_scene(scene.name) == scene:
+            names.append(scene.name)
+            continue
+        path = Path(kept.enter_context(TemporaryDirectory())) / f"{scene.name}.toml"
+        path.write_text(scene_text(scene), encoding="utf-8")
+        names.append(str(path))
+    return names
+
+
+def numbers_of(
+    values: float | Iterable[float], option: str, unit: str = "steps, such as 720"
+) -> list[float]:
+    """One number or several, above 0. Raises CrankcheckError."""
+    return [positive(option, value, unit) for value in each_of(values)]
+
+
+def overrides_of(settings: object, engines: Sequence[str]) -> Overrides:
+    """Settings by engine. Raises CrankcheckError for what is not said as engine.setting."""
+    if settings is None:
+        return {}
+    cure = "give a dict such as {'ENGINE.iterations': [2, 10]}"
+    if not isinstance(settings, Mapping):
+        raise CrankcheckError(f"--set: found {kind_of(settings)}; {cure}")
+    found: dict[str, dict[str, StudyValue | list[StudyValue]]] = {}
+    for name, values in settings.items():
+        owner, dot, setting = str(name).partition(".")
+        if not dot:
+            raise CrankcheckError(f"--set {name!r}: no engine and setting; {cure}")
+        refuse_other_engine(owner, engines, f"--set {name!r}")
+        plain: list[StudyValue] = [setting_of(name, value) for value in each_of(values)]
+        if not plain:
+            raise CrankcheckError(f"--set {name!r}: found no value; give one, or several")
+        found.setdefault(owner, {})[setting] = plain
+    return found
+
+
+def command_of(choice: StudyChoice, folder: Path, study: object) -> list[str]:
+    """The command that does the same, which a store tells to mend it."""
+    several = ",".join(f"{each:g}" for each in choice.steps_per_turn)
+    options = [
+        *(("--study", study) if study is not None else ()),
+        *(word for name in choice.engines for word in ("--engine", name)),
+        *(word for name in choice.profiles for word in ("--profile", name)),
+        *(("--steps-per-turn", several) if several else ()),
+        *(("--turns", f"{choice.turns:g}") if choice.turns is not None else ()),
+        *(("--forces",) if choice.forces else ()),
+        *(("--free",) if choice.free else ()),
+        *(("--dt", ",".join(f"{each:g}" for each in choice.dt_s)) if choice.dt_s else ()),
+        *(("--duration", f"{choice.duration_s:g}") if choice.duration_s is not None else ()),
+        *(("--segments", ",".join(map(str, choice.segments))) if choice.segments else ()),
+        *(("--springs", ",".join(choice.springs)) if choice.springs else ()),
+        *(
+            word
+            for owner, chosen in choice.overrides.items()
+            for name, values in chosen.items()
+            for word in ("--set", f"{owner}.{name}={','.join(map(str, _listed(values)))}")
+        ),
+    ]
+    return ["crankcheck", "sweep", "-o", str(folder), *choice.scenes, *map(str, options)]
+
+
+def _listed(values: object) -> Sequence[object]:
+    return values if isinstance(values, list) else [values]
+
+
+def show_sweep(console: Console, folder: Path, number: int, done: Done) -> None:
+    """Print what of so many cells was run now, what failed, and what to do with it."""
+    console.print(
+        f"{count(number, 'cell')}: {done.ran} run now, {number - done.ran} were there; "
+        f"{done.timed} timed now"
+    )
+    for status, reasons in sorted(done.failed.items()):
+        console.print(f"  {sum(reasons.values())} {status}, such as", highlight=False)
+        for reason, _ in reasons.most_common(2):
+            console.print(f"    {reason}", markup=False, highlight=False)
+    stored = f"stored in {folder}; next: crankcheck report {folder} -o report.html"
+    console.print(harmless(stored), markup=False)
+    found = read_store(folder)
+    if not found.timings.empty:
+        _recommend(console, found)
+
+
+def _recommend(console: Console, stored: Stored) -> None:
+    """What to choose, of all that the store holds."""
+    console.print()
+    older = len(stored.cells) - sum(len(line.cells) for line in lines(stored))
+    if older:
+        console.print(f"left out: {older} cells of earlier runs, whose names stand for others now")
+    console.print(recommendation_table(recommendations(stored), console.width))
+    console.print(noise_line(stored), highlight=False)
+
+
+Values = float | int | str | Sequence[float | int | str]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep(Shown):
+    """Cells in a folder: so many were asked for, and ``done`` is what was run now."""
+
+    folder: Path
+    cells: int
+    done: Done
+
+    def frame(self) -> pd.DataFrame:
+        """One row per cell of the folder, with its errors, verdict and cost."""
+        from reports.store.reader import read_store
+
+        return read_store(self.folder).cells
+
+    @property
+    def verdict(self) -> Literal["within", "out"]:
+        """Whether all gated cells of the folder are within tolerance."""
+        cells = self.frame()
+        gated = cells[cells["gated"].astype(bool)]
+        return "within" if bool((gated["verdict"] == "within").all()) else "out"
+
+    def show(self, console: Console) -> None:
+        from reports.requests.sweep import show_sweep
+
+        show_sweep(console, self.folder, self.cells, self.done)
+
+
+@told_at_the_call
+def sweep(
+    scenes: SceneLike | Iterable[SceneLike],
+    folder: str | PathLike[str],
+    *,
+    study: str | PathLike[str] | None = None,
+    engines: str | Iterable[str] = (),
+    profiles: str | Iterable[str] = (),
+    steps_per_turn: float | Iterable[float] = (),
+    turns: float | None = None,
+    settings: Mapping[str, Values] | None = None,
+    jobs: int = 0,
+    limit_s: float = 60.0,
+    memory_gb: float = 2.0,
+    timing: bool = True,
+    keep_trajectories: bool = False,
+    again: bool = False,
+    progress: bool = False,
+    forces: bool = False,
+    free: bool = False,
+    dt_s: float | Iterable[float] = (),
+    duration_s: float | None = None,
+    segments: int | Iterable[int] = (),
+    springs: str | Iterable[str] = (),
+) -> Sweep:
+    """Run a grid of scenes, engines, settings and steps into a folder, as `crankcheck sweep`.
+
+    Cells run in processes apart; what the folder has already is not run again.
+
+    Parameters
+    ----------
+    scenes : Scene, str, path or Iterable of them
+        Shipped names, paths of scene files, or scenes; () for those of the study.
+    folder : str or path
+        Where the cells are kept.
+    study : str, path or None
+        A study file (.toml, .yaml); the shipped one for None.
+    engines, profiles : str or Iterable[str]
+        In place of the study's; () leaves them.
+    steps_per_turn : float or Iterable[float]
+        In place of the study's; () leaves them.
+    turns : float or None
+        Turns of the driver; those of the study for None.
+    settings : Mapping or None
+        One value, or several, by engine and setting: ``{"mujoco.iterations": [2, 10]}``.
+    jobs : int
+        Processes; 0 for one per processor.
+    limit_s, memory_gb : float
+        What a cell may take.
+    timing : bool
+        Time the cells afterwards.
+    keep_trajectories : bool
+        Keep the whole log of every cell.
+    again : bool
+        Run cells again that timed out or crashed.
+    progress : bool
+        Tell on standard error how far it is.
+    forces : bool
+        Compare reactions and torque as well, of engines that report them.
+    free : bool
+        Let the scenes go; those of free motion for ().
+    dt_s : float or Iterable[float]
+        Steps of free motion [s], which has no turns.
+    duration_s : float or None
+        Of free motion [s]; that of the scene for None.
+    segments, springs : int or Iterable[int], str or Iterable[str]
+        What elastic links are given to engines as, as of `run`; () for those of the study.
+
+    Raises
+    ------
+    CrankcheckError
+        What can be told of the arguments before running; a folder that is not to be written.
+    """
+    from reports.output.console import terminal
+    from reports.plan.chosen_study import StudyChoice, chosen_study, study_engines
+    from reports.plan.elastic import chosen_segments, chosen_springs
+    from reports.plan.study import load_study
+    from reports.requests.sweep import (
+        command_of,
+        manner_of,
+        numbers_of,
+        overrides_of,
+        refuse_empty_lists,
+        scene_names,
+    )
+    from reports.sweep.whole import swept
+
+    where = path_of(folder, "folder")
+    chosen = {"scenes": scenes, "engines": engines, "profiles": profiles}
+    refuse_empty_lists(chosen | {"steps_per_turn": steps_per_turn})
+    manner = manner_of(
+        limit_s, memory_gb, jobs, timing=timing, keep_trajectories=keep_trajectories, again=again
+    )
+    named = names_in(engines, "engines")
+    told = load_study(None if study is None else path_of(study, "study"))
+    with ExitStack() as kept:
+        choice = StudyChoice(
+            scene_names(scenes, kept),
+            named,
+            names_in(profiles, "profiles"),
+            numbers_of(steps_per_turn, "--steps-per-turn"),
+            None if turns is None else positive("--turns", turns, "turns of the driver"),
+            overrides_of(settings, study_engines(told, named)),
+            is_true(forces, "forces"),
+            is_true(free, "free"),
+            numbers_of(dt_s, "--dt", "seconds, such as 1e-3"),
+            None if duration_s is None else positive("--duration", duration_s, "seconds"),
+            [chosen_segments(count) for count in each_of(segments)],
+            [chosen_springs(text) for text in names_in(springs, "springs")],
+        )
+        asked = chosen_study(told, choice, is_shipped=study is None)
+        console = terminal(stderr=True)
+        console.quiet = not is_true(progress, "progress")
+        laid, done = swept(asked, where, manner, command_of(choice, where, study), console)
+    return Sweep(where, len(laid.tasks), done)
 
 
 @dataclass(frozen=True)

@@ -11,14 +11,14 @@ from models.files import load_scene
 from models.scene import Scene
 from reports.compare.elastic.released_truth import ReleasedElasticTruth
 from reports.describe.held_to import held_to
-from reports.face.comparison import compare
-from reports.face.log_verdict import judge
-from reports.face.simulation import run as simulated
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
 from reports.judge.tolerance import limits
 from reports.plan.elastic import counted_released, few_swings_s, shortened_note
 from reports.plan.free import under_control
+from reports.requests.compare import compare
+from reports.requests.judge import judge
+from reports.requests.run import run as simulated
 from reports.selftest.segment_changes import in_chain, springs, stiffer
 from reports.verify.footer import footer
 from tests.worlds.tiers import slowly

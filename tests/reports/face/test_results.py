@@ -19,10 +19,10 @@ import pytest
 import crankcheck
 from models.files import parse_scene
 from reports.drawing.svg import svg
-from reports.face import model_verdict
-from reports.face.shown import Shown
-from reports.face.told import in_python
 from reports.own_model.account import read_here
+from reports.requests import verify_model as model_verdict
+from reports.requests.shown import Shown
+from reports.requests.told import in_python
 from reports.store.manifest import read_manifest
 from tests.reports.page.hostile import Outline
 from tests.worlds.command_line import crank

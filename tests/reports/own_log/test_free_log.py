@@ -15,10 +15,10 @@ from models.files import load_scene
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.free.kept_motion import kept_motion
-from reports.face.simulation import Simulation
 from reports.judge.cell import Cell, check
 from reports.own_log.table import footer, no_cause_text
 from reports.page.log_page import log_page
+from reports.requests.run import Simulation
 from tests.worlds.tiers import slowly
 
 SWING = "fourbar-swing"

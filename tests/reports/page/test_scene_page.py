@@ -15,11 +15,11 @@ from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.free.release import release
 from analytic.lectures.synthesis.design import Proposal
 from models.files import load_scene
-from reports.face.scene_report import elastic_page_of, free_page_of, page_of
 from reports.lectures.design.constructions.construction_page import construction_page
 from reports.lectures.drawing.sheets.polygons.polygon_instant import placed_at_time
 from reports.lectures.drawing.sheets.polygons.polygon_page import polygon_page
 from reports.page.scene_sections.elastic import factors
+from reports.requests.scene_report import elastic_page_of, free_page_of, page_of
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.reports.page.conftest import Write
 from tests.reports.page.tab import Tab

@@ -11,17 +11,17 @@ from reports.compare import compare as comparing
 from reports.compare.beside import Truth
 from reports.compare.errors import Error, Errors
 from reports.compare.run_truth import run_truth
-from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
-from reports.face.arguments import SceneLike, is_true, one_of, scene_of
-from reports.face.shown import Shown
-from reports.face.solution import drawn
-from reports.face.told import told_at_the_call
 from reports.judge.cell import SEGMENTS
 from reports.judge.tolerance import check_names
 from reports.plan.elastic import given_of
 from reports.plan.free import refuse_unreleased
 from reports.plan.steps import positive
 from reports.quantities import QUANTITIES
+from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
+from reports.requests.arguments import SceneLike, is_true, one_of, scene_of
+from reports.requests.shown import Shown
+from reports.requests.solution import drawn
+from reports.requests.told import told_at_the_call
 from sim.engine import Run
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class Comparison(Shown):
         return pd.DataFrame([error_row(error) for error in self.errors.rows])
 
     def show(self, console: Console) -> None:
-        from reports.face.error_table import show_errors
+        from reports.requests.error_table import show_errors
 
         show_errors(console, self.scene, self.source, self.errors)
 

@@ -12,8 +12,8 @@ from reports.describe.frame import cleaned
 from reports.describe.free_motion import free_notes, free_tables
 from reports.describe.law import describe_law
 from reports.describe.tables import motion_tables
-from reports.face.solution_text import heading
 from reports.plan.singular import continued_note
+from reports.requests.solution_text import heading
 
 
 def show_free(console: Console, free: FreeMotion, motion: Motion) -> None:

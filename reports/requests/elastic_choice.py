@@ -10,7 +10,7 @@ from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.laws import ConstantSpeed, Oscillating
 from models.scene import Scene
-from reports.face.arguments import is_true, one_of, whole_of
+from reports.requests.arguments import is_true, one_of, whole_of
 
 if TYPE_CHECKING:  # a third of a second: not for scenes with rigid links
     from analytic.elastic.discretisation import Discretisation

@@ -10,12 +10,12 @@ from analytic.free.loosened import loosened
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
-from reports.face.arguments import kind_of, path_of
-from reports.face.simulation import Simulation
-from reports.face.solution import Solution
 from reports.logs.channel import OwnLog
 from reports.logs.map_file import Map, map_of, read_map
 from reports.plan.free import under_control
+from reports.requests.arguments import kind_of, path_of
+from reports.requests.run import Simulation
+from reports.requests.solution import Solution
 from sim.engine import Run
 
 if TYPE_CHECKING:

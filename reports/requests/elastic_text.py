@@ -22,7 +22,7 @@ from reports.describe.elastic_words import elastic_facts, elastic_warnings, star
 from reports.describe.force_tables import motion_force_tables
 from reports.describe.frame import cleaned
 from reports.describe.law import describe_law
-from reports.face.solution_text import heading
+from reports.requests.solution_text import heading
 
 
 def show_elastic(

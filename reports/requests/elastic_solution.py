@@ -17,8 +17,8 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.describe.elastic_certainty import certainty
 from reports.describe.elastic_course import ElasticCourse, closely_sampled, elastic_course, start_of
-from reports.face.elastic_choice import ElasticChoice
-from reports.face.solution import ROWS, Solution, drawn, thinned
+from reports.requests.elastic_choice import ElasticChoice
+from reports.requests.solution import ROWS, Solution, drawn, thinned
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,7 +57,7 @@ class ElasticSolution(Solution):
         return super().frame().assign(**rigid_columns(rigid), **energy)
 
     def show(self, console: Console) -> None:
-        from reports.face.elastic_text import show_elastic
+        from reports.requests.elastic_text import show_elastic
 
         few = np.sort(thinned(self, ROWS).time_s)
         shown, fine = (

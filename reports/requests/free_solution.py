@@ -11,7 +11,7 @@ from analytic.result import Selection
 from models.array import Array
 from models.motion import Bound, Motion
 from models.scene import Scene
-from reports.face.solution import ROWS, Solution, drawn, thinned
+from reports.requests.solution import ROWS, Solution, drawn, thinned
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -48,7 +48,7 @@ class FreeSolution(Solution):
         return super().frame().assign(**free_columns(self.free, self.time_s))
 
     def show(self, console: Console) -> None:
-        from reports.face.free_text import show_free
+        from reports.requests.free_text import show_free
 
         few = thinned(self, ROWS)
         show_free(console, self.free, few)

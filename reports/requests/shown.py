@@ -23,7 +23,7 @@ class Shown:
         return ""
 
     def __str__(self) -> str:
-        from reports.face.page import as_text
+        from reports.requests.notebook import as_text
 
         return as_text(self.show)
 
@@ -31,7 +31,7 @@ class Shown:
         return str(self)
 
     def _repr_html_(self) -> str:
-        from reports.face.page import as_html
+        from reports.requests.notebook import as_html
 
         return as_html(self._drawn(), self.show)
 

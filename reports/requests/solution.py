@@ -13,7 +13,7 @@ from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.with_forces import cleaned_forces
-from reports.face.shown import Shown
+from reports.requests.shown import Shown
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -48,7 +48,7 @@ class Solution(Shown, Motion):
     def show(self, console: Console) -> None:
         from analytic.structure.mobility import analyse
         from reports.describe.facts import speed_facts
-        from reports.face.solution_text import (
+        from reports.requests.solution_text import (
             show_friction,
             show_heading,
             show_largest,

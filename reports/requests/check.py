@@ -7,18 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from models.scene import Scene
-from reports.face.arguments import (
-    SceneLike,
-    engine_of,
-    is_true,
-    one_of,
-    scene_of,
-    settings_of,
-    tolerances_of,
-)
-from reports.face.shown import Shown
-from reports.face.solution import drawn
-from reports.face.told import parts_in_python, told_at_the_call
 from reports.judge.cell import SEGMENTS, Cell, Checked, check_run
 from reports.judge.tolerance import check_names
 from reports.output.provenance import provenance
@@ -29,6 +17,18 @@ from reports.plan.free import refuse_giving_way, refuse_unreleased
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import counted
+from reports.requests.arguments import (
+    SceneLike,
+    engine_of,
+    is_true,
+    one_of,
+    scene_of,
+    settings_of,
+    tolerances_of,
+)
+from reports.requests.shown import Shown
+from reports.requests.solution import drawn
+from reports.requests.told import parts_in_python, told_at_the_call
 from reports.verify.advised import advised
 from sim.engine import Drive, Run, SettingValue
 from sim.registry import FIRST

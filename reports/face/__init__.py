@@ -1,1 +1,0 @@
-"""What `import crankcheck` gives: functions with arguments that are checked, and their results."""
