@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Annotated
+import dataclasses
+from collections.abc import Iterator, Sequence
+from typing import Annotated, Any, get_type_hints
 
 import typer
 
@@ -52,3 +53,20 @@ Jobs = Annotated[int, typer.Option(min=0, max=1024, help="Processes; 0: one per 
 PaperSize = Annotated[
     str, typer.Option(metavar="SIZE", help="A5, A4, A3, A2, or WIDTHxHEIGHT in mm.")
 ]
+
+
+def option_of(request: type, field: str) -> str:
+    """What the command line calls a field of a request."""
+    note = get_type_hints(request, include_extras=True)[field].__metadata__[0]
+    if isinstance(note, typer.models.ArgumentInfo):
+        return str(note.metavar)
+    written = [each for each in note.param_decls or () if each.startswith("--")]
+    return str((written or [f"--{field.replace('_', '-')}"])[0])
+
+
+def given(request: Any, *fields: str) -> Iterator[str]:
+    """The options of those of some fields that do not keep their default."""
+    defaults = {each.name: each.default for each in dataclasses.fields(request)}
+    for field in fields:
+        if getattr(request, field) != defaults[field]:
+            yield option_of(type(request), field)

@@ -41,6 +41,7 @@ from reports.requests.options import (
     SpringKind,
     StepS,
     StepsPerTurn,
+    given,
 )
 from reports.requests.shown import Shown
 from reports.requests.solution import ROWS, drawn, thinned
@@ -315,8 +316,7 @@ def _truth(scene: Scene, bent: GivenAs, dt_s: float, steps: int) -> Truth | None
 def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> None:
     """Refuse a length that the run has no use for: turns of a scene that has no law, a duration of
     what is driven, or both. Raises CrankcheckError."""
-    in_turns = {"--turns": request.turns, "--steps-per-turn": request.steps_per_turn}
-    for option in (name for name, value in in_turns.items() if value is not None):
+    for option in given(request, "turns", "steps_per_turn"):
         if scene.is_free:
             raise CrankcheckError(
                 f"{option}: {scene.name} is let go, and has no turns; give --dt and --duration, in "

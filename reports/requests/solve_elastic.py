@@ -15,6 +15,7 @@ from reports.output.frame_file import write_frame
 from reports.output.write import check_folder, write
 from reports.requests.elastic_choice import ElasticChoice
 from reports.requests.elastic_text import show_elastic
+from reports.requests.options import given
 from reports.requests.solve_free import free_instants, refuse_turns
 from reports.requests.solve_options import PAGE, SolveOptions, instants_of, refuse_times
 
@@ -40,25 +41,17 @@ def run_solve_elastic(
 def _check(scene: Scene, request: SolveOptions) -> None:
     """Refuse what is asked of rigid links alone. Raises CrankcheckError."""
     (refuse_turns if scene.is_free else refuse_times)(scene, request)
-    given = {
-        "--at-deg": request.at_deg,
-        "--at-m": request.at_m,
-        "--clockwise": request.clockwise or None,
-        "--along": request.along or None,
-    }
-    for option, value in given.items():
-        if value is not None:
-            raise CrankcheckError(
-                f"{option}: {scene.name} has elastic links ({', '.join(scene.elastic)}), whose "
-                f"places depend on how they came there; leave {option} out, and give --turns and "
-                "--steps-per-turn"
-            )
+    for option in given(request, "at_deg", "at_m", "clockwise", "along"):
+        raise CrankcheckError(
+            f"{option}: {scene.name} has elastic links ({', '.join(scene.elastic)}), whose "
+            f"places depend on how they came there; leave {option} out, and give --turns and "
+            "--steps-per-turn"
+        )
     is_page = request.output is not None and request.output.suffix.lower() == PAGE
-    for option, value in (("--steps-per-turn", request.steps_per_turn), ("--steps", request.steps)):
-        if is_page and value is not None:
-            raise CrankcheckError(
-                f"-o {request.output}: a page has its own samples; leave out {option}"
-            )
+    for option in given(request, "steps_per_turn", "steps") if is_page else ():
+        raise CrankcheckError(
+            f"-o {request.output}: a page has its own samples; leave out {option}"
+        )
     if request.figures is not None:
         from reports.figures.elastic.course_figures import elastic_figure_files
 

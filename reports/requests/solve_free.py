@@ -17,6 +17,7 @@ from reports.describe.free_motion import free_columns
 from reports.output.frame_file import SHEET_ROWS, write_frame
 from reports.output.write import check_folder, write
 from reports.requests.free_text import show_free
+from reports.requests.options import given
 from reports.requests.solve_options import SolveOptions
 
 PAGE = ".html"
@@ -60,21 +61,12 @@ def run_solve_free(scene: Scene, request: SolveOptions, console: Console) -> Non
 
 def refuse_turns(scene: Scene, request: SolveOptions) -> None:
     """Refuse what is asked of a driver that follows a law. Raises CrankcheckError."""
-    given = {
-        "--at-deg": request.at_deg,
-        "--at-m": request.at_m,
-        "--turns": request.turns,
-        "--steps-per-turn": request.steps_per_turn,
-        "--clockwise": request.clockwise or None,
-        "--along": request.along or None,
-        "--forces": request.forces or None,
-    }
-    for option, value in given.items():
-        if value is not None:
-            raise CrankcheckError(
-                f"{option}: {scene.name} is let go, and moves over time as masses and forces have "
-                f"it; leave {option} out, and give --duration and --steps"
-            )
+    of_driver = "at_deg at_m turns steps_per_turn clockwise along forces"
+    for option in given(request, *of_driver.split()):
+        raise CrankcheckError(
+            f"{option}: {scene.name} is let go, and moves over time as masses and forces have "
+            f"it; leave {option} out, and give --duration and --steps"
+        )
 
 
 def free_instants(scene: Scene, request: SolveOptions) -> Array:

@@ -30,6 +30,7 @@ from reports.own_model.sentences import is_diff, recommended_head
 from reports.own_model.table import show
 from reports.plan.steps import TURNS, positive
 from reports.requests.arguments import is_true, kind_of, path_of, text_of, tolerances_of
+from reports.requests.options import given
 from reports.requests.shown import Shown
 from reports.requests.told import told_at_the_call
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions
@@ -173,18 +174,18 @@ IN_FOLDER = (
     "recommended.txt",
     "page.html",
 )
-NOT_OF_MODELS = {
-    "scenes": "SCENE",
-    "engines": "--engine",
-    "profiles": "--profile",
-    "jobs": "--jobs",
-    "baseline": "--baseline",
-    "factor": "--factor",
-    "forces": "--forces",
-    "free": "--free",
-    "duration_s": "--duration",
-}
-"""What is asked of scenes alone, by the field of the request."""
+NOT_OF_MODELS = [
+    "scenes",
+    "engines",
+    "profiles",
+    "jobs",
+    "baseline",
+    "factor",
+    "forces",
+    "free",
+    "duration_s",
+]
+"""Fields of scenes alone."""
 
 
 def verify_model(request: VerifyOptions, console: Console, progress: Console) -> int:
@@ -224,11 +225,10 @@ def _check_outputs(request: VerifyOptions, inputs: Sequence[Path]) -> None:
 def _asked(request: VerifyOptions) -> ModelRequest:
     """What the model is asked for. Raises CrankcheckError for what does not go with it."""
     assert request.mjcf is not None
-    for name, option in NOT_OF_MODELS.items():
-        if getattr(request, name) != getattr(VerifyOptions(), name):
-            raise CrankcheckError(
-                f"--mjcf and {option}: a model of your own runs by itself, as it is; leave out one"
-            )
+    for option in given(request, *NOT_OF_MODELS):
+        raise CrankcheckError(
+            f"--mjcf and {option}: a model of your own runs by itself, as it is; leave out one"
+        )
     if request.speed_rad_s is None:
         raise CrankcheckError("--speed is missing: give that of the crank in rad/s, such as 10")
     return ModelRequest(

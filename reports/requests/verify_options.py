@@ -19,6 +19,7 @@ from reports.requests.options import (
     SpringKind,
     StepS,
     StepsPerTurn,
+    given,
 )
 
 PRESCRIBED = "prescribed"
@@ -141,23 +142,14 @@ class VerifyOptions:
     ] = 2.0
 
 
-OF_MODELS = {
-    "speed_rad_s": "--speed",
-    "key": "--key",
-    "start_deg": "--start",
-    "branch": "--branch",
-    "write_scene": "--write-scene",
-    "limit_s": "--limit-s",
-    "memory_gb": "--memory-gb",
-}
-"""What is asked of a model of the user's own alone, by the field of the request."""
+OF_MODELS = ["speed_rad_s", "key", "start_deg", "branch", "write_scene", "limit_s", "memory_gb"]
+"""Fields of a model of the user's own alone."""
 
 
 def refuse_of_models(request: VerifyOptions) -> None:
     """Refuse what says nothing of scenes. Raises CrankcheckError."""
-    for name, option in OF_MODELS.items():
-        if getattr(request, name) != getattr(VerifyOptions(), name):
-            raise CrankcheckError(
-                f"{option}: it is of a model of your own; name that with --mjcf FILE, or leave "
-                f"{option} out"
-            )
+    for option in given(request, *OF_MODELS):
+        raise CrankcheckError(
+            f"{option}: it is of a model of your own; name that with --mjcf FILE, or leave "
+            f"{option} out"
+        )

@@ -16,6 +16,7 @@ from reports.lectures.drawing.workbook.live_workbook import formulas_of, live_wo
 from reports.lectures.drawing.workbook.scene_family import scene_curves, scene_family
 from reports.lectures.drawing.workbook.scene_family_workbook import scene_family_workbook
 from reports.output.write import write
+from reports.requests.options import given
 from reports.requests.solve_options import (
     FAMILY_ENDINGS,
     PAGE,
@@ -86,19 +87,11 @@ def _check(scene: Scene, request: SolveOptions) -> None:
             f"--family {request.family}: {scene.name} {bends}; members of a family have rigid "
             "links, and follow a law of motion"
         )
-    for option, given in (
-        ("--at-deg", request.at_deg is not None),
-        ("--at-m", request.at_m is not None),
-        ("--clockwise", request.clockwise),
-        ("--along", bool(request.along)),
-        ("--forces", request.forces),
-        ("--figures", request.figures is not None),
-    ):
-        if given:
-            raise CrankcheckError(
-                f"--family with {option}: a family is position, velocity and acceleration over "
-                f"whole turns; leave {option} out"
-            )
+    for option in given(request, "at_deg", "at_m", "clockwise", "along", "forces", "figures"):
+        raise CrankcheckError(
+            f"--family with {option}: a family is position, velocity and acceleration over "
+            f"whole turns; leave {option} out"
+        )
     refuse_times(scene, request)
     elastic_choice(request).refuse_of_rigid(scene)
 
