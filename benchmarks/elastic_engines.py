@@ -28,8 +28,9 @@ import numpy as np
 from models.files import load_scene
 from models.laws import ConstantSpeed
 from models.scene import Scene
-from reports.judge.cell import Cell, Springs, examined
+from reports.judge.cell import Cell, examined
 from reports.plan.elastic import SPRINGS, held_steps
+from reports.way.length import Springs
 from sim.registry import applying_beams, usual
 
 COUNTS, ELEMENTS = (4, 8, 16, 32), (2, 4, 8, 16)

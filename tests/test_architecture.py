@@ -26,7 +26,7 @@ ARROWS: Mapping[str, set[str]] = {
 }
 FLOORS: Mapping[str, str] = {
     "reports": """
-        cli lectures
+        cli lectures ways
         requests
         page figures
         own_model
@@ -37,6 +37,7 @@ FLOORS: Mapping[str, str] = {
         plan
         causes
         judge describe drawing logs
+        way
         compare
         quantities
         workers output

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -16,23 +15,17 @@ from reports.compare.asked import not_asked_for
 from reports.compare.beside import Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Departure
-from reports.compare.run_truth import run_truth
 from reports.judge.halving import Followed, followed
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import limits
+from reports.way.length import SEGMENTS, GivenAs, Planned, Springs
+from reports.way.way import Way, way_of
 from sim.engine import Drive, Engine, Run, SettingValue
 from sim.registry import engine
 from sim.run import run, setup
 from sim.settings import profile_of, resolved
 
-Springs = Literal["plain", "corrected", "beam"]
-"""Between segments: those of the beam's stiffness over a segment, or those that give the chain the
-sag of the beam; or none, where the engine has beams of its own, as many elements long."""
-SEGMENTS = 16
-"""Of an elastic link, unless another number is asked for."""
-MOST_LOGGED = 720
-"""Samples of a turn of elastic links."""
 CellRunner = Callable[..., Run]
 """What runs a cell: it takes what `sim.run.run` takes."""
 
@@ -61,56 +54,44 @@ class Cell:
     @property
     def turns(self) -> float:
         """How long it is: in turns of the driver, of what is let go in seconds."""
-        return self.steps * self.dt_s / self._turn_s
+        return self.steps * self.dt_s / self.way.turn_s(self.scene)
 
     @property
     def steps_per_turn(self) -> float:
         """Steps in a turn, or in a second of what is let go: scenes of the same step stand side by
         side, however long each is left free."""
-        return self._turn_s / self.dt_s
+        return self.way.turn_s(self.scene) / self.dt_s
 
     @property
-    def _turn_s(self) -> float:
-        return 1.0 if self.drive == "free" else self.scene.driver.law.period_s
+    def way(self) -> Way:
+        """How a run of this kind is run and compared."""
+        return way_of(self.scene, self.drive)
+
+    @property
+    def given_as(self) -> GivenAs:
+        """What elastic links are given to the engine as."""
+        return GivenAs(self.segments, self.springs)
 
     @property
     def truth(self) -> Truth:
         """What it is held to. Raises CrankcheckError for a scene that can not be let go."""
-        return run_truth(
-            self.scene,
-            self.steps,
-            self.dt_s,
-            free=self.drive == "free",
-            given=(self.segments, self.springs),
-            tolerance=self.tolerance,
-        )
+        run = self.dt_s, self.steps, self.given_as, self.with_forces, self.tolerance
+        return self.way.truth(Planned(self.scene, *run))
 
     @property
     def shown_truth(self) -> Truth:
         """The same without bounds, which cost time and are not drawn."""
-        known = self.drive == "free" or self.scene.elastic
-        return self.truth if known else Truth(self.scene, bound=False)
+        return Truth(self.scene, bound=False) if self.way.closed_form else self.truth
 
     @property
     def given(self) -> Scene:
         """The scene that an engine is given: of elastic links, the segments."""
-        if not self.scene.elastic:
-            return self.scene
-        from reports.compare.elastic.cut import cut  # where links bend alone
-
-        return cut(self.scene, self.segments, self.springs).given
+        return self.way.given(self.scene, self.given_as)
 
     @property
     def every(self) -> int:
-        """How many steps are taken from sample to sample: one; of elastic links, whose springs ask
-        for far more steps than anybody looks at, up to `MOST_LOGGED` of a turn are logged, or of
-        the whole of what is let go for less than a second."""
-        if not self.scene.elastic:
-            return 1
-        steps = self.steps_per_turn
-        if self.drive == "free":
-            steps = min(steps, float(self.steps))
-        return max(1, math.ceil(steps / MOST_LOGGED - 1e-9))
+        """How many steps are taken from sample to sample."""
+        return self.way.every(self.steps, self.steps_per_turn)
 
     @property
     def label(self) -> str:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from models.controlled import Controlled
 from models.errors import CrankcheckError
 from models.released import Released
-from reports.judge.cell import Springs
 from reports.logs.channel import OwnLog
+from reports.way.length import Springs
 
 if TYPE_CHECKING:
     from reports.compare.elastic.elastic_truth import ElasticTruth

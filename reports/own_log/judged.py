@@ -17,7 +17,7 @@ from reports.compare.beside import Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Errors, largest
 from reports.compare.free.free_truth import FreeTruth
-from reports.judge.cell import SEGMENTS, Springs, left_words
+from reports.judge.cell import left_words
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.limits import LIMITS
 from reports.judge.rules.rule import Evidence, Finding
@@ -39,6 +39,7 @@ from reports.own_log.log_limits import limits_by_column, log_limits
 from reports.own_log.no_cause import of_no_cause, seldom
 from reports.own_log.required import absent_names, required_name
 from reports.quantities import named
+from reports.way.length import SEGMENTS, Springs
 from sim.engine import Placing
 
 NO_FIT = (

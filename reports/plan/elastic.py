@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.errors import CrankcheckError, EngineError, shown
 from models.motion import State
 from models.scene import Scene
-from reports.judge.cell import SEGMENTS, Springs
 from reports.plan.chosen import refuse_unfollowed
 from reports.plan.free import LOOK, gives_way
 from reports.plan.steps import (
@@ -20,6 +18,7 @@ from reports.plan.steps import (
     counted_free,
     positive,
 )
+from reports.way.length import SEGMENTS, GivenAs, Springs
 
 if TYPE_CHECKING:
     from reports.compare.elastic.elastic_truth import ElasticTruth
@@ -30,6 +29,9 @@ MOST_SEGMENTS = 64
 """Their exact chain takes minutes, and a turn 100 000 steps."""
 SWINGS = 5
 """Of the slowest elastic link of what is let go, in a run for which no time is asked for."""
+MOST_LOGGED = 720
+"""Samples of a turn of elastic links, whose springs ask for far more steps than anybody looks at;
+or of the whole of what is let go for less than a second."""
 PART = 360
 """Of which the steps of a turn are a multiple, or those of a whole run that is let go."""
 
@@ -53,16 +55,6 @@ def chosen_segments(count: int | None, option: str = "--segments") -> int:
             f"{MOST_SEGMENTS} are run"
         )
     return count
-
-
-@dataclass(frozen=True)
-class GivenAs:
-    """What the elastic links of a scene are given to engines as; ``words`` tell the lines of a
-    sweep apart, and are empty of a rigid scene."""
-
-    segments: int = SEGMENTS
-    springs: Springs = "plain"
-    words: str = ""
 
 
 def given_as(scene: Scene, study: Study) -> list[GivenAs]:
@@ -112,6 +104,18 @@ def segmented(scene: Scene) -> tuple[Scene, State]:
     Raises CrankcheckError as the truth of such a scene."""
     truth = _truth_of_start(scene, SEGMENTS, SPRINGS[0])
     return truth.given, truth.start
+
+
+def cut_scene(scene: Scene, given: GivenAs) -> Scene:
+    """What an engine is given of a scene with elastic links. Raises CrankcheckError."""
+    from reports.compare.elastic.cut import cut  # where links bend alone
+
+    return cut(scene, given.segments, given.springs).given
+
+
+def logged_every(steps: float) -> int:
+    """Every how manieth of so many steps is logged."""
+    return max(1, math.ceil(steps / MOST_LOGGED - 1e-9))
 
 
 def refuse_rigid(scenes: Iterable[Scene], count: object, springs: object) -> None:

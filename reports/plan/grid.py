@@ -14,20 +14,15 @@ from reports.judge.cell import Cell
 from reports.output.numbers import count as told
 from reports.plan.chosen import chosen_engines
 from reports.plan.elastic import (
-    GivenAs,
-    counted_released,
     given_as,
-    held_steps,
     refuse_rigid,
-    refuse_unelastic,
 )
-from reports.plan.forces import gives_forces, refuse_forceless
-from reports.plan.free import refuse_unreleased, scenes_of
+from reports.plan.forces import gives_forces
+from reports.plan.free import scenes_of
 from reports.plan.key import cell_key, digest, line_key
-from reports.plan.short_tables import refuse_short_tables
-from reports.plan.singular import refuse_singular
-from reports.plan.steps import counted, counted_free
 from reports.plan.study import Study, Variant
+from reports.way.length import GivenAs, Planned
+from reports.way.way import way_of
 from sim.engine import SettingValue
 from sim.registry import engine
 from sim.settings import profile_of, resolved
@@ -115,36 +110,11 @@ def grid(study: Study) -> Grid:
 def _steps(study: Study, scene: Scene, given: GivenAs) -> list[tuple[float, int]]:
     """Steps [s] and numbers of steps of a scene. Raises CrankcheckError where it can not be run for
     so long."""
-    if study.free:
-        steps = _released(study, scene, given)
-        refuse_unreleased(scene, max(dt_s * count for dt_s, count in steps))
-        refuse_unelastic(scene, given.segments, given.springs)
-        return steps
-    refuse_unelastic(scene, given.segments, given.springs)
-    per_turn = study.steps_per_turn
-    if study.times_held and scene.elastic:
-        held = held_steps(scene, given.segments, given.springs)
-        per_turn = [times * held for times in study.times_held]
-    steps = [counted(scene, None, each, study.turns) for each in per_turn]
-    longest_s = max(dt_s * count for dt_s, count in steps)
-    refuse_singular(scene, longest_s)
-    if study.forces:
-        refuse_forceless(scene, longest_s)
-    refuse_short_tables(scene, longest_s)
+    way = way_of(scene)
+    steps = [way.counted(scene, each, given) for each in way.lengths(scene, study, given)]
+    longest = max(steps, key=lambda step: step[0] * step[1])
+    way.refuse(Planned(scene, *longest, given, study.forces))
     return steps
-
-
-def _released(study: Study, scene: Scene, given: GivenAs) -> list[tuple[float, int]]:
-    """As `_steps`, of what is let go. Raises CrankcheckError."""
-    if not scene.elastic:
-        return [counted_free(scene, each, study.duration_s) for each in study.dt_s]
-    lasts_s, bent = study.duration_s, (given.segments, given.springs)
-    if not study.times_held:
-        return [counted_released(scene, each, lasts_s, *bent) for each in study.dt_s]
-    held_s, count = counted_released(scene, None, lasts_s, *bent)
-    return [
-        counted_released(scene, held_s / times, held_s * count, *bent) for times in study.times_held
-    ]
 
 
 def refuse_endless(study: Study) -> None:

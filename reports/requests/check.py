@@ -7,16 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from models.scene import Scene
-from reports.judge.cell import SEGMENTS, Cell, Checked, check_run
+from reports.judge.cell import Cell, Checked, check_run
 from reports.judge.tolerance import check_names
 from reports.output.provenance import provenance
 from reports.plan.chosen import refuse_unfollowed
-from reports.plan.elastic import given_of, held_steps, refuse_unelastic
-from reports.plan.forces import refuse_forceless
+from reports.plan.elastic import given_of
 from reports.plan.free import refuse_giving_way, refuse_unreleased
-from reports.plan.short_tables import refuse_short_tables
-from reports.plan.singular import refuse_singular
-from reports.plan.steps import counted
 from reports.requests.arguments import (
     SceneLike,
     engine_of,
@@ -30,6 +26,8 @@ from reports.requests.shown import Shown
 from reports.requests.solution import drawn
 from reports.requests.told import parts_in_python, told_at_the_call
 from reports.verify.advised import advised
+from reports.way.length import SEGMENTS, Length
+from reports.way.way import laid_out
 from sim.engine import Drive, Run, SettingValue
 from sim.registry import FIRST
 
@@ -114,15 +112,9 @@ def check(
     driven = cast(Drive, one_of(drive, "--drive", DRIVES))
     limits = tolerances_of(tolerance, "tolerance")
     bent = given_of(scene, segments, springs)
-    if scene.elastic and dt_s is None and steps_per_turn is None:
-        steps_per_turn = held_steps(scene, bent.segments, bent.springs)
-    dt_s, steps = counted(scene, dt_s, steps_per_turn, turns)
     refuse_unfollowed(scene)
-    refuse_unelastic(scene, bent.segments, bent.springs)
-    refuse_singular(scene, dt_s * steps)
-    if is_true(forces, "forces"):
-        refuse_forceless(scene, dt_s * steps)
-    refuse_short_tables(scene, dt_s * steps)
+    length = Length(dt_s, steps_per_turn, turns)
+    dt_s, steps = laid_out(scene, length, bent, with_forces=is_true(forces, "forces"))
     cell = Cell(
         scene=scene,
         engine=name,

@@ -10,8 +10,6 @@ from models.scene import Scene
 from reports.compare import compare as comparing
 from reports.compare.beside import Truth
 from reports.compare.errors import Error, Errors
-from reports.compare.run_truth import run_truth
-from reports.judge.cell import SEGMENTS
 from reports.judge.tolerance import check_names
 from reports.plan.elastic import given_of
 from reports.plan.free import refuse_unreleased
@@ -22,6 +20,8 @@ from reports.requests.arguments import SceneLike, is_true, one_of, scene_of
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
 from reports.requests.told import told_at_the_call
+from reports.way.length import SEGMENTS, GivenAs, Planned
+from reports.way.way import way_of
 from sim.engine import Run
 
 if TYPE_CHECKING:
@@ -146,8 +146,8 @@ def _truth_of_run(scene: Scene, run: Run) -> Truth:
     scene, free = scene_of_run(scene, run), run.drive == "free"
     if free and not scene.elastic:
         refuse_unreleased(scene, run.dt_s * run.steps)
-    given = getattr(run, "segments", SEGMENTS), getattr(run, "springs", "plain")
-    return run_truth(scene, run.steps, run.dt_s, free=free, given=given)
+    given = GivenAs(getattr(run, "segments", SEGMENTS), getattr(run, "springs", "plain"))
+    return way_of(scene, run.drive).truth(Planned(scene, run.dt_s, run.steps, given))
 
 
 def refuse_without_forces(run: Run, *, forces: bool) -> None:

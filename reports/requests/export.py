@@ -19,11 +19,11 @@ from models.mjcf_options import exact
 from models.motion import State
 from models.scene import Scene
 from reports.compare.free.kept_motion import released_state
-from reports.judge.cell import SEGMENTS
 from reports.output.write import check_file, write
 from reports.plan.elastic import SPRINGS, held_steps, segmented
 from reports.plan.free import under_control
 from reports.requests.options import SceneName
+from reports.way.length import SEGMENTS
 
 
 @dataclass(frozen=True)

@@ -68,5 +68,6 @@ def given(request: Any, *fields: str) -> Iterator[str]:
     """The options of those of some fields that do not keep their default."""
     defaults = {each.name: each.default for each in dataclasses.fields(request)}
     for field in fields:
-        if getattr(request, field) != defaults[field]:
+        value, default = getattr(request, field), defaults[field]
+        if not isinstance(value, type(default)) or value != default:
             yield option_of(type(request), field)

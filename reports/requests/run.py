@@ -17,13 +17,10 @@ from models.files import find_scene
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.compare.free.kept_motion import released_state
-from reports.compare.run_truth import run_truth
-from reports.judge.cell import SEGMENTS, Springs
 from reports.output.frame_file import ENDINGS, write_frame
 from reports.output.write import check_file
-from reports.plan.elastic import GivenAs, counted_released, given_of, held_steps
+from reports.plan.elastic import given_of
 from reports.plan.free import under_control
-from reports.plan.steps import TURNS, counted, counted_free
 from reports.requests.arguments import (
     SceneLike,
     engine_of,
@@ -46,6 +43,8 @@ from reports.requests.options import (
 from reports.requests.shown import Shown
 from reports.requests.solution import ROWS, drawn, thinned
 from reports.requests.told import told_at_the_call
+from reports.way.length import SEGMENTS, GivenAs, Length, Planned, Springs
+from reports.way.way import way, way_of
 from sim import run as stepping
 from sim.engine import Drive, Run, SettingValue
 from sim.registry import FIRST
@@ -160,21 +159,12 @@ class RunRequest:
         every = whole_of(self.every, "--every")
         _refuse_other_length(scene, drive, self)
         bent = given_of(scene, self.segments, self.springs)
-        per_turn = self.steps_per_turn
-        if scene.elastic and drive != "free" and self.dt_s is None and per_turn is None:
-            per_turn = held_steps(scene, bent.segments, bent.springs)
-        if drive == "free" and self.turns is None and per_turn is None:
-            loose, asked = loosened(scene), (self.dt_s, self.duration_s)
-            dt_s, steps = (
-                counted_released(loose, *asked, bent.segments, bent.springs, every=every, least=1)
-                if scene.elastic
-                else counted_free(loose, *asked, every=every, least=1)
-            )
-        else:
-            turns = TURNS if self.turns is None else self.turns
-            dt_s, steps = counted(scene, self.dt_s, per_turn, turns, every=every, least=1)
-        if drive == "free":
-            scene = loosened(scene)
+        in_turns = self.turns, self.steps_per_turn
+        length = Length(self.dt_s, self.steps_per_turn, self.turns, self.duration_s, every, 1)
+        driven, scene = scene, loosened(scene) if drive == "free" else scene
+        has_turns = drive == "free" and in_turns != (None, None)  # those of the law that drove it
+        counted = way("driven").counted if has_turns else way_of(scene, drive).counted
+        dt_s, steps = counted(driven if has_turns else scene, length, bent)
         truth = _truth(scene, bent, dt_s, steps)
         done = stepping.run(
             scene if truth is None else truth.given,
@@ -310,7 +300,7 @@ def _truth(scene: Scene, bent: GivenAs, dt_s: float, steps: int) -> Truth | None
     CrankcheckError."""
     if scene.is_free and not scene.elastic:
         return None
-    return run_truth(scene, steps, dt_s, free=scene.is_free, given=(bent.segments, bent.springs))
+    return way_of(scene).truth(Planned(scene, dt_s, steps, bent))
 
 
 def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> None:

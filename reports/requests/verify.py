@@ -33,27 +33,21 @@ from reports.plan.chosen import (
 from reports.plan.elastic import (
     chosen_segments,
     chosen_springs,
-    counted_released,
-    held_steps,
     refuse_rigid,
-    refuse_unelastic,
-    shortened_note,
 )
-from reports.plan.forces import gives_forces, refuse_forceless, silent_note
+from reports.plan.forces import gives_forces, silent_note
 from reports.plan.free import (
     free_names,
     refuse_other_options,
-    refuse_unreleased,
     scenes_of,
     under_control,
 )
-from reports.plan.short_tables import refuse_short_tables
-from reports.plan.singular import passage_note, refuse_singular
-from reports.plan.steps import TURNS, counted, counted_free
 from reports.requests.verify_files import IN_FOLDER, Results, write_results
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions, refuse_of_models
 from reports.verify.all_cells import check_all
 from reports.verify.table import show
+from reports.way.length import GivenAs, Length
+from reports.way.way import laid_out
 from sim.engine import Drive
 from sim.registry import engine
 
@@ -132,11 +126,11 @@ def plan(request: VerifyOptions) -> list[Cell]:
     engines = chosen_engines(request.engines)
     profiles = chosen_profiles(request.profiles, engines)
     refuse_rigid(scenes, request.segments, request.springs)
-    segments, springs = (
-        chosen_segments(request.segments),
-        chosen_springs(request.springs or "plain"),
-    )
-    steps = {scene.name: _steps(request, scene) for scene in scenes}
+    given = GivenAs(chosen_segments(request.segments), chosen_springs(request.springs or "plain"))
+    length = Length(request.dt_s, request.steps_per_turn, request.turns, request.duration_s)
+    steps = {
+        scene.name: laid_out(scene, length, given, with_forces=request.forces) for scene in scenes
+    }
     return [
         Cell(
             scene=scene,
@@ -149,8 +143,8 @@ def plan(request: VerifyOptions) -> list[Cell]:
             tolerance=tolerance,
             converge=request.converge,
             with_forces=request.forces and (bool(request.engines) or gives_forces(name)),
-            segments=segments,
-            springs=springs,
+            segments=given.segments,
+            springs=given.springs,
         )
         for scene in scenes
         for dt_s, count in [steps[scene.name]]
@@ -190,43 +184,11 @@ def _refuse_options(request: VerifyOptions, scenes: Sequence[Scene]) -> None:
     refuse_other_options(scenes, {"--duration": request.duration_s}, driven)
 
 
-def _steps(request: VerifyOptions, scene: Scene) -> tuple[float, int]:
-    """Step [s] and number of steps of a scene. Raises CrankcheckError where it can not be run."""
-    segments, springs = (
-        chosen_segments(request.segments),
-        chosen_springs(request.springs or "plain"),
-    )
-    if scene.is_free:
-        step = request.dt_s, request.duration_s
-        dt_s, count = (
-            counted_released(scene, *step, segments, springs)
-            if scene.elastic
-            else counted_free(scene, *step)
-        )
-        refuse_unreleased(scene, dt_s * count)
-        refuse_unelastic(scene, segments, springs)
-        return dt_s, count
-    turns = TURNS if request.turns is None else request.turns
-    per_turn = request.steps_per_turn
-    if scene.elastic and request.dt_s is None and per_turn is None:
-        per_turn = held_steps(scene, segments, springs)
-    dt_s, count = counted(scene, request.dt_s, per_turn, turns)
-    refuse_singular(scene, dt_s * count)
-    if request.forces:
-        refuse_forceless(scene, dt_s * count)
-    refuse_short_tables(scene, dt_s * count)
-    refuse_unelastic(scene, segments, springs)
-    return dt_s, count
-
-
 def passages(cells: Sequence[Cell]) -> list[str]:
     """What is to be said of change points, and of elastic links that are let go for a part of their
     time, once for every scene and duration of the cells."""
     runs = {(cell.scene.name, cell.dt_s * cell.steps): cell for cell in cells}
-    notes = (
-        (shortened_note if cell.drive == "free" else passage_note)(cell.scene, duration_s)
-        for (_, duration_s), cell in runs.items()
-    )
+    notes = (cell.way.note(cell.scene, duration_s) for (_, duration_s), cell in runs.items())
     return [note for note in dict.fromkeys(notes) if note]
 
 

@@ -9,8 +9,9 @@ from functools import cache, lru_cache
 from models.files import load_scene
 from models.scene import Scene
 from reports.compare.elastic.elastic_truth import ChainTruth, ElasticTruth
-from reports.judge.cell import Cell, Springs
+from reports.judge.cell import Cell
 from reports.selftest.fault import PROFILE, Items, RunKind
+from reports.way.length import Springs
 from sim.engine import Drive, Run
 from sim.run import run
 

@@ -1,0 +1,54 @@
+"""Scenes whose driver follows a law, with links that bend."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from models.scene import Scene
+from reports.compare.beside import Truth
+from reports.plan.elastic import cut_scene, held_steps, logged_every, refuse_unelastic
+from reports.way.length import GivenAs, Length, Planned
+from reports.way.way import Grid
+from reports.ways.driven import DrivenWay
+from sim.engine import Drive
+
+
+class ElasticWay(DrivenWay):
+    """As of `Way`."""
+
+    name = "elastic"
+    closed_form = False
+
+    def takes(self, scene: Scene, drive: Drive) -> bool:
+        return bool(scene.elastic)
+
+    def counted(self, scene: Scene, length: Length, given: GivenAs) -> tuple[float, int]:
+        if length.dt_s is None and length.steps_per_turn is None:
+            held = held_steps(scene, given.segments, given.springs)
+            length = replace(length, steps_per_turn=held)
+        return super().counted(scene, length, given)
+
+    def lengths(self, scene: Scene, study: Grid, given: GivenAs) -> list[Length]:
+        if not study.times_held:
+            return super().lengths(scene, study, given)
+        held = held_steps(scene, given.segments, given.springs)
+        return [Length(None, times * held, study.turns) for times in study.times_held]
+
+    def refuse(self, run: Planned) -> None:
+        super().refuse(run)
+        refuse_unelastic(run.scene, run.given_as.segments, run.given_as.springs)
+
+    def every(self, steps: int, steps_per_turn: float) -> int:
+        return logged_every(steps_per_turn)
+
+    def given(self, scene: Scene, given: GivenAs) -> Scene:
+        return cut_scene(scene, given)
+
+    def truth(self, run: Planned) -> Truth:
+        from reports.compare.elastic.elastic_truth import elastic_truth  # slow to import
+
+        bent = run.given_as.segments, run.given_as.springs
+        return elastic_truth(run.scene, *bent, run.dt_s * (run.steps + 1))
+
+
+WAY = ElasticWay()

@@ -1,0 +1,61 @@
+"""Scenes in free motion, with links that bend."""
+
+from __future__ import annotations
+
+from models.scene import Scene
+from reports.compare.beside import Truth
+from reports.plan.elastic import (
+    counted_released,
+    cut_scene,
+    logged_every,
+    refuse_unelastic,
+    shortened_note,
+)
+from reports.plan.steps import LEAST_STEPS
+from reports.way.length import GivenAs, Length, Planned
+from reports.way.way import Grid
+from reports.ways.free import FreeWay
+from sim.engine import Drive
+
+
+class FreeElasticWay(FreeWay):
+    """As of `Way`."""
+
+    name = "free_elastic"
+
+    def takes(self, scene: Scene, drive: Drive) -> bool:
+        return super().takes(scene, drive) and bool(scene.elastic)
+
+    def counted(self, scene: Scene, length: Length, given: GivenAs) -> tuple[float, int]:
+        least = LEAST_STEPS if length.least is None else length.least
+        step, bent = (length.dt_s, length.duration_s), (given.segments, given.springs)
+        return counted_released(scene, *step, *bent, every=length.every, least=least)
+
+    def lengths(self, scene: Scene, study: Grid, given: GivenAs) -> list[Length]:
+        if not study.times_held:
+            return super().lengths(scene, study, given)
+        held_s, count = self.counted(scene, Length(duration_s=study.duration_s), given)
+        lasts_s = held_s * count
+        return [Length(held_s / times, duration_s=lasts_s) for times in study.times_held]
+
+    def refuse(self, run: Planned) -> None:
+        super().refuse(run)
+        refuse_unelastic(run.scene, run.given_as.segments, run.given_as.springs)
+
+    def note(self, scene: Scene, duration_s: float) -> str:
+        return shortened_note(scene, duration_s)
+
+    def every(self, steps: int, steps_per_turn: float) -> int:
+        return logged_every(min(steps_per_turn, float(steps)))
+
+    def given(self, scene: Scene, given: GivenAs) -> Scene:
+        return cut_scene(scene, given)
+
+    def truth(self, run: Planned) -> Truth:
+        from reports.compare.elastic.released_truth import released_elastic_truth  # slow to import
+
+        bent = run.given_as.segments, run.given_as.springs
+        return released_elastic_truth(run.scene, *bent, run.steps, run.dt_s, run.tolerance)
+
+
+WAY = FreeElasticWay()
