@@ -36,6 +36,11 @@ class Way(Protocol):
     closed_form: bool
     """Whether the reference is solved at each instant by itself, with bounds that cost time."""
 
+    @property
+    def table(self) -> object:
+        """The table of its cells, a `reports.verify.cell_table.CellTable`."""
+        ...
+
     def takes(self, scene: Scene, drive: Drive) -> bool:
         """Whether a run of the scene with that drive is of this kind."""
         ...

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from models.scene import Scene
 from reports.compare.beside import Truth
@@ -11,6 +12,9 @@ from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import Grid
 from reports.ways.driven import DrivenWay
 from sim.engine import Drive
+
+if TYPE_CHECKING:
+    from reports.verify.cell_table import CellTable
 
 
 class ElasticWay(DrivenWay):
@@ -37,6 +41,12 @@ class ElasticWay(DrivenWay):
     def refuse(self, run: Planned) -> None:
         super().refuse(run)
         refuse_unelastic(run.scene, run.given_as.segments, run.given_as.springs)
+
+    @property
+    def table(self) -> CellTable:
+        from reports.ways.elastic.table import TABLE  # what is shown is loaded when it is
+
+        return TABLE
 
     def every(self, steps: int, steps_per_turn: float) -> int:
         return logged_every(steps_per_turn)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan.free import refuse_unreleased
@@ -9,6 +11,9 @@ from reports.plan.steps import LEAST_STEPS, counted_free
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import Grid
 from sim.engine import Drive
+
+if TYPE_CHECKING:
+    from reports.verify.cell_table import CellTable
 
 
 class FreeWay:
@@ -29,6 +34,12 @@ class FreeWay:
 
     def refuse(self, run: Planned) -> None:
         refuse_unreleased(run.scene, run.duration_s)
+
+    @property
+    def table(self) -> CellTable:
+        from reports.ways.free.table import TABLE  # what is shown is loaded when it is
+
+        return TABLE
 
     def turn_s(self, scene: Scene) -> float:
         return 1.0

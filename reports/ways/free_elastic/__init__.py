@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan.elastic import (
@@ -16,6 +18,9 @@ from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import Grid
 from reports.ways.free import FreeWay
 from sim.engine import Drive
+
+if TYPE_CHECKING:
+    from reports.verify.cell_table import CellTable
 
 
 class FreeElasticWay(FreeWay):
@@ -44,6 +49,12 @@ class FreeElasticWay(FreeWay):
 
     def note(self, scene: Scene, duration_s: float) -> str:
         return shortened_note(scene, duration_s)
+
+    @property
+    def table(self) -> CellTable:
+        from reports.ways.elastic.table import TABLE  # what is shown is loaded when it is
+
+        return TABLE
 
     def every(self, steps: int, steps_per_turn: float) -> int:
         return logged_every(min(steps_per_turn, float(steps)))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from models.scene import Same, Scene
 from reports.compare.beside import Truth, truth_of
 from reports.plan.forces import refuse_forceless
@@ -11,6 +13,9 @@ from reports.plan.steps import LEAST_STEPS, TURNS, counted
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import Grid
 from sim.engine import Drive
+
+if TYPE_CHECKING:
+    from reports.verify.cell_table import CellTable
 
 
 class DrivenWay:
@@ -36,6 +41,12 @@ class DrivenWay:
         if run.with_forces:
             refuse_forceless(run.scene, run.duration_s)
         refuse_short_tables(run.scene, run.duration_s)
+
+    @property
+    def table(self) -> CellTable:
+        from reports.ways.driven.table import TABLE  # what is shown is loaded when it is
+
+        return TABLE
 
     def turn_s(self, scene: Scene) -> float:
         return scene.driver.law.period_s

@@ -1,0 +1,33 @@
+"""The table of cells in free motion."""
+
+from __future__ import annotations
+
+from reports.judge.cell import Checked
+from reports.judge.precision import precision
+from reports.quantities import QUANTITIES, named
+from reports.verify.cell_table import CellTable
+
+FREE_NUMBERS = {
+    QUANTITIES["phase"].head: ["phase"],
+    "place\n/ G": list(named("place")),
+    QUANTITIES["geometry"].head: ["geometry"],
+    QUANTITIES["gap"].head: ["gap"],
+    "veloc.\n/ w G": ["velocity"],
+    QUANTITIES["energy"].head: ["energy"],
+}
+
+
+def _precision(one: Checked) -> list[str]:
+    """The classes that are reached, and the time to which the high one of IFToMM's is."""
+    facts = one.errors.free if one.errors else None
+    return [f"{precision(one)}\n{facts.horizon_s(1e-3):.3g} s" if facts else "-"]
+
+
+HEADS = tuple(FREE_NUMBERS)
+TABLE = CellTable(
+    "free motion, ",
+    FREE_NUMBERS,
+    ((110, HEADS, ()), (76, (HEADS[0], HEADS[2], HEADS[5]), ()), (0, HEADS[:1], ())),
+    after_heads=("class\nto 1e-3",),
+    after=_precision,
+)
