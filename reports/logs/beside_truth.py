@@ -9,6 +9,7 @@ is right, and so of a force.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Protocol, cast
 
 import numpy as np
 
@@ -16,19 +17,26 @@ from models.array import Array
 from models.motion import Order
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.compare.free.free_truth import FreeTruth
 from reports.logs.channel import Channel, OwnLog, Reading
-from reports.logs.free_log_beside import FreeLogBeside
 from reports.logs.log_beside import AtCrank, LogBeside
 from reports.logs.logged_motion import logged_motion
 from reports.logs.whole_pins import whole_pins
 from reports.quantities import QUANTITIES
+from reports.way.way import way_of
 from sim.engine import Run
+
+
+class LogSide(Protocol):
+    """What logs of a kind of scene are compared as."""
+
+    def beside(self, log: OwnLog, truth: Truth, run: Run) -> LogBeside:
+        """The log beside the truth, and the run that it amounts to."""
+        ...
 
 
 def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside:
     """The log beside the truth, and the run that it amounts to. Raises CrankcheckError."""
-    scene = log.scene
+    scene, way = log.scene, way_of(log.scene)
     instants = {order: _instants(log, order) for order in (0, 1, 2)}
     moved = logged_motion(
         log, lambda order: truth.at(instants[order]), lambda reading: reading.error(truth)
@@ -41,7 +49,7 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
         engine="",
         version="",
         profile="",
-        drive="free" if isinstance(truth, FreeTruth) else "prescribed",
+        drive=way.drive,
         dt_s=step_s,
         status="ok",
         reason="",
@@ -58,15 +66,7 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
         forces_of="steps" if borne and borne.of_steps else "states",
     )
     assert run.motion is not None
-    if isinstance(truth, FreeTruth):
-        return FreeLogBeside.of_log(log, truth, run)
-    if scene.elastic:
-        from reports.compare.elastic.elastic_truth import ElasticTruth
-        from reports.logs.elastic_log_beside import ElasticLogBeside  # where links bend alone
-
-        assert isinstance(truth, ElasticTruth)
-        return ElasticLogBeside.of_log(truth, run)
-    return LogBeside(truth, run, run.motion, step_s=step_s, geometry_alone=alone)
+    return cast(LogSide, way.log).beside(log, truth, run)
 
 
 def _instants(log: OwnLog, order: Order) -> Array:

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from models.errors import CrankcheckError, few
 from models.scene import Scene
-from reports.causes.cause import Case, Cause
-from reports.causes.find import causes
+from reports.causes.cause import Cause
 from reports.compare.beside import Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Errors, largest
-from reports.compare.free.free_truth import FreeTruth
 from reports.judge.cell import left_words
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.limits import LIMITS
@@ -26,26 +23,13 @@ from reports.judge.too_good import LEAST, PLACES
 from reports.logs.beside_truth import beside_truth, lacking
 from reports.logs.channel import OwnLog
 from reports.logs.log_beside import LogBeside
-from reports.own_log.drives import DriveFit, LogDrive, truth_of_log
-from reports.own_log.elastic_log import NO_CAUSE, bent_truth
-from reports.own_log.free_log import (
-    known_log,
-    refuse_drives,
-    told_apart,
-    told_of_no_limit,
-    told_of_start,
-)
-from reports.own_log.log_limits import limits_by_column, log_limits
-from reports.own_log.no_cause import of_no_cause, seldom
+from reports.own_log.drives import DriveFit, LogDrive
+from reports.own_log.log_kind import LogRequest, log_kind
+from reports.own_log.log_limits import log_limits
 from reports.own_log.required import absent_names, required_name
 from reports.quantities import named
-from reports.way.length import SEGMENTS, Springs
 from sim.engine import Placing
 
-NO_FIT = (
-    "no speed and start of the driver were found that explain the places: errors are those beside "
-    "the nearest that was tried; log the driver's angle, or use --drive scene"
-)
 ITSELF = (
     "every reading is that of the reference to the last bit: it may have been compared with itself"
 )
@@ -81,9 +65,7 @@ class JudgedLog(Evidence):
     @property
     def truth_name(self) -> str:
         """What it is held to, in words."""
-        if self.scene.elastic:
-            return "beam"
-        return "free motion" if self.scene.is_free else "closed form"
+        return log_kind(self.scene).truth_name
 
     @property
     def failures(self) -> tuple[Finding, ...]:
@@ -92,20 +74,6 @@ class JudgedLog(Evidence):
     @property
     def verdict(self) -> Literal["within", "out"]:
         return "out" if self.failures else "within"
-
-
-@dataclass(frozen=True)
-class LogRequest:
-    """How a log is to be judged: pure numbers by quantity (`EVERY` for all others), or the step
-    [s] that a budget follows from; what has to be in it; and what its elastic links were given
-    as."""
-
-    target: Mapping[str, float] = field(default_factory=dict)
-    step_s: float = 0.0
-    drive: LogDrive = "scene"
-    require: Sequence[str] = ()
-    segments: int = SEGMENTS
-    springs: Springs = "plain"
 
 
 def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
@@ -123,15 +91,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     if log.forces is None:
         refuse_forces_unasked("--require", (quantity for _, quantity, _ in required))
         refuse_forces_unasked("--target", request.target)
-    truth: Truth
-    fit = None
-    if log.scene.elastic:
-        truth = bent_truth(log, request.segments, request.springs, request.drive)
-    elif log.scene.is_free:
-        refuse_drives(log.scene.name, request.drive)
-        log, truth = known_log(log, request.step_s, request.target)
-    else:
-        truth, fit = truth_of_log(log, request.drive)
+    log, truth, fit = log_kind(log.scene).truth(log, request)
     beside = beside_truth(log, truth, step_s=request.step_s)
     errors = compare(beside)
     assert errors is not None
@@ -178,20 +138,8 @@ def _explained(
     rows = [row for row in errors.rows if row.kind == "total"]
     itself = (ITSELF,) if rows and all(row.maximum == 0.0 for row in rows) else ()
     out = any(finding.level == "fail" for finding in judge(evidence, LIMITS))
-    if log.scene.elastic:
-        return (), itself or ((NO_CAUSE,) if out else ())
-    if isinstance(truth, FreeTruth):
-        apart = told_apart(errors) if out else ()
-        return (), itself or (
-            *told_of_start(log, truth),
-            *apart,
-            *told_of_no_limit(errors),
-        )
-    if fit is not None and not fit.explains:
-        return (), (NO_FIT,)
-    case = Case(log, truth, limits_by_column(log, evidence, errors))
-    found = causes(case)
-    return found, itself or (*seldom(case), *of_no_cause(case, found, errors))
+    found, notes = log_kind(log.scene).explained(log, truth, fit, evidence, errors, out=out)
+    return tuple(found), itself or tuple(notes)
 
 
 def _placing(errors: Errors) -> Placing:

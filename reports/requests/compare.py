@@ -119,23 +119,16 @@ def compare(
             )
         return Comparison(scene, f"{what.engine} {what.version}, profile {what.profile}", errors)
     from reports.logs.beside_truth import beside_truth
-    from reports.own_log.drives import chosen_drive, refuse_geometry_alone, truth_of_log
-    from reports.own_log.elastic_log import bent_truth
-    from reports.own_log.free_log import known_log, refuse_drives
+    from reports.own_log.drives import chosen_drive, refuse_geometry_alone
+    from reports.own_log.log_kind import LogRequest, log_kind
 
     chosen = chosen_drive(one_of(drive, "--drive", LOG_DRIVES))
     refuse_geometry_alone(chosen, forces=is_true(forces, "forces"))
     log = log_of(scene, what, map, forces=forces)
     step = 0.0 if step_s is None else positive("--step", step_s, "seconds")
-    truth: Truth
     given = given_of(scene, segments, springs)
-    if scene.elastic:
-        truth = bent_truth(log, given.segments, given.springs, chosen)
-    elif scene.is_free:
-        refuse_drives(scene.name, chosen)
-        log, truth = known_log(log, step, {})
-    else:
-        truth, _ = truth_of_log(log, chosen)
+    asked = LogRequest({}, step, chosen, (), given.segments, given.springs)
+    log, truth, _ = log_kind(scene).truth(log, asked)
     errors = comparing.compare(beside_truth(log, truth, step_s=step))
     assert errors is not None
     return Comparison(scene, log.source, errors)

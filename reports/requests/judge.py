@@ -26,8 +26,9 @@ from reports.output.numbers import finite
 from reports.output.provenance import provenance
 from reports.output.write import check_file, check_outputs, write
 from reports.own_log.drives import chosen_drive, refuse_geometry_alone
-from reports.own_log.judged import JudgedLog, LogRequest, judge_log
+from reports.own_log.judged import JudgedLog, judge_log
 from reports.own_log.junit import suite
+from reports.own_log.log_kind import LogRequest
 from reports.own_log.log_limits import EVERY
 from reports.own_log.markdown import markdown
 from reports.own_log.rows import row_table

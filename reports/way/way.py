@@ -33,12 +33,19 @@ class Way(Protocol):
     """How scenes of a kind are run and compared."""
 
     name: str
+    drive: Drive
+    """Of a run of such a scene, where none is named."""
     closed_form: bool
     """Whether the reference is solved at each instant by itself, with bounds that cost time."""
 
     @property
     def table(self) -> object:
         """The table of its cells, a `reports.verify.cell_table.CellTable`."""
+        ...
+
+    @property
+    def log(self) -> object:
+        """What is particular to its logs, a `reports.own_log.log_kind.LogKind`."""
         ...
 
     def takes(self, scene: Scene, drive: Drive) -> bool:

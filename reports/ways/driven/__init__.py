@@ -15,6 +15,7 @@ from reports.way.way import Grid
 from sim.engine import Drive
 
 if TYPE_CHECKING:
+    from reports.own_log.log_kind import LogKind
     from reports.verify.cell_table import CellTable
 
 
@@ -22,6 +23,7 @@ class DrivenWay:
     """As of `Way`."""
 
     name = "driven"
+    drive: Drive = "prescribed"
     closed_form = True
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
@@ -41,6 +43,12 @@ class DrivenWay:
         if run.with_forces:
             refuse_forceless(run.scene, run.duration_s)
         refuse_short_tables(run.scene, run.duration_s)
+
+    @property
+    def log(self) -> LogKind:
+        from reports.ways.driven.log import LOG  # for logs alone
+
+        return LOG
 
     @property
     def table(self) -> CellTable:

@@ -14,6 +14,7 @@ from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
 if TYPE_CHECKING:
+    from reports.own_log.log_kind import LogKind
     from reports.verify.cell_table import CellTable
 
 
@@ -41,6 +42,12 @@ class ElasticWay(DrivenWay):
     def refuse(self, run: Planned) -> None:
         super().refuse(run)
         refuse_unelastic(run.scene, run.given_as.segments, run.given_as.springs)
+
+    @property
+    def log(self) -> LogKind:
+        from reports.ways.elastic.log import LOG  # for logs alone
+
+        return LOG
 
     @property
     def table(self) -> CellTable:

@@ -13,6 +13,7 @@ from reports.way.way import Grid
 from sim.engine import Drive
 
 if TYPE_CHECKING:
+    from reports.own_log.log_kind import LogKind
     from reports.verify.cell_table import CellTable
 
 
@@ -20,6 +21,7 @@ class FreeWay:
     """As of `Way`."""
 
     name = "free"
+    drive: Drive = "free"
     closed_form = False
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
@@ -34,6 +36,12 @@ class FreeWay:
 
     def refuse(self, run: Planned) -> None:
         refuse_unreleased(run.scene, run.duration_s)
+
+    @property
+    def log(self) -> LogKind:
+        from reports.ways.free.log import LOG  # for logs alone
+
+        return LOG
 
     @property
     def table(self) -> CellTable:

@@ -20,6 +20,7 @@ from reports.ways.free import FreeWay
 from sim.engine import Drive
 
 if TYPE_CHECKING:
+    from reports.own_log.log_kind import LogKind
     from reports.verify.cell_table import CellTable
 
 
@@ -49,6 +50,12 @@ class FreeElasticWay(FreeWay):
 
     def note(self, scene: Scene, duration_s: float) -> str:
         return shortened_note(scene, duration_s)
+
+    @property
+    def log(self) -> LogKind:
+        from reports.ways.elastic.log import LOG  # for logs alone
+
+        return LOG
 
     @property
     def table(self) -> CellTable:

@@ -15,7 +15,8 @@ from models.scene import Scene
 from reports.logs.columns import columns_of
 from reports.logs.map_file import Map
 from reports.logs.meanings import understood
-from reports.own_log.judged import JudgedLog, LogRequest, judge_log
+from reports.own_log.judged import JudgedLog, judge_log
+from reports.own_log.log_kind import LogRequest
 from reports.own_log.log_limits import EVERY
 
 SCENE = load_scene("fourbar-lecture-1")

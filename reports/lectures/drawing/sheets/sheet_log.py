@@ -13,7 +13,7 @@ from reports.logs.channel import OwnLog, Reading
 from reports.logs.columns import read_columns
 from reports.logs.map_file import Map
 from reports.logs.meanings import understood, wanted
-from reports.own_log.free_log import known_log
+from reports.own_log.log_kind import LogRequest, log_kind
 
 LOGGED = "#8e24aa"
 """The colour of all that a log says."""
@@ -50,9 +50,10 @@ class SheetLog:
 
     @staticmethod
     def of_log(log: OwnLog) -> SheetLog:
-        """A log that was read. Raises CrankcheckError as `known_log`, and for another motion."""
+        """A log that was read. Raises CrankcheckError for another motion, too."""
         if log.scene.is_free:
-            found = SheetLog(*known_log(log, 0.0, {}))
+            known, truth, _ = log_kind(log.scene).truth(log, LogRequest())
+            found = SheetLog(known, truth)
         else:
             found = SheetLog(log, Truth(log.scene, bound=False))
         found.refuse_another()

@@ -1,21 +1,28 @@
-"""The log of a mechanism that was let go, which nothing drives: what it is held to, and what is
-told of it in place of causes."""
+"""Logs of free motion: their truth, and what is said of them in place of causes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from models.errors import CrankcheckError, few
+from reports.causes.cause import Cause
+from reports.compare.beside import Truth
 from reports.compare.errors import Error, Errors
 from reports.compare.free.free_truth import FreeTruth, free_truth_until
 from reports.compare.free.kept_motion import BEYOND
+from reports.judge.rules.rule import Evidence
 from reports.judge.tolerance import FREE
 from reports.logs.channel import OwnLog, Reading
+from reports.logs.log_beside import LogBeside
 from reports.output.numbers import error_text, listed, short
+from reports.own_log.drives import DriveFit
+from reports.own_log.log_kind import LogRequest
 from reports.own_log.log_limits import EVERY
 from reports.plan.free import refuse_unreleased
+from reports.ways.free.log_beside import FreeLogBeside
+from sim.engine import Run
 
 LEAST_ROWS = 2
 MOST_TIMES = 10.0
@@ -155,3 +162,34 @@ def told_apart(errors: Errors) -> Iterator[str]:
 
 def _size(error: Error) -> str:
     return f"{error_text(error.maximum)} {error.unit}"
+
+
+class FreeLog:
+    """As of `LogKind`."""
+
+    truth_name = "free motion"
+
+    def truth(self, log: OwnLog, request: LogRequest) -> tuple[OwnLog, Truth, DriveFit | None]:
+        refuse_drives(log.scene.name, request.drive)
+        return *known_log(log, request.step_s, request.target), None
+
+    def beside(self, log: OwnLog, truth: Truth, run: Run) -> LogBeside:
+        assert isinstance(truth, FreeTruth)
+        return FreeLogBeside.of_log(log, truth, run)
+
+    def explained(
+        self,
+        log: OwnLog,
+        truth: Truth,
+        fit: DriveFit | None,
+        evidence: Evidence,
+        errors: Errors,
+        *,
+        out: bool,
+    ) -> tuple[Sequence[Cause], Sequence[str]]:
+        assert isinstance(truth, FreeTruth)
+        apart = told_apart(errors) if out else ()
+        return (), (*told_of_start(log, truth), *apart, *told_of_no_limit(errors))
+
+
+LOG = FreeLog()

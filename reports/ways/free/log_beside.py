@@ -1,4 +1,4 @@
-"""A user's log of a mechanism that was let go, beside the motion that masses and forces give."""
+"""A user's log of free motion, beside the motion that masses and forces give."""
 
 from __future__ import annotations
 

@@ -1,0 +1,56 @@
+"""Logs of scenes whose driver follows a law."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from reports.causes.cause import Case, Cause
+from reports.causes.find import causes
+from reports.compare.beside import Truth
+from reports.compare.errors import Errors
+from reports.judge.rules.rule import Evidence
+from reports.logs.channel import OwnLog
+from reports.logs.log_beside import AtCrank, LogBeside
+from reports.own_log.drives import DriveFit, truth_of_log
+from reports.own_log.log_kind import LogRequest
+from reports.own_log.log_limits import limits_by_column
+from reports.own_log.no_cause import of_no_cause, seldom
+from sim.engine import Run
+
+NO_FIT = (
+    "no speed and start of the driver were found that explain the places: errors are those beside "
+    "the nearest that was tried; log the driver's angle, or use --drive scene"
+)
+
+
+class DrivenLog:
+    """As of `LogKind`."""
+
+    truth_name = "closed form"
+
+    def truth(self, log: OwnLog, request: LogRequest) -> tuple[OwnLog, Truth, DriveFit | None]:
+        return log, *truth_of_log(log, request.drive)
+
+    def beside(self, log: OwnLog, truth: Truth, run: Run) -> LogBeside:
+        assert run.motion is not None
+        alone = isinstance(truth, AtCrank)
+        return LogBeside(truth, run, run.motion, step_s=run.dt_s, geometry_alone=alone)
+
+    def explained(
+        self,
+        log: OwnLog,
+        truth: Truth,
+        fit: DriveFit | None,
+        evidence: Evidence,
+        errors: Errors,
+        *,
+        out: bool,
+    ) -> tuple[Sequence[Cause], Sequence[str]]:
+        if fit is not None and not fit.explains:
+            return (), (NO_FIT,)
+        case = Case(log, truth, limits_by_column(log, evidence, errors))
+        found = causes(case)
+        return found, (*seldom(case), *of_no_cause(case, found, errors))
+
+
+LOG = DrivenLog()

@@ -1,0 +1,97 @@
+"""Logs of scenes whose links bend."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from models.controlled import Controlled
+from models.errors import CrankcheckError
+from models.released import Released
+from reports.causes.cause import Cause
+from reports.compare.beside import Truth
+from reports.compare.elastic.elastic_truth import ElasticBeside, ElasticTruth, elastic_truth
+from reports.compare.errors import Errors
+from reports.judge.rules.rule import Evidence
+from reports.logs.channel import OwnLog
+from reports.logs.log_beside import LogBeside
+from reports.own_log.drives import DriveFit
+from reports.own_log.log_kind import LogRequest
+from reports.way.length import Springs
+from sim.engine import Run
+
+NO_CAUSE = "causes are not looked for where links bend"
+
+
+def bent_truth(log: OwnLog, segments: int, springs: Springs, drive: str) -> ElasticTruth:
+    """The truth of a log of so many segments.
+
+    Raises
+    ------
+    CrankcheckError
+        A scene that is let go; another drive than that of the scene; times before 0, where its
+        links do not come back after a period.
+    """
+    name, law = log.scene.name, log.scene.driver.law
+    if isinstance(law, Released | Controlled):
+        raise CrankcheckError(
+            f"{name}: {', '.join(log.scene.elastic)} bends, and logs of elastic links that are let "
+            "go are not judged yet; `crankcheck verify` runs engines on them"
+        )
+    if drive != "scene":
+        raise CrankcheckError(
+            f"--drive {drive}: {name} has elastic links, and how these bend goes by the speed of "
+            "the scene's own driver; leave --drive out"
+        )
+    instants = [log.time_s, *(each.instants for each in log.readings)]
+    truth = elastic_truth(log.scene, segments, springs, max(float(each[-1]) for each in instants))
+    first = min(float(each[0]) for each in instants)
+    if first < 0.0 and not truth.theory.is_periodic:
+        raise CrankcheckError(
+            f"{log.source}: its rows begin at t = {first:.6g} s, and {name} starts at 0, "
+            f"{truth.theory.shape}; count the time from there on, or start it periodic"
+        )
+    return truth
+
+
+@dataclass(frozen=True)
+class ElasticLogBeside(LogBeside, ElasticBeside):
+    """A log of as many segments as were told of it."""
+
+    @staticmethod
+    def of_log(truth: ElasticTruth, run: Run) -> ElasticLogBeside:
+        """The log beside the truth, and the run that it amounts to."""
+        assert run.motion is not None
+        return ElasticLogBeside(truth, run, run.motion, step_s=run.dt_s, elastic=truth)
+
+    @property
+    def has_crank(self) -> bool:
+        return False
+
+
+class ElasticLog:
+    """As of `LogKind`."""
+
+    truth_name = "beam"
+
+    def truth(self, log: OwnLog, request: LogRequest) -> tuple[OwnLog, Truth, DriveFit | None]:
+        return log, bent_truth(log, request.segments, request.springs, request.drive), None
+
+    def beside(self, log: OwnLog, truth: Truth, run: Run) -> LogBeside:
+        assert isinstance(truth, ElasticTruth)
+        return ElasticLogBeside.of_log(truth, run)
+
+    def explained(
+        self,
+        log: OwnLog,
+        truth: Truth,
+        fit: DriveFit | None,
+        evidence: Evidence,
+        errors: Errors,
+        *,
+        out: bool,
+    ) -> tuple[Sequence[Cause], Sequence[str]]:
+        return (), (NO_CAUSE,) if out else ()
+
+
+LOG = ElasticLog()
