@@ -5,8 +5,9 @@
 
 Each mutant of `benchmarks/mutants.json` runs against the tests that reach its line, in the nearest
 folder first, until one fails. What `make test` misses runs in `make slow` and in the tests at the
-tag `tests-before`, or commit BEFORE where there is no tag. All stands in `out/mutants`: three
-records of what tests reach (`tests/recorded`), checkouts to spoil, and a line for each verdict.
+tag `tests-before`, or commit BEFORE where there is no tag. A mutant follows its line where that
+moves. All stands in `out/mutants`: three records of what tests reach (`tests/recorded`), checkouts
+to spoil, and a line for each verdict.
 """
 
 from __future__ import annotations
@@ -26,14 +27,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 
-from benchmarks.mutants_drawn import Mutant, listed
+from benchmarks.mutants_drawn import BEFORE, Mutant, followed, listed
 from tests.recorded import chosen, quick
 from tests.recorded.reached import Reached
 from tests.recorded.recording import OURS, ROOT
 
 HOME = ROOT / "out" / "mutants"
 VERDICTS = HOME / "verdicts.jsonl"
-BEFORE = "c015253c"
 WORKERS = 2
 FIRST = 200
 """Tests of a first run, the nearest: to collect all that reach a line may take longer."""
@@ -57,7 +57,15 @@ class Suite:
 
     @property
     def record(self) -> Path:
-        return HOME / f"record-{self.name}"
+        return HOME / f"record-{self.name}-{self.commit}"
+
+    def mutants(self) -> list[Mutant]:
+        """The list, where it stands in this commit; without those whose line is gone."""
+        if self.name == "before":
+            return listed()
+        checkout(self.commit, self.tree)
+        found = (followed(mutant, self.tree) for mutant in listed())
+        return [mutant for mutant in found if mutant is not None]
 
 
 def suites() -> dict[str, Suite]:
@@ -204,15 +212,16 @@ def run(names: Iterable[str] = ("test", "slow", "before")) -> None:
     began, own = time.perf_counter(), suites()
     for name in names:
         seen = known()
+        every = own[name].mutants()
         missing = [
             m
-            for m in listed()
+            for m in every
             if (m.number, name) not in seen
-            and (name == "test" or seen[m.number, "test"]["verdict"] != KILLED)
+            and (name == "test" or seen.get((m.number, "test"), {}).get("verdict") != KILLED)
         ]
         if not missing:
             continue
-        record = reached(own[name], listed() if name == "test" else missing)
+        record = reached(own[name], every if name == "test" else missing)
         trees = [
             checkout(own[name].commit, HOME / f"{own[name].commit}-{k}") for k in range(WORKERS)
         ]
@@ -259,8 +268,11 @@ def table() -> None:
         print(f"{folder:28}{len(some):7}{len(some) - len(missed):11}{slow:23}{before:12}")
     for mutant in listed():
         if not kills(mutant, "test"):
-            rows = [seen.get((mutant.number, n), {}) for n in ("test", "slow", "before")]
-            said = "  ".join(f"{r.get('suite')}: {r.get('verdict')} {r.get('by')}" for r in rows)
+            rows = {n: seen.get((mutant.number, n), {}) for n in ("test", "slow", "before")}
+            said = "  ".join(
+                f"{name}: {row.get('verdict', 'gone, or not run')} {row.get('by', '')}"
+                for name, row in rows.items()
+            )
             print(f"{mutant.number} {mutant.file}:{mutant.line} {mutant.old} -> {mutant.new}")
             print(f"    {said}")
 

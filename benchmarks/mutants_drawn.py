@@ -13,13 +13,19 @@ import ast
 import dataclasses
 import json
 import random
+import subprocess
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from tests.recorded.recording import PACKAGES, ROOT
 
 LIST = Path(__file__).with_name("mutants.json")
+BEFORE = "c015253c"
+"""The commit that the list was drawn from."""
+AROUND = 8
+"""Lines before and after one by which it is told from others that read the same."""
 SEED = 37
 COUNT = 120
 
@@ -48,8 +54,47 @@ class Mutant:
 
 
 def listed() -> list[Mutant]:
-    """The committed list."""
+    """The committed list, at the places of `BEFORE`."""
     return [Mutant(**each) for each in json.loads(LIST.read_text(encoding="utf-8"))]
+
+
+def followed(mutant: Mutant, root: Path) -> Mutant | None:
+    """The mutant in a later checkout: in the line that reads the same, and of several the one with
+    the same lines around it. None where the line is gone, or half of what is around it."""
+    text = subprocess.check_output(["git", "show", f"{BEFORE}:{mutant.file}"], cwd=ROOT, text=True)
+    lines = text.splitlines()
+    line = lines[mutant.line - 1]
+    around = set(_around(lines, mutant.line))
+    found: list[tuple[int, int, str, int, str]] = []
+    for file, rows in _stripped(root).items():
+        for number, row in enumerate(rows, 1):
+            if row.strip() == line.strip():
+                alike = len(around.intersection(_around(rows, number)))
+                own = int(file == mutant.file) + int(Path(file).name == Path(mutant.file).name)
+                found.append((alike, own, file, number, row))
+    alike, _, file, number, row = max(found, default=(0, 0, "", 0, ""), key=lambda each: each[:2])
+    if alike < len(around) / 2:
+        return None
+    shift = len(row) - len(row.lstrip()) - (len(line) - len(line.lstrip()))
+    start, end = mutant.start + shift, mutant.end + shift
+    return dataclasses.replace(mutant, file=file, line=number, start=start, end=end)
+
+
+def _around(lines: list[str], number: int) -> list[str]:
+    """The lines before and after one, but for empty ones."""
+    near = lines[max(number - 1 - AROUND, 0) : number + AROUND]
+    return [text for text in map(str.strip, near) if text]
+
+
+@cache
+def _stripped(root: Path) -> dict[str, list[str]]:
+    """The lines of all files that a mutant may stand in, by their paths in a checkout."""
+    homes = (*PACKAGES, "tests/second_opinions")
+    return {
+        str(path.relative_to(root)): path.read_text(encoding="utf-8").splitlines()
+        for home in homes
+        for path in sorted((root / home).rglob("*.py"))
+    }
 
 
 Change = tuple[ast.AST, str]

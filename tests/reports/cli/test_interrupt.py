@@ -45,7 +45,7 @@ IMPORTS: Moment = ("import", "numpy", 1)
 FIRST_STARTS: Moment = ("subprocess.Popen", "python", 1)
 SECOND_STARTS: Moment = ("subprocess.Popen", "python", 2)
 FIRST_ANSWER: Moment = ("pickle.find_class", "reports.judge.cell", 1)
-LONG = ("verify", "--turns", "4", "-o", "out")
+LONG = ("verify", "--turns", "4", "--jobs", "2", "-o", "out")
 """Some ten seconds of work, which ends in its first moments."""
 BRIEF = ("verify", "fourbar-lecture-1", "-o", "out")
 """Work that comes to its end."""
