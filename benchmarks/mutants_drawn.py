@@ -26,6 +26,16 @@ BEFORE = "c015253c"
 """The commit that the list was drawn from."""
 AROUND = 8
 """Lines before and after one by which it is told from others that read the same."""
+CHANGED = {
+    63: ("if self.folder is not None:", "self.folder is not None", "(self.folder is None)"),
+    64: (
+        "given = GivenAs(chosen_segments(request.segments), "
+        'chosen_springs(request.springs or "plain"))',
+        'request.springs or "plain"',
+        "(request.springs and 'plain')",
+    ),
+}
+"""Lines that read otherwise since then, and the piece of each before and after the fault."""
 SEED = 37
 COUNT = 120
 
@@ -64,6 +74,10 @@ def followed(mutant: Mutant, root: Path) -> Mutant | None:
     text = subprocess.check_output(["git", "show", f"{BEFORE}:{mutant.file}"], cwd=ROOT, text=True)
     lines = text.splitlines()
     line = lines[mutant.line - 1]
+    if mutant.number in CHANGED:
+        line, old, new = CHANGED[mutant.number]
+        start = line.index(old)
+        mutant = dataclasses.replace(mutant, old=old, new=new, start=start, end=start + len(old))
     around = set(_around(lines, mutant.line))
     found: list[tuple[int, int, str, int, str]] = []
     for file, rows in _stripped(root).items():
@@ -73,7 +87,7 @@ def followed(mutant: Mutant, root: Path) -> Mutant | None:
                 own = int(file == mutant.file) + int(Path(file).name == Path(mutant.file).name)
                 found.append((alike, own, file, number, row))
     alike, _, file, number, row = max(found, default=(0, 0, "", 0, ""), key=lambda each: each[:2])
-    if alike < len(around) / 2:
+    if not file or (alike < len(around) / 2 and mutant.number not in CHANGED):
         return None
     shift = len(row) - len(row.lstrip()) - (len(line) - len(line.lstrip()))
     start, end = mutant.start + shift, mutant.end + shift
