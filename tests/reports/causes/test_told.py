@@ -5,6 +5,7 @@ from __future__ import annotations
 import cProfile
 import math
 import re
+import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -20,6 +21,7 @@ from models.motion import Motion
 from reports.causes import Case, Cause, causes
 from reports.causes.words import change
 from reports.compare.beside import Truth
+from reports.logs.beside_truth import beside_truth
 from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.kinds import KINDS
 from reports.logs.log_beside import AtCrank
@@ -237,6 +239,16 @@ def test_causes_are_found_of_the_geometry_at_the_logged_crank() -> None:
     wrong = {"crank_a": crank, "rocker_a": motion.links["coupler"].theta}
     (cause,) = causes(replace(plain.of(motion).put(wrong).case, truth=truth))
     assert (cause.name, cause.columns) == ("misnamed", ("rocker_a",))
+
+
+def test_of_a_long_log_some_instants_stand_for_the_whole_mechanism(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    beside = beside_truth(PLAIN.case.log, Truth(SCENE, links=("rocker", "coupler")))
+    most = PLAIN.time_s.size // 3
+    monkeypatch.setattr(sys.modules[type(beside).__module__], "MANY", most)
+    assert np.array_equal(beside.whole.time_s, PLAIN.time_s[::4])
+    assert set(beside.whole.links) == set(SCENE.links)
 
 
 def test_a_channel_without_a_limit_is_not_judged() -> None:

@@ -172,6 +172,12 @@ def test_a_script_that_imports_crankcheck_hears_ctrl_c_as_ever(programs: Start) 
     assert "KeyboardInterrupt" in running.communicate()[1]
 
 
+def test_the_command_hears_ctrl_c_in_one_line_from_its_first_import_on(programs: Start) -> None:
+    code = "import sys; sys.argv = ['bin/crankcheck']; import crankcheck, signal; "
+    running = programs(PYTHON, "-P", "-c", f"{code}signal.raise_signal(signal.SIGINT)")
+    assert running.communicate()[1] == "crankcheck: interrupted\n"
+
+
 ENDS = {
     "lost": """
 class Dies:

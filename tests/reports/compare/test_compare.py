@@ -217,6 +217,8 @@ def test_every_pin_and_slider_needs_its_gap(name: str, disturbed: Callable[..., 
     run = disturbed(scene)
     whole, silent = compared(scene, run), compared(scene, replace(run, gaps={}))
     assert whole.missing == ()
+    kinds = {row.body: row.body_kind for row in whole.rows if row.quantity == "gap"}
+    assert kinds == {x: "slider" if x in scene.sliders else "point" for x in run.gaps}
     assert set(silent.missing) == {f"gap of {joint}" for joint in run.gaps}
     assert math.isnan(pure(silent, "gap"))
 

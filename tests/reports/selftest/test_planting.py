@@ -151,6 +151,12 @@ def test_a_post_aside_touches_nothing(engine_name: str) -> None:
     assert np.array_equal(blocked, free)
 
 
+def test_revolutions_a_minute_are_ten_radians_a_second_of_95() -> None:
+    scene = load_scene(FOURBAR)
+    right, wrong = (output(scene, ran("rpm", "pymunk", size)) for size in (0.0, 1.0))
+    assert np.allclose(wrong.omega, right.omega * 60.0 / math.tau)
+
+
 def test_one_iteration_is_what_the_engine_holds() -> None:
     assert ran("solver-stops-early", "pymunk", 1.0).settings["iterations"] == 1
     mujoco = ran("solver-stops-early", "mujoco", 1.0).settings

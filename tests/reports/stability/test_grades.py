@@ -104,6 +104,14 @@ def case(*values: float, scale: str = "log", good: tuple[Outcome, ...] = ("ok",)
     return Case(values=values, trial=lambda _: trial, good=good, **words)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(99_999.0, "99999"), (100_000.0, "1e5"), (112_000.0, "1.12e5"), (0.25, "0.25")],
+)
+def test_whole_numbers_of_up_to_five_digits_are_written_out(value: float, text: str) -> None:
+    assert label(value) == text
+
+
 def held(given: Case, good: Callable[[float], bool]) -> tuple[Critical, list[Graded]]:
     """The runs of an engine that holds some values, and is off its branch at the others."""
 

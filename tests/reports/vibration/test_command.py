@@ -45,6 +45,7 @@ def test_a_vibration_is_told() -> None:
     output = words("fourbar-elastic")
     assert "coupler across 1 77.3704 12.3139 10.5" in output
     assert re.search(r"coupler 1\.051 0\.14 % 375 12\d\.\d 1\.051 0\.00366", output)
+    assert "mechanism, mode rad/s, least most over speed order from whole multiplier" in output
     assert "Stable, without damping" in output
     assert "No resonance is near: 1 % of stiffness changes the deflection by 1.01 %" in output
 

@@ -17,7 +17,7 @@ from analytic.lectures.drawings.graphical import METHODS, Method
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
-from reports.figures.style import styled
+from reports.figures.style import SMALL, styled
 from reports.lectures.drawing.sheets.graphs.graph_drawing import DrawnGraphs, drawn_graphs
 from reports.lectures.drawing.sheets.graphs.graph_log import graph_log
 from reports.lectures.drawing.sheets.graphs.graph_orders import ErrorLine, graph_errors
@@ -121,6 +121,13 @@ def test_graphs_and_table_stay_in_their_boxes(name: str, of: str, by: Method, pa
     assert sheet.table.left + sheet.table.width <= sheet.paper.width - 8.0
     part = sheet.panels[0].box.width / sheet.drawn.parts
     assert 2.0 * part == pytest.approx(round(2.0 * part))  # half millimetres of a ruler
+
+
+def test_a_caption_that_has_room_is_not_tiny() -> None:
+    sheet = sheet_of("slider-crank-offset", "C", "chords", paper="A3")
+    texts = [text for axes in draw_graphs(sheet, "").figure.axes for text in axes.texts]
+    sizes = {text.get_text(): text.get_fontsize() for text in texts}
+    assert [sizes[caption(sheet, panel)] for panel in sheet.panels] == [SMALL] * len(sheet.panels)
 
 
 def test_the_table_has_division_angle_and_value() -> None:
