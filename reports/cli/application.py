@@ -11,7 +11,7 @@ import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cached_property
-from typing import Annotated, Any, NoReturn, Protocol, cast, get_args, get_type_hints
+from typing import Annotated, Any, NoReturn, Protocol, cast, get_args, get_origin, get_type_hints
 
 import typer
 from rich.console import Console
@@ -169,7 +169,11 @@ def _typed(request: type[Request]) -> Callable[..., None]:
 
     notes = get_type_hints(request, include_extras=True)
     fields = dataclasses.fields(cast(Any, request))
-    parameters = [_parameter(field, notes[field.name]) for field in fields]
+    parameters = [
+        _parameter(field, notes[field.name])
+        for field in fields
+        if get_origin(notes[field.name]) is Annotated  # the others are for Python alone
+    ]
     typed.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # read by typer
     return typed
 

@@ -60,7 +60,9 @@ def option_of(request: type, field: str) -> str:
     note = get_type_hints(request, include_extras=True)[field].__metadata__[0]
     if isinstance(note, typer.models.ArgumentInfo):
         return str(note.metavar)
-    written = [each for each in note.param_decls or () if each.startswith("--")]
+    # typer takes the first name of an option for a default, until it sees the annotation.
+    names = map(str, (note.default, *(note.param_decls or ())))
+    written = [each for each in names if each.startswith("--")]
     return str((written or [f"--{field.replace('_', '-')}"])[0])
 
 
