@@ -17,10 +17,7 @@ from models.files import find_scene, load_scene
 from models.one_or_more import names_in
 from models.scene import Scene
 from reports.judge.tolerance import DEFAULTS, FREE, check_names, parse, refuse_of_other_motion
-from reports.logs.blank_map import blank_map
-from reports.logs.columns import read_columns
 from reports.logs.map_file import Map, map_text, read_map
-from reports.logs.meanings import understood, wanted
 from reports.output.junit import junit
 from reports.output.numbers import finite
 from reports.output.provenance import provenance
@@ -309,6 +306,9 @@ class JudgeRequest:
             told = f"{self.write_map}: {_write_map(self.write_map, self.log, scene, map_)}"
             console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
             return 0
+        from reports.logs.columns import read_columns
+        from reports.logs.meanings import understood, wanted
+
         # No name for the columns, which take as much memory as all readings.
         log = understood(
             read_columns(self.log, map_.layout, wanted(scene, map_, forces=self.forces)),
@@ -361,6 +361,10 @@ def _write_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
 
     Raises CrankcheckError for a log that no map alone can mend.
     """
+    from reports.logs.blank_map import blank_map  # pandas, which takes a third of a second
+    from reports.logs.columns import read_columns
+    from reports.logs.meanings import understood, wanted
+
     columns = read_columns(log, map_.layout, wanted(scene, map_))
     try:
         text = map_text(understood(columns, scene, map_), map_.file)

@@ -19,7 +19,6 @@ from reports.requests.sweep import Sweep
 from reports.requests.told import told_at_the_call
 from reports.stability.matrix import FILE as MATRIX
 from reports.stability.matrix import Matrix, read_matrix
-from reports.store.reader import read_store
 from reports.store.schema import TABLES
 
 Format = Literal["html", "md"]
@@ -59,6 +58,8 @@ def report_of(folder: Path, format: Format) -> Made:
 
         matrix = read_matrix(folder)
         return Made(stability_page(matrix), f"{len(matrix.runs)} runs of hard cases")
+    from reports.store.reader import read_store  # pandas, which takes a third of a second
+
     stored = read_store(folder)
     tell(stored.notice)
     content = f"{len(stored.cells)} cells"

@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 from rich.console import Console
 
-from models.errors import CrankcheckError, harmless, shown
+from models.errors import CrankcheckError, shown
 from models.files import every_shipped, load_scene
 from models.one_or_more import names_in
 from models.scene_text import scene_text
-from reports.output.numbers import count
 from reports.plan.chosen import left_out_note
 from reports.plan.chosen_study import (
     Overrides,
@@ -44,12 +43,6 @@ from reports.requests.arguments import (
 from reports.requests.options import Duration, Engines, Forces, Jobs, SpringKind
 from reports.requests.shown import Shown
 from reports.requests.told import told_at_the_call
-from reports.results.lines import lines
-from reports.results.recommend import recommendations
-from reports.results.table import noise_line, recommendation_table
-from reports.store.reader import Stored, read_store
-from reports.sweep.running import Done
-from reports.sweep.whole import Manner, swept
 from reports.workers.isolated import checked_limits
 
 if TYPE_CHECKING:
@@ -57,6 +50,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from reports.sweep.running import Done
+    from reports.sweep.whole import Manner
 
 MOST_JOBS = 1024
 
@@ -98,6 +92,8 @@ def manner_of(
     jobs = whole_of(jobs, "--jobs", 0)
     if jobs > MOST_JOBS:
         raise CrankcheckError(f"--jobs {jobs}: at most {MOST_JOBS}; 0 is one per processor")
+    from reports.sweep.whole import Manner  # pandas, which takes a third of a second
+
     return Manner(
         limits,
         jobs,
@@ -183,33 +179,6 @@ def _listed(values: object) -> Sequence[object]:
     return values if isinstance(values, list) else [values]
 
 
-def show_sweep(console: Console, folder: Path, number: int, done: Done) -> None:
-    """Print what of so many cells was run now, what failed, and what to do with it."""
-    console.print(
-        f"{count(number, 'cell')}: {done.ran} run now, {number - done.ran} were there; "
-        f"{done.timed} timed now"
-    )
-    for status, reasons in sorted(done.failed.items()):
-        console.print(f"  {sum(reasons.values())} {status}, such as", highlight=False)
-        for reason, _ in reasons.most_common(2):
-            console.print(f"    {reason}", markup=False, highlight=False)
-    stored = f"stored in {folder}; next: crankcheck report {folder} -o report.html"
-    console.print(harmless(stored), markup=False)
-    found = read_store(folder)
-    if not found.timings.empty:
-        _recommend(console, found)
-
-
-def _recommend(console: Console, stored: Stored) -> None:
-    """What to choose, of all that the store holds."""
-    console.print()
-    older = len(stored.cells) - sum(len(line.cells) for line in lines(stored))
-    if older:
-        console.print(f"left out: {older} cells of earlier runs, whose names stand for others now")
-    console.print(recommendation_table(recommendations(stored), console.width))
-    console.print(noise_line(stored), highlight=False)
-
-
 Values = float | int | str | Sequence[float | int | str]
 
 
@@ -235,7 +204,7 @@ class Sweep(Shown):
         return "within" if bool((gated["verdict"] == "within").all()) else "out"
 
     def show(self, console: Console) -> None:
-        from reports.requests.sweep import show_sweep
+        from reports.requests.sweep_text import show_sweep
 
         show_sweep(console, self.folder, self.cells, self.done)
 
@@ -415,6 +384,9 @@ class SweepRequest:
         damaged in the store is mended, and told. Raises CrankcheckError for what can be told of the
         request before running.
         """
+        from reports.requests.sweep_text import show_sweep
+        from reports.sweep.whole import Manner, swept
+
         limits = checked_limits(self.limit_s, self.memory_gb)
         manner = Manner(
             limits,
