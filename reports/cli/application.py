@@ -165,7 +165,10 @@ def _typed(request: type[Request]) -> Callable[..., None]:
 
     def typed(**options: object) -> None:
         given = {name: value for name, value in options.items() if value is not None}
-        _end_with(request(**given))
+        with guarded():  # options of a request that is slow to import stand by themselves
+            place = getattr(request, "answered_by", "")
+            kind = named(place) if place else request
+        _end_with(kind(**given))
 
     notes = get_type_hints(request, include_extras=True)
     fields = dataclasses.fields(cast(Any, request))

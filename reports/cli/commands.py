@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 # fmt: off
 COMMANDS: Mapping[str, tuple[str, str]] = {
-    "verify": ("requests.verify:VerifyRequest", """
+    "verify": ("requests.verify_options:VerifyOptions", """
 Run scenes in engines, or a model of your own, and hold them to the closed form; exit 1 when
 out of tolerance."""),
     "selftest": ("requests.selftest:SelftestRequest", """
@@ -34,7 +34,7 @@ Draw the diagrams of a sweep as SVG and PDF, for a paper."""),
 Grade the engines on hard cases, and find how far each holds them.
 
 The exit code is 0; with --at it is 1 where the value is not held."""),
-    "solve": ("requests.solve:SolveRequest", """
+    "solve": ("requests.solve_options:SolveOptions", """
 Show the reference alone: angles, points and sliders with all their rates, and the forces
 that these ask for; of a scene that is let go, its free motion and energy; of one with elastic
 links, how these bend, and what that changes."""),

@@ -41,15 +41,15 @@ from reports.requests.solution_text import (
     show_notes,
     show_position,
 )
-from reports.requests.solve_options import (
+from reports.requests.solve_lengths import (
     FAMILY_ENDINGS,
     PAGE,
     WORKBOOK,
-    SolveOptions,
     elastic_choice,
     instants_of,
     refuse_times,
 )
+from reports.requests.solve_options import SolveOptions
 from reports.requests.told import told_at_the_call
 
 SAMPLES = 361

@@ -17,7 +17,8 @@ from reports.requests.elastic_choice import ElasticChoice
 from reports.requests.elastic_text import show_elastic
 from reports.requests.options import given
 from reports.requests.solve_free import free_instants, refuse_turns
-from reports.requests.solve_options import PAGE, SolveOptions, instants_of, refuse_times
+from reports.requests.solve_lengths import PAGE, instants_of, refuse_times
+from reports.requests.solve_options import SolveOptions
 
 
 def run_solve_elastic(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import typer
 
@@ -31,6 +31,7 @@ class VerifyOptions:
     """Options of `verify`, of scenes and of a model of the user's own; ``baseline`` is the folder
     of an earlier run, whose errors may grow by ``factor``."""
 
+    answered_by: ClassVar[str] = "requests.verify:VerifyRequest"
     scenes: Annotated[
         Sequence[str],
         typer.Argument(metavar="SCENE", help="Shipped names or scene files; all if none."),
