@@ -101,6 +101,16 @@ def load_scene(name_or_path: str | PathLike[str]) -> Scene:
     return read_scene(find_scene(name_or_path))
 
 
+def is_there(path: str) -> bool:
+    """Whether a path leads to something."""
+    try:
+        return bool(path) and Path(path).exists()
+    except PermissionError:
+        return True  # its folder may not be searched; reading it says so
+    except (OSError, ValueError):  # a name too long for the system, or with a null byte
+        return False
+
+
 def find_scene(name_or_path: str | PathLike[str]) -> Path:
     """The file of a shipped scene's name, or of a path. Raises CrankcheckError as `load_scene`."""
     known = every_shipped()
@@ -115,13 +125,7 @@ def find_scene(name_or_path: str | PathLike[str]) -> Path:
     if name_or_path in known:
         return known[name_or_path]
     path = Path(name_or_path)
-    try:
-        there = bool(name_or_path) and path.exists()
-    except PermissionError:
-        there = True  # its folder may not be searched; reading it says so
-    except (OSError, ValueError):  # a name too long for the system, or with a null byte
-        there = False
-    if there:
+    if is_there(name_or_path):
         return path
     if name_or_path in kinds():
         several = few(shipped(name_or_path), 12)

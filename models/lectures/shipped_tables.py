@@ -8,6 +8,7 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from models.errors import CrankcheckError, SceneError, cut, nearest, shown
+from models.files import is_there
 from models.regular import UnreadableError, regular_text
 from models.toml_text import tables
 
@@ -28,13 +29,7 @@ def find_table(name_or_path: str, folder: Path, what: str, lists: str) -> Path:
     if name_or_path in known:
         return known[name_or_path]
     path = Path(name_or_path)
-    try:
-        there = bool(name_or_path) and path.exists()
-    except PermissionError:
-        there = True  # its folder may not be searched; reading it says so
-    except (OSError, ValueError):  # a name too long for the system, or with a null byte
-        there = False
-    if there:
+    if is_there(name_or_path):
         return path
     near = nearest(path.stem, known, cutoff=0.5)
     hint = f"Did you mean {' or '.join(near)}?" if near else f"`{lists}` lists the names."
