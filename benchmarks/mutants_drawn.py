@@ -29,10 +29,9 @@ AROUND = 8
 CHANGED = {
     63: ("if self.folder is not None:", "self.folder is not None", "(self.folder is None)"),
     64: (
-        "given = GivenAs(chosen_segments(request.segments), "
-        'chosen_springs(request.springs or "plain"))',
-        'request.springs or "plain"',
-        "(request.springs and 'plain')",
+        'return GivenAs(chosen_segments(segments), chosen_springs(springs or "plain"))',
+        'springs or "plain"',
+        "(springs and 'plain')",
     ),
 }
 """Lines that read otherwise since then, and the piece of each before and after the fault."""

@@ -24,7 +24,7 @@ from reports.logs.beside_truth import beside_truth, lacking
 from reports.logs.channel import OwnLog
 from reports.logs.log_beside import LogBeside
 from reports.own_log.drives import DriveFit, LogDrive
-from reports.own_log.log_kind import LogRequest, log_kind
+from reports.own_log.log_kind import HeldLog, LogRequest, log_kind
 from reports.own_log.log_limits import log_limits
 from reports.own_log.required import absent_names, required_name
 from reports.quantities import named
@@ -138,7 +138,7 @@ def _explained(
     rows = [row for row in errors.rows if row.kind == "total"]
     itself = (ITSELF,) if rows and all(row.maximum == 0.0 for row in rows) else ()
     out = any(finding.level == "fail" for finding in judge(evidence, LIMITS))
-    found, notes = log_kind(log.scene).explained(log, truth, fit, evidence, errors, out=out)
+    found, notes = log_kind(log.scene).explained(HeldLog(log, truth, fit, evidence, errors, out))
     return tuple(found), itself or tuple(notes)
 
 

@@ -31,6 +31,19 @@ class LogRequest:
     springs: Springs = "plain"
 
 
+@dataclass(frozen=True)
+class HeldLog:
+    """A log with the truth that it was compared with, and the drive that was fitted; ``out`` says
+    that it is out of tolerance."""
+
+    log: OwnLog
+    truth: Truth
+    fit: DriveFit | None
+    evidence: Evidence
+    errors: Errors
+    out: bool
+
+
 class LogKind(Protocol):
     """How logs of a kind of scene are judged."""
 
@@ -41,17 +54,8 @@ class LogKind(Protocol):
         CrankcheckError."""
         ...
 
-    def explained(
-        self,
-        log: OwnLog,
-        truth: Truth,
-        fit: DriveFit | None,
-        evidence: Evidence,
-        errors: Errors,
-        *,
-        out: bool,
-    ) -> tuple[Sequence[Cause], Sequence[str]]:
-        """The causes of what is ``out`` of tolerance or late, and what else is worth knowing."""
+    def explained(self, held: HeldLog) -> tuple[Sequence[Cause], Sequence[str]]:
+        """The causes of what is out of tolerance or late, and what else is worth knowing."""
         ...
 
 

@@ -13,12 +13,11 @@ from reports.plan.chosen import refuse_unfollowed
 from reports.plan.free import LOOK, gives_way
 from reports.plan.steps import (
     FREE_STEP_S,
-    LEAST_STEPS,
     STEPS_PER_TURN,
     counted_free,
     positive,
 )
-from reports.way.length import SEGMENTS, GivenAs, Springs
+from reports.way.length import LEAST_STEPS, SEGMENTS, GivenAs, Springs
 
 if TYPE_CHECKING:
     from reports.compare.elastic.elastic_truth import ElasticTruth
@@ -76,10 +75,10 @@ def _words(count: int, springs: Springs) -> str:
     return f", {count} segments" + f", {springs} springs" * (springs != "plain")
 
 
-def given_of(scene: Scene, segments: int | None, springs: str | None) -> GivenAs:
-    """What the elastic links of one scene are given as. Raises CrankcheckError as `refuse_rigid`,
+def given_of(scenes: Iterable[Scene], segments: int | None, springs: str | None) -> GivenAs:
+    """What the elastic links of scenes are given as. Raises CrankcheckError as `refuse_rigid`,
     `chosen_segments` and `chosen_springs`."""
-    refuse_rigid([scene], segments, springs)
+    refuse_rigid(scenes, segments, springs)
     return GivenAs(chosen_segments(segments), chosen_springs(springs or "plain"))
 
 

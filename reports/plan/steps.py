@@ -8,10 +8,9 @@ from numbers import Real
 from models.errors import CrankcheckError, shown
 from models.scene import Scene
 from reports.compare.beside import SETTLING
+from reports.way.length import LEAST_STEPS
 
 LEAST_STEPS_PER_TURN = 8
-LEAST_STEPS = 2 * SETTLING
-"""Measured: of the shipped scenes none fails for shortness alone in a run of so many steps."""
 MOST_STEPS = 300_000
 """All steps are logged: as many take about 1 GB with a six-bar."""
 MOST_SEARCHED = 200_000

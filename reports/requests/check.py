@@ -111,7 +111,7 @@ def check(
     name, profile = engine_of(engine, profile, settings)
     driven = cast(Drive, one_of(drive, "--drive", DRIVES))
     limits = tolerances_of(tolerance, "tolerance")
-    bent = given_of(scene, segments, springs)
+    bent = given_of([scene], segments, springs)
     refuse_unfollowed(scene)
     length = Length(dt_s, steps_per_turn, turns)
     dt_s, steps = laid_out(scene, length, bent, with_forces=is_true(forces, "forces"))

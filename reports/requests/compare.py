@@ -126,7 +126,7 @@ def compare(
     refuse_geometry_alone(chosen, forces=is_true(forces, "forces"))
     log = log_of(scene, what, map, forces=forces)
     step = 0.0 if step_s is None else positive("--step", step_s, "seconds")
-    given = given_of(scene, segments, springs)
+    given = given_of([scene], segments, springs)
     asked = LogRequest({}, step, chosen, (), given.segments, given.springs)
     log, truth, _ = log_kind(scene).truth(log, asked)
     errors = comparing.compare(beside_truth(log, truth, step_s=step))

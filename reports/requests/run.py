@@ -158,13 +158,14 @@ class RunRequest:
         drive = _drive(scene, self.drive)
         every = whole_of(self.every, "--every")
         _refuse_other_length(scene, drive, self)
-        bent = given_of(scene, self.segments, self.springs)
-        in_turns = self.turns, self.steps_per_turn
+        bent = given_of([scene], self.segments, self.springs)
         length = Length(self.dt_s, self.steps_per_turn, self.turns, self.duration_s, every, 1)
-        driven, scene = scene, loosened(scene) if drive == "free" else scene
-        has_turns = drive == "free" and in_turns != (None, None)  # those of the law that drove it
-        counted = way("driven").counted if has_turns else way_of(scene, drive).counted
-        dt_s, steps = counted(driven if has_turns else scene, length, bent)
+        if drive == "free":
+            driven, scene = scene, loosened(scene)
+        if drive == "free" and (self.turns, self.steps_per_turn) != (None, None):
+            dt_s, steps = way("driven").counted(driven, length, bent)  # by the law that drove it
+        else:
+            dt_s, steps = way_of(scene, drive).counted(scene, length, bent)
         truth = _truth(scene, bent, dt_s, steps)
         done = stepping.run(
             scene if truth is None else truth.given,

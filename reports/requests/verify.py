@@ -30,11 +30,7 @@ from reports.plan.chosen import (
     left_out_note,
     refuse_unfollowed,
 )
-from reports.plan.elastic import (
-    chosen_segments,
-    chosen_springs,
-    refuse_rigid,
-)
+from reports.plan.elastic import given_of
 from reports.plan.forces import gives_forces, silent_note
 from reports.plan.free import (
     free_names,
@@ -46,7 +42,7 @@ from reports.requests.verify_files import IN_FOLDER, Results, write_results
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions, refuse_of_models
 from reports.verify.all_cells import check_all
 from reports.verify.table import show
-from reports.way.length import GivenAs, Length
+from reports.way.length import Length
 from reports.way.way import laid_out
 from sim.engine import Drive
 from sim.registry import engine
@@ -125,8 +121,7 @@ def plan(request: VerifyOptions) -> list[Cell]:
     refuse_of_other_motion("--tol", tolerance, free, bends=bends)
     engines = chosen_engines(request.engines)
     profiles = chosen_profiles(request.profiles, engines)
-    refuse_rigid(scenes, request.segments, request.springs)
-    given = GivenAs(chosen_segments(request.segments), chosen_springs(request.springs or "plain"))
+    given = given_of(scenes, request.segments, request.springs)
     length = Length(request.dt_s, request.steps_per_turn, request.turns, request.duration_s)
     steps = {
         scene.name: laid_out(scene, length, given, with_forces=request.forces) for scene in scenes

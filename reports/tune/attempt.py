@@ -10,8 +10,9 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.plan.coarsest import coarsest
-from reports.plan.steps import LEAST_STEPS, LEAST_STEPS_PER_TURN, MOST_SEARCHED, counted
+from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, counted
 from reports.sweep.measured import MeasuredCell, measured
+from reports.way.length import LEAST_STEPS
 from reports.workers.isolated import Isolated, Limits, Lost
 from sim.engine import Settings
 from sim.tuning import Work

@@ -1,7 +1,7 @@
 """A way: how scenes of a kind are run and compared with the reference.
 
-A kind of scene is one module of the room `ways`, found by its name, with a value ``WAY``; to add
-one, add the module and its name in `WAYS`. No other room asks what kind a scene is.
+A kind of scene is a folder of the room `ways`, found by its name, with a value ``WAY``; to add one,
+add the folder and its name in `WAYS`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ WAYS = ("free_elastic", "elastic", "free", "driven")
 """The kinds, the more special first: a scene is of the first that takes it."""
 
 
-class Grid(Protocol):
+class StudyLengths(Protocol):
     """What a study says of the lengths of runs."""
 
     steps_per_turn: list[float]
@@ -57,7 +57,7 @@ class Way(Protocol):
         be run."""
         ...
 
-    def lengths(self, scene: Scene, study: Grid, given: GivenAs) -> list[Length]:
+    def lengths(self, scene: Scene, study: StudyLengths, given: GivenAs) -> list[Length]:
         """The runs of a scene in a study, a length for each step. Raises CrankcheckError."""
         ...
 

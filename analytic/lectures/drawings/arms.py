@@ -15,7 +15,7 @@ import numpy as np
 
 from analytic.lectures.drawings.body_rates import BodyRates
 from analytic.lectures.drawings.placed_mechanism import quarter_turn
-from analytic.lectures.drawings.vector_equation import Kind, Term, Way
+from analytic.lectures.drawings.vector_equation import EquationSide, Kind, Term
 from models.array import Array
 
 
@@ -52,14 +52,14 @@ class RotatingArm:
     node: str
     place: Array
 
-    def velocity_way(self) -> Way:
-        return Way(self.origin.name, self.origin.velocity, (), self._turning("rotation"))
+    def velocity_way(self) -> EquationSide:
+        return EquationSide(self.origin.name, self.origin.velocity, (), self._turning("rotation"))
 
-    def acceleration_way(self, velocity: Array) -> Way:
+    def acceleration_way(self, velocity: Array) -> EquationSide:
         """With the velocity of the node [m/s], (2,)."""
         towards = -(self.omega(velocity) ** 2) * self._arm
         normal = Term(self.node + self.origin.name, "normal", towards)
-        return Way(
+        return EquationSide(
             self.origin.name, self.origin.acceleration, (normal,), self._turning("tangential")
         )
 
@@ -98,15 +98,15 @@ class SlidingArm:
     slider: str
     frame: BodyRates | RotatingArm
 
-    def velocity_way(self) -> Way:
-        return Way(self.origin.name, self.origin.velocity, (), self._sliding())
+    def velocity_way(self) -> EquationSide:
+        return EquationSide(self.origin.name, self.origin.velocity, (), self._sliding())
 
-    def acceleration_way(self, velocity: Array) -> Way:
+    def acceleration_way(self, velocity: Array) -> EquationSide:
         """With the velocity of the node [m/s], (2,)."""
         omega = self.omega(velocity)
         turned = 2.0 * omega * quarter_turn(velocity - self.origin.velocity)
         known = (Term(self.node + self.origin.name, "coriolis", turned),) if omega else ()
-        return Way(self.origin.name, self.origin.acceleration, known, self._sliding())
+        return EquationSide(self.origin.name, self.origin.acceleration, known, self._sliding())
 
     def omega(self, velocity: Array) -> float:
         """The rate of the line [rad/s]."""

@@ -23,9 +23,9 @@ from analytic.lectures.drawings.polygon import (
 )
 from analytic.lectures.drawings.vector_equation import (
     FLAT,
+    EquationSide,
     ParallelError,
     Term,
-    Way,
     crossing,
     sine_between,
 )
@@ -153,7 +153,7 @@ class _Table:
         self.rates |= dyad.rates(self.placement, NodeMotion(velocity, acceleration))
 
     def _crossed(
-        self, quantity: Quantity, ways: list[Way], dyad: DyadPolygon
+        self, quantity: Quantity, ways: list[EquationSide], dyad: DyadPolygon
     ) -> tuple[Array, tuple[tuple[Vector, ...], dict[str, Array]]]:
         """The node, and the vectors to it with what they begin at and was not drawn before."""
         lengths = crossing(*ways)

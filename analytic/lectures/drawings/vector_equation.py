@@ -48,7 +48,7 @@ class Term:
 
 
 @dataclass(frozen=True)
-class Way:
+class EquationSide:
     """One side of the equation: from the point ``base`` of the polygon at ``start`` (2,) over
     ``known`` vectors, and on along the direction of ``unknown``, whose value is a unit vector."""
 
@@ -71,13 +71,13 @@ class Way:
         )
 
 
-def sine_between(one: Way, other: Way) -> float:
+def sine_between(one: EquationSide, other: EquationSide) -> float:
     """The sine of the angle from the direction of one way to that of the other."""
     u, v = one.unknown.value, other.unknown.value
     return float(u[0] * v[1] - u[1] * v[0])
 
 
-def crossing(one: Way, other: Way) -> tuple[float, float]:
+def crossing(one: EquationSide, other: EquationSide) -> tuple[float, float]:
     """The lengths of the unknown vectors of both ways. Raises ParallelError."""
     u, v = one.unknown.value, other.unknown.value
     gap = other.before - one.before

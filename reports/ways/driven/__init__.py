@@ -9,9 +9,9 @@ from reports.compare.beside import Truth, truth_of
 from reports.plan.forces import refuse_forceless
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular
-from reports.plan.steps import LEAST_STEPS, TURNS, counted
+from reports.plan.steps import TURNS, counted
 from reports.way.length import GivenAs, Length, Planned
-from reports.way.way import Grid
+from reports.way.way import StudyLengths
 from sim.engine import Drive
 
 if TYPE_CHECKING:
@@ -30,12 +30,11 @@ class DrivenWay:
         return True
 
     def counted(self, scene: Scene, length: Length, given: GivenAs) -> tuple[float, int]:
-        least = LEAST_STEPS if length.least is None else length.least
         turns = TURNS if length.turns is None else length.turns
         step = length.dt_s, length.steps_per_turn
-        return counted(scene, *step, turns, every=length.every, least=least)
+        return counted(scene, *step, turns, every=length.every, least=length.least)
 
-    def lengths(self, scene: Scene, study: Grid, given: GivenAs) -> list[Length]:
+    def lengths(self, scene: Scene, study: StudyLengths, given: GivenAs) -> list[Length]:
         return [Length(None, each, study.turns) for each in study.steps_per_turn]
 
     def refuse(self, run: Planned) -> None:

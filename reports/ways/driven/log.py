@@ -7,12 +7,10 @@ from collections.abc import Sequence
 from reports.causes.cause import Case, Cause
 from reports.causes.find import causes
 from reports.compare.beside import Truth
-from reports.compare.errors import Errors
-from reports.judge.rules.rule import Evidence
 from reports.logs.channel import OwnLog
 from reports.logs.log_beside import AtCrank, LogBeside
 from reports.own_log.drives import DriveFit, truth_of_log
-from reports.own_log.log_kind import LogRequest
+from reports.own_log.log_kind import HeldLog, LogRequest
 from reports.own_log.log_limits import limits_by_column
 from reports.own_log.no_cause import of_no_cause, seldom
 from sim.engine import Run
@@ -36,21 +34,12 @@ class DrivenLog:
         alone = isinstance(truth, AtCrank)
         return LogBeside(truth, run, run.motion, step_s=run.dt_s, geometry_alone=alone)
 
-    def explained(
-        self,
-        log: OwnLog,
-        truth: Truth,
-        fit: DriveFit | None,
-        evidence: Evidence,
-        errors: Errors,
-        *,
-        out: bool,
-    ) -> tuple[Sequence[Cause], Sequence[str]]:
-        if fit is not None and not fit.explains:
+    def explained(self, held: HeldLog) -> tuple[Sequence[Cause], Sequence[str]]:
+        if held.fit is not None and not held.fit.explains:
             return (), (NO_FIT,)
-        case = Case(log, truth, limits_by_column(log, evidence, errors))
+        case = Case(held.log, held.truth, limits_by_column(held.log, held.evidence, held.errors))
         found = causes(case)
-        return found, (*seldom(case), *of_no_cause(case, found, errors))
+        return found, (*seldom(case), *of_no_cause(case, found, held.errors))
 
 
 LOG = DrivenLog()

@@ -9,7 +9,7 @@ from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan.elastic import cut_scene, held_steps, logged_every, refuse_unelastic
 from reports.way.length import GivenAs, Length, Planned
-from reports.way.way import Grid
+from reports.way.way import StudyLengths
 from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
@@ -18,7 +18,26 @@ if TYPE_CHECKING:
     from reports.verify.cell_table import CellTable
 
 
-class ElasticWay(DrivenWay):
+class Bending:
+    """What is particular to links that bend, whatever drives them; before the way of rigid ones."""
+
+    @property
+    def log(self) -> LogKind:
+        from reports.ways.elastic.log import LOG  # for logs alone
+
+        return LOG
+
+    @property
+    def table(self) -> CellTable:
+        from reports.ways.elastic.table import TABLE  # what is shown is loaded when it is
+
+        return TABLE
+
+    def given(self, scene: Scene, given: GivenAs) -> Scene:
+        return cut_scene(scene, given)
+
+
+class ElasticWay(Bending, DrivenWay):
     """As of `Way`."""
 
     name = "elastic"
@@ -33,7 +52,7 @@ class ElasticWay(DrivenWay):
             length = replace(length, steps_per_turn=held)
         return super().counted(scene, length, given)
 
-    def lengths(self, scene: Scene, study: Grid, given: GivenAs) -> list[Length]:
+    def lengths(self, scene: Scene, study: StudyLengths, given: GivenAs) -> list[Length]:
         if not study.times_held:
             return super().lengths(scene, study, given)
         held = held_steps(scene, given.segments, given.springs)
@@ -43,23 +62,8 @@ class ElasticWay(DrivenWay):
         super().refuse(run)
         refuse_unelastic(run.scene, run.given_as.segments, run.given_as.springs)
 
-    @property
-    def log(self) -> LogKind:
-        from reports.ways.elastic.log import LOG  # for logs alone
-
-        return LOG
-
-    @property
-    def table(self) -> CellTable:
-        from reports.ways.elastic.table import TABLE  # what is shown is loaded when it is
-
-        return TABLE
-
     def every(self, steps: int, steps_per_turn: float) -> int:
         return logged_every(steps_per_turn)
-
-    def given(self, scene: Scene, given: GivenAs) -> Scene:
-        return cut_scene(scene, given)
 
     def truth(self, run: Planned) -> Truth:
         from reports.compare.elastic.elastic_truth import elastic_truth  # slow to import

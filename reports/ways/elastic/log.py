@@ -11,12 +11,10 @@ from models.released import Released
 from reports.causes.cause import Cause
 from reports.compare.beside import Truth
 from reports.compare.elastic.elastic_truth import ElasticBeside, ElasticTruth, elastic_truth
-from reports.compare.errors import Errors
-from reports.judge.rules.rule import Evidence
 from reports.logs.channel import OwnLog
 from reports.logs.log_beside import LogBeside
 from reports.own_log.drives import DriveFit
-from reports.own_log.log_kind import LogRequest
+from reports.own_log.log_kind import HeldLog, LogRequest
 from reports.way.length import Springs
 from sim.engine import Run
 
@@ -81,17 +79,8 @@ class ElasticLog:
         assert isinstance(truth, ElasticTruth)
         return ElasticLogBeside.of_log(truth, run)
 
-    def explained(
-        self,
-        log: OwnLog,
-        truth: Truth,
-        fit: DriveFit | None,
-        evidence: Evidence,
-        errors: Errors,
-        *,
-        out: bool,
-    ) -> tuple[Sequence[Cause], Sequence[str]]:
-        return (), (NO_CAUSE,) if out else ()
+    def explained(self, held: HeldLog) -> tuple[Sequence[Cause], Sequence[str]]:
+        return (), (NO_CAUSE,) if held.out else ()
 
 
 LOG = ElasticLog()

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan.free import refuse_unreleased
-from reports.plan.steps import LEAST_STEPS, counted_free
+from reports.plan.steps import counted_free
 from reports.way.length import GivenAs, Length, Planned
-from reports.way.way import Grid
+from reports.way.way import StudyLengths
 from sim.engine import Drive
 
 if TYPE_CHECKING:
@@ -28,10 +28,11 @@ class FreeWay:
         return drive == "free"
 
     def counted(self, scene: Scene, length: Length, given: GivenAs) -> tuple[float, int]:
-        least = LEAST_STEPS if length.least is None else length.least
-        return counted_free(scene, length.dt_s, length.duration_s, every=length.every, least=least)
+        return counted_free(
+            scene, length.dt_s, length.duration_s, every=length.every, least=length.least
+        )
 
-    def lengths(self, scene: Scene, study: Grid, given: GivenAs) -> list[Length]:
+    def lengths(self, scene: Scene, study: StudyLengths, given: GivenAs) -> list[Length]:
         return [Length(each, duration_s=study.duration_s) for each in study.dt_s]
 
     def refuse(self, run: Planned) -> None:

@@ -12,13 +12,12 @@ from reports.compare.beside import Truth
 from reports.compare.errors import Error, Errors
 from reports.compare.free.free_truth import FreeTruth, free_truth_until
 from reports.compare.free.kept_motion import BEYOND
-from reports.judge.rules.rule import Evidence
 from reports.judge.tolerance import FREE
 from reports.logs.channel import OwnLog, Reading
 from reports.logs.log_beside import LogBeside
 from reports.output.numbers import error_text, listed, short
 from reports.own_log.drives import DriveFit
-from reports.own_log.log_kind import LogRequest
+from reports.own_log.log_kind import HeldLog, LogRequest
 from reports.own_log.log_limits import EVERY
 from reports.plan.free import refuse_unreleased
 from reports.ways.free.log_beside import FreeLogBeside
@@ -177,19 +176,14 @@ class FreeLog:
         assert isinstance(truth, FreeTruth)
         return FreeLogBeside.of_log(log, truth, run)
 
-    def explained(
-        self,
-        log: OwnLog,
-        truth: Truth,
-        fit: DriveFit | None,
-        evidence: Evidence,
-        errors: Errors,
-        *,
-        out: bool,
-    ) -> tuple[Sequence[Cause], Sequence[str]]:
-        assert isinstance(truth, FreeTruth)
-        apart = told_apart(errors) if out else ()
-        return (), (*told_of_start(log, truth), *apart, *told_of_no_limit(errors))
+    def explained(self, held: HeldLog) -> tuple[Sequence[Cause], Sequence[str]]:
+        assert isinstance(held.truth, FreeTruth)
+        apart = told_apart(held.errors) if held.out else ()
+        return (), (
+            *told_of_start(held.log, held.truth),
+            *apart,
+            *told_of_no_limit(held.errors),
+        )
 
 
 LOG = FreeLog()

@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan.elastic import (
     counted_released,
-    cut_scene,
     logged_every,
     refuse_unelastic,
     shortened_note,
 )
-from reports.plan.steps import LEAST_STEPS
 from reports.way.length import GivenAs, Length, Planned
-from reports.way.way import Grid
+from reports.way.way import StudyLengths
+from reports.ways.elastic import Bending
 from reports.ways.free import FreeWay
 from sim.engine import Drive
 
-if TYPE_CHECKING:
-    from reports.own_log.log_kind import LogKind
-    from reports.verify.cell_table import CellTable
 
-
-class FreeElasticWay(FreeWay):
+class FreeElasticWay(Bending, FreeWay):
     """As of `Way`."""
 
     name = "free_elastic"
@@ -33,11 +26,10 @@ class FreeElasticWay(FreeWay):
         return super().takes(scene, drive) and bool(scene.elastic)
 
     def counted(self, scene: Scene, length: Length, given: GivenAs) -> tuple[float, int]:
-        least = LEAST_STEPS if length.least is None else length.least
         step, bent = (length.dt_s, length.duration_s), (given.segments, given.springs)
-        return counted_released(scene, *step, *bent, every=length.every, least=least)
+        return counted_released(scene, *step, *bent, every=length.every, least=length.least)
 
-    def lengths(self, scene: Scene, study: Grid, given: GivenAs) -> list[Length]:
+    def lengths(self, scene: Scene, study: StudyLengths, given: GivenAs) -> list[Length]:
         if not study.times_held:
             return super().lengths(scene, study, given)
         held_s, count = self.counted(scene, Length(duration_s=study.duration_s), given)
@@ -51,23 +43,8 @@ class FreeElasticWay(FreeWay):
     def note(self, scene: Scene, duration_s: float) -> str:
         return shortened_note(scene, duration_s)
 
-    @property
-    def log(self) -> LogKind:
-        from reports.ways.elastic.log import LOG  # for logs alone
-
-        return LOG
-
-    @property
-    def table(self) -> CellTable:
-        from reports.ways.elastic.table import TABLE  # what is shown is loaded when it is
-
-        return TABLE
-
     def every(self, steps: int, steps_per_turn: float) -> int:
         return logged_every(min(steps_per_turn, float(steps)))
-
-    def given(self, scene: Scene, given: GivenAs) -> Scene:
-        return cut_scene(scene, given)
 
     def truth(self, run: Planned) -> Truth:
         from reports.compare.elastic.released_truth import released_elastic_truth  # slow to import
