@@ -241,5 +241,5 @@ def _engines(
 ) -> None:
     if context.invoked_subcommand is None:
         with guarded():
-            from reports.requests.engines import EnginesRequest
-        _end_with(EnginesRequest(settings))
+            request = named(COMMANDS["engines"][0])
+        _end_with(request(settings))

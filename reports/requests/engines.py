@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
 
-import typer
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -17,9 +15,7 @@ from sim.registry import available, brought, engine
 class EnginesRequest:
     """What `engines` was asked for, as given."""
 
-    settings: Annotated[
-        bool, typer.Option("--settings", help="Show every setting with its reason.")
-    ] = False
+    settings: bool = False
 
     def run(self, console: Console, progress: Console) -> int:
         """The engines: version, or the command that installs them; profiles, also with settings."""

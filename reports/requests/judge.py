@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,21 +16,18 @@ from models.files import find_scene, load_scene
 from models.one_or_more import names_in
 from models.scene import Scene
 from reports.judge.tolerance import DEFAULTS, FREE, check_names, parse, refuse_of_other_motion
-from reports.logs.map_file import Map, map_text, read_map
-from reports.output.junit import junit
-from reports.output.numbers import finite
+from reports.logs.map_file import Map, read_map
 from reports.output.provenance import provenance
-from reports.output.write import check_file, check_outputs, write
+from reports.output.write import check_file, check_outputs
 from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, judge_log
-from reports.own_log.junit import suite
 from reports.own_log.log_kind import LogRequest
 from reports.own_log.log_limits import EVERY
 from reports.own_log.markdown import markdown
 from reports.own_log.rows import row_table
 from reports.own_log.table import show
 from reports.plan.elastic import given_of
-from reports.plan.steps import LEAST_STEPS, positive
+from reports.plan.steps import positive
 from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
 from reports.requests.arguments import SceneLike, is_true, one_of, scene_of, tolerances_of
 from reports.requests.check import CellVerdict, verdict_of_run
@@ -41,15 +37,16 @@ from reports.requests.compare import (
     refuse_segments,
     refuse_without_forces,
 )
+from reports.requests.judge_files import write_log_map, write_results
 from reports.requests.options import SceneName, SegmentCount, SpringKind, seconds
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
 from reports.requests.told import in_python, parts_in_python, told_at_the_call
+from reports.way.length import LEAST_STEPS
 from sim.engine import Run
 
 if TYPE_CHECKING:
     import pandas as pd
-    from rich.console import Console
 
 Target = float | Mapping[str, float] | None
 """The largest error as a pure number: one for all quantities, or one each."""
@@ -71,13 +68,9 @@ class LogVerdict(Shown, JudgedLog):
         """One row per error that is held to a limit, with the columns that it was read from."""
         import pandas as pd
 
-        from reports.own_log.rows import row_table
-
         return pd.DataFrame(row_table(self))
 
     def show(self, console: Console) -> None:
-        from reports.own_log.table import show
-
         show(console, self, self.facts)
 
     def _drawn(self) -> str:
@@ -195,17 +188,15 @@ def judged(
         refuse_without_forces(log, forces=forces)
         every = limits.get(EVERY)
         scene = scene_of_run(scene, log)
-        of_some = [*limits.keys() - {EVERY}]
-        refuse_of_other_motion("--target", of_some, [scene.is_free], bends=bool(scene.elastic))
+        _refuse_other_targets(scene, limits)
         _refuse_few_steps(scene, log)
         every_name = FREE if scene.is_free else DEFAULTS
         named = limits if every is None else {name: limits.get(name, every) for name in every_name}
         return verdict_of_run(scene, log, named)
     if free:
         scene = loosened(scene)
-    of_some = [*limits.keys() - {EVERY}]
-    refuse_of_other_motion("--target", of_some, [scene.is_free], bends=bool(scene.elastic))
-    given = given_of(scene, segments, springs)
+    _refuse_other_targets(scene, limits)
+    given = given_of([scene], segments, springs)
     request = LogRequest(
         target=limits,
         step_s=0.0 if step_s is None else positive("--step", step_s, "seconds"),
@@ -218,6 +209,12 @@ def judged(
     found = judge_log(log_of(scene, log, map, forces=forces), request)
     notes = tuple(in_python(note) for note in found.notes)
     return LogVerdict(**parts_in_python(found) | {"notes": notes}, facts=provenance({}))
+
+
+def _refuse_other_targets(scene: Scene, target: Mapping[str, float]) -> None:
+    """Refuse targets of what the scene has not. Raises CrankcheckError."""
+    of_some = [*target.keys() - {EVERY}]
+    refuse_of_other_motion("--target", of_some, [scene.is_free], bends=bool(scene.elastic))
 
 
 def _refuse_few_steps(scene: Scene, run: Run) -> None:
@@ -295,15 +292,10 @@ class JudgeRequest:
             scene = loosened(scene)
         asked = _checked(self, scene)
         check_names(scene)
-        refuse_of_other_motion(
-            "--target",
-            [*asked.target.keys() - {EVERY}],
-            [scene.is_free],
-            bends=bool(scene.elastic),
-        )
+        _refuse_other_targets(scene, asked.target)
         map_ = read_map(self.map) if self.map else Map()
         if self.write_map is not None:
-            told = f"{self.write_map}: {_write_map(self.write_map, self.log, scene, map_)}"
+            told = f"{self.write_map}: {write_log_map(self.write_map, self.log, scene, map_)}"
             console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
             return 0
         from reports.logs.columns import read_columns
@@ -319,7 +311,7 @@ class JudgeRequest:
         judged = judge_log(log, asked)
         facts = provenance({})
         try:
-            _write(self, judged, facts)
+            write_results(judged, facts, self.json, self.junit, self.output)
         finally:  # a full disk costs the file, and not the verdict with it
             if self.format == "md":
                 console.print(
@@ -345,7 +337,7 @@ def _checked(request: JudgeRequest, scene: Scene) -> LogRequest:
     refuse_geometry_alone(drive, forces=request.forces)
     if request.step_s is not None and not request.step_s > 0.0:
         raise CrankcheckError(f"--step {request.step_s:g}: give a time above 0, in seconds")
-    given = given_of(scene, request.segments, request.springs)
+    given = given_of([scene], request.segments, request.springs)
     return LogRequest(
         target=parse(request.target, "--target", EVERY),
         step_s=request.step_s or 0.0,
@@ -354,60 +346,3 @@ def _checked(request: JudgeRequest, scene: Scene) -> LogRequest:
         segments=given.segments,
         springs=given.springs,
     )
-
-
-def _write_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
-    """Write the map of a log, or a form of it to be filled in; returns what that is.
-
-    Raises CrankcheckError for a log that no map alone can mend.
-    """
-    from reports.logs.blank_map import blank_map  # pandas, which takes a third of a second
-    from reports.logs.columns import read_columns
-    from reports.logs.meanings import understood, wanted
-
-    columns = read_columns(log, map_.layout, wanted(scene, map_))
-    try:
-        text = map_text(understood(columns, scene, map_), map_.file)
-    except CrankcheckError:
-        blank = blank_map(columns, scene, map_)
-        if blank is None:
-            raise
-        text, lacks = blank
-        write(path, text)
-        return f"the columns of {log}, to be filled in: {lacks}; then judge with --map {path}"
-    write(path, text)
-    return f"what {log} says, as it was understood"
-
-
-def _write(request: JudgeRequest, judged: JudgedLog, facts: Mapping[str, str]) -> None:
-    """Every output that was asked for, each whole or not at all."""
-    if request.json:
-        write(request.json, _json(judged, facts))
-    if request.junit:
-        write(request.junit, junit(suite(judged, facts)))
-    if request.output:
-        # It brings the drawings, which nothing else here needs.
-        from reports.page.log_page import log_page
-
-        write(request.output, log_page(judged, facts))
-
-
-def _json(judged: JudgedLog, facts: Mapping[str, str]) -> str:
-    """Facts, verdict, findings, causes and errors; what is not finite is null."""
-    fit = judged.fit
-    document = {
-        "facts": facts,
-        "log": judged.log.source,
-        "scene": judged.scene.name,
-        "verdict": judged.verdict,
-        "drive": judged.drive,
-        "fit": vars(fit) if fit else None,
-        "samples": judged.log.time_s.size,
-        "findings": [vars(finding) for finding in judged.findings],
-        "causes": [{**vars(each), "correction": dict(each.correction)} for each in judged.causes],
-        "not_judged": judged.not_judged,
-        "not_used": dict(judged.log.unused),
-        "notes": judged.notes,
-        "errors": row_table(judged),
-    }
-    return json.dumps(finite(document), indent=2) + "\n"

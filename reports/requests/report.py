@@ -154,9 +154,6 @@ def report(
     CrankcheckError
         No store there, or a file that can not be written.
     """
-    from reports.output.write import check_file, write
-    from reports.requests.report import ENDINGS, report_of
-
     where = folder.folder if isinstance(folder, Sweep) else path_of(folder, "folder")
     path = path_of(output, "-o")
     check_file(path, "-o", tuple(ending for endings in ENDINGS.values() for ending in endings))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import cast
 
 import numpy as np
@@ -17,7 +16,7 @@ from analytic.mechanism.cycle import Along
 from analytic.result import Selection
 from analytic.structure.mobility import analyse
 from models.array import Array
-from models.errors import CrankcheckError, harmless, suggestion
+from models.errors import CrankcheckError, suggestion
 from models.files import find_scene, load_scene
 from models.laws import MOST_TURNS
 from models.motion import Motion
@@ -25,13 +24,12 @@ from models.samples import samples
 from models.scene import Scene
 from reports.describe.driver_at import MOST_DEG, driver_at
 from reports.describe.facts import speed_facts
-from reports.describe.frame import motion_frame
 from reports.describe.with_forces import with_forces
-from reports.output.frame_file import ENDINGS, write_frame
-from reports.output.write import check_file, check_folder, write
+from reports.output.frame_file import ENDINGS
+from reports.output.write import check_file
 from reports.requests.arguments import SceneLike, is_true, scene_of
 from reports.requests.elastic_choice import ElasticChoice
-from reports.requests.named import FAMILY, LIVE_SHEET, named
+from reports.requests.named import FAMILY, named
 from reports.requests.solution import Solution
 from reports.requests.solution_text import (
     show_friction,
@@ -41,10 +39,10 @@ from reports.requests.solution_text import (
     show_notes,
     show_position,
 )
+from reports.requests.solve_files import check_figures, check_page, tell_written
 from reports.requests.solve_lengths import (
     FAMILY_ENDINGS,
     PAGE,
-    WORKBOOK,
     elastic_choice,
     instants_of,
     refuse_times,
@@ -259,7 +257,7 @@ class SolveRequest(SolveOptions):
         if self.forces:
             motion = with_forces(scene, motion, by_law=not self.at_place)
         if self.output is not None or self.figures is not None:
-            _tell_written(console, scene, motion, self)
+            tell_written(console, scene, motion, self)
             return 0
         speeds = speed_facts(scene, along, clockwise=self.clockwise)
         show_heading(console, scene, structure, along, speeds)
@@ -278,21 +276,8 @@ def _check_driven(scene: Scene, request: SolveOptions) -> None:
         )
     if request.clockwise and not request.at_place:
         raise CrankcheckError("--clockwise: it is of one position; give --at-deg, such as 90")
-    _check_figures(request)
-    _check_page(request)
-
-
-def _tell_written(console: Console, scene: Scene, motion: Motion, request: SolveOptions) -> None:
-    """Write what was asked for, and say so."""
-    told = []
-    if request.figures is not None:
-        from reports.figures.forces.writing import written_figures
-
-        told.append(written_figures(scene, request.figures))
-    if request.output is not None:
-        told.append(_write(request.output, scene, motion, is_turn=not request.at_place))
-    for each in told:
-        console.print(harmless(each), highlight=False, markup=False, soft_wrap=True)
+    check_figures(request)
+    check_page(request)
 
 
 def _show(console: Console, scene: Scene, motion: Motion, request: SolveOptions) -> None:
@@ -309,32 +294,6 @@ def _show(console: Console, scene: Scene, motion: Motion, request: SolveOptions)
     console.print(
         "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
     )
-
-
-def _check_page(request: SolveOptions) -> None:
-    """Refuse a page of a single position, or of other than a turn."""
-    given = [request.at_deg, request.at_m, request.turns, request.steps_per_turn]
-    is_page = request.output is not None and request.output.suffix.lower() == PAGE
-    if is_page and any(each is not None for each in given):
-        raise CrankcheckError(
-            f"-o {request.output}: a page shows a turn; leave out --at-deg, --at-m, --turns and "
-            "--steps-per-turn"
-        )
-
-
-def _check_figures(request: SolveOptions) -> None:
-    """Refuse figures of what is not asked for, before anything is worked out."""
-    if request.figures is None:
-        return
-    if not request.forces:
-        raise CrankcheckError("--figures: it draws forces; give --forces as well")
-    if request.at_place:
-        raise CrankcheckError(
-            f"--figures with {request.at_place}: they are of a turn; leave one of them out"
-        )
-    from reports.figures.forces.writing import figure_files
-
-    check_folder(request.figures, "--figures", figure_files())
 
 
 def _along(scene: Scene, text: str) -> Along:
@@ -365,19 +324,3 @@ def _at(scene: Scene, request: SolveOptions) -> Motion:
 def _over(scene: Scene, request: SolveOptions) -> Motion:
     """The motion over whole turns, the last sample included."""
     return kinematics.solve(scene, instants_of(scene, request))
-
-
-def _write(path: Path, scene: Scene, motion: Motion, *, is_turn: bool) -> str:
-    """The motion as a file of the kind that the ending says; returns what was written, in a
-    line."""
-    if path.suffix.lower() == PAGE:
-        from reports.requests.scene_report import page_of
-
-        write(path, page_of(scene, with_forces=motion.forces is not None))
-        return f"{path}: {scene.name} over one turn"
-    origin = {"scene": scene.name, "source": scene.source}
-    frame, more, told = motion_frame(motion), None, ""
-    if path.suffix.lower() == WORKBOOK and is_turn:
-        told, more = named(LIVE_SHEET)(scene, motion.time_s, list(frame.columns))
-    write_frame(path, frame, "motion", origin, more)
-    return f"{path}: {motion.time_s.size} samples of {scene.name}{told}"

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping, Sequence, Sized
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError, shown
-from models.files import every_shipped, load_scene
 from models.one_or_more import names_in
-from models.scene_text import scene_text
 from reports.plan.chosen import left_out_note
 from reports.plan.chosen_study import (
-    Overrides,
     StudyChoice,
     chosen_study,
     refuse_other_engine,
@@ -34,149 +30,25 @@ from reports.requests.arguments import (
     SceneLike,
     each_of,
     is_true,
-    kind_of,
     path_of,
-    scene_of,
-    setting_of,
-    whole_of,
 )
 from reports.requests.options import Duration, Engines, Forces, Jobs, SpringKind
 from reports.requests.shown import Shown
+from reports.requests.sweep_arguments import (
+    command_of,
+    manner_of,
+    numbers_of,
+    overrides_of,
+    refuse_empty_lists,
+    scene_names,
+)
 from reports.requests.told import told_at_the_call
 from reports.workers.isolated import checked_limits
 
 if TYPE_CHECKING:
     import pandas as pd
-    from rich.console import Console
 
     from reports.sweep.running import Done
-    from reports.sweep.whole import Manner
-
-MOST_JOBS = 1024
-
-
-def refuse_empty_lists(arguments: Mapping[str, object]) -> None:
-    """Refuse lists and the like without anything in them: () alone leaves what the study has.
-
-    Raises CrankcheckError that names the argument.
-    """
-    for name, value in arguments.items():
-        if _is_empty(value) and not isinstance(value, str | tuple):
-            raise CrankcheckError(
-                f"{name}: found nothing in it ({kind_of(value)}); give at least one, or () for "
-                "those of the study"
-            )
-
-
-def _is_empty(value: object) -> bool:
-    """Whether it has nothing in it; a number that numpy has made an array is no list."""
-    try:
-        return isinstance(value, Sized) and len(value) == 0
-    except TypeError:
-        return False
-
-
-def manner_of(
-    limit_s: float,
-    memory_gb: float,
-    jobs: int,
-    *,
-    timing: bool,
-    keep_trajectories: bool,
-    again: bool,
-) -> Manner:
-    """How cells are run. Raises CrankcheckError for what can not be asked."""
-    limits = checked_limits(
-        positive("--limit-s", limit_s, "seconds"), positive("--memory-gb", memory_gb, "GB")
-    )
-    jobs = whole_of(jobs, "--jobs", 0)
-    if jobs > MOST_JOBS:
-        raise CrankcheckError(f"--jobs {jobs}: at most {MOST_JOBS}; 0 is one per processor")
-    from reports.sweep.whole import Manner  # pandas, which takes a third of a second
-
-    return Manner(
-        limits,
-        jobs,
-        timing=is_true(timing, "timing"),
-        keep_runs=is_true(keep_trajectories, "keep_trajectories"),
-        again=is_true(again, "again"),
-    )
-
-
-def scene_names(scenes: object, kept: ExitStack) -> list[str]:
-    """Names and paths of scenes; one that is neither is written into a file, which is ``kept``.
-
-    Raises CrankcheckError for what is no scene.
-    """
-    names: list[str] = []
-    for each in each_of(scenes):
-        if isinstance(each, str | PathLike):
-            names.append(str(path_of(each, "scenes")))
-            continue
-        scene = scene_of(each)
-        if scene.name in every_shipped() and load_scene(scene.name) == scene:
-            names.append(scene.name)
-            continue
-        path = Path(kept.enter_context(TemporaryDirectory())) / f"{scene.name}.toml"
-        path.write_text(scene_text(scene), encoding="utf-8")
-        names.append(str(path))
-    return names
-
-
-def numbers_of(
-    values: float | Iterable[float], option: str, unit: str = "steps, such as 720"
-) -> list[float]:
-    """One number or several, above 0. Raises CrankcheckError."""
-    return [positive(option, value, unit) for value in each_of(values)]
-
-
-def overrides_of(settings: object, engines: Sequence[str]) -> Overrides:
-    """Settings by engine. Raises CrankcheckError for what is not said as engine.setting."""
-    if settings is None:
-        return {}
-    cure = "give a dict such as {'ENGINE.iterations': [2, 10]}"
-    if not isinstance(settings, Mapping):
-        raise CrankcheckError(f"--set: found {kind_of(settings)}; {cure}")
-    found: dict[str, dict[str, StudyValue | list[StudyValue]]] = {}
-    for name, values in settings.items():
-        owner, dot, setting = str(name).partition(".")
-        if not dot:
-            raise CrankcheckError(f"--set {name!r}: no engine and setting; {cure}")
-        refuse_other_engine(owner, engines, f"--set {name!r}")
-        plain: list[StudyValue] = [setting_of(name, value) for value in each_of(values)]
-        if not plain:
-            raise CrankcheckError(f"--set {name!r}: found no value; give one, or several")
-        found.setdefault(owner, {})[setting] = plain
-    return found
-
-
-def command_of(choice: StudyChoice, folder: Path, study: object) -> list[str]:
-    """The command that does the same, which a store tells to mend it."""
-    several = ",".join(f"{each:g}" for each in choice.steps_per_turn)
-    options = [
-        *(("--study", study) if study is not None else ()),
-        *(word for name in choice.engines for word in ("--engine", name)),
-        *(word for name in choice.profiles for word in ("--profile", name)),
-        *(("--steps-per-turn", several) if several else ()),
-        *(("--turns", f"{choice.turns:g}") if choice.turns is not None else ()),
-        *(("--forces",) if choice.forces else ()),
-        *(("--free",) if choice.free else ()),
-        *(("--dt", ",".join(f"{each:g}" for each in choice.dt_s)) if choice.dt_s else ()),
-        *(("--duration", f"{choice.duration_s:g}") if choice.duration_s is not None else ()),
-        *(("--segments", ",".join(map(str, choice.segments))) if choice.segments else ()),
-        *(("--springs", ",".join(choice.springs)) if choice.springs else ()),
-        *(
-            word
-            for owner, chosen in choice.overrides.items()
-            for name, values in chosen.items()
-            for word in ("--set", f"{owner}.{name}={','.join(map(str, _listed(values)))}")
-        ),
-    ]
-    return ["crankcheck", "sweep", "-o", str(folder), *choice.scenes, *map(str, options)]
-
-
-def _listed(values: object) -> Sequence[object]:
-    return values if isinstance(values, list) else [values]
 
 
 Values = float | int | str | Sequence[float | int | str]
@@ -283,17 +155,6 @@ def sweep(
         What can be told of the arguments before running; a folder that is not to be written.
     """
     from reports.output.console import terminal
-    from reports.plan.chosen_study import StudyChoice, chosen_study, study_engines
-    from reports.plan.elastic import chosen_segments, chosen_springs
-    from reports.plan.study import load_study
-    from reports.requests.sweep import (
-        command_of,
-        manner_of,
-        numbers_of,
-        overrides_of,
-        refuse_empty_lists,
-        scene_names,
-    )
     from reports.sweep.whole import swept
 
     where = path_of(folder, "folder")

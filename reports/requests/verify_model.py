@@ -41,7 +41,6 @@ from sim.registry import engine
 
 if TYPE_CHECKING:
     import pandas as pd
-    from rich.console import Console
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -60,13 +59,9 @@ class ModelVerdict(Shown, JudgedModel):
     def frame(self) -> pd.DataFrame:
         """One row per line (``profile``), quantity, body, source and kind of error; ``unit`` is
         that of ``maximum``, ``rms`` and ``final``."""
-        from reports.judge.frames import error_frame
-
         return error_frame(self.lines)
 
     def show(self, console: Console) -> None:
-        from reports.own_model.table import show
-
         show(console, self, self.facts)
 
     def _drawn(self) -> str:

@@ -1,0 +1,80 @@
+"""The files of a judged log: its map, JSON, JUnit XML and page."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+from models.errors import CrankcheckError
+from models.scene import Scene
+from reports.logs.map_file import Map, map_text
+from reports.output.junit import junit
+from reports.output.numbers import finite
+from reports.output.write import write
+from reports.own_log.judged import JudgedLog
+from reports.own_log.junit import suite
+from reports.own_log.rows import row_table
+
+
+def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
+    """Write the map of a log, or a form of it to be filled in; returns what that is.
+
+    Raises CrankcheckError for a log that no map alone can mend.
+    """
+    from reports.logs.blank_map import blank_map  # pandas, which takes a third of a second
+    from reports.logs.columns import read_columns
+    from reports.logs.meanings import understood, wanted
+
+    columns = read_columns(log, map_.layout, wanted(scene, map_))
+    try:
+        text = map_text(understood(columns, scene, map_), map_.file)
+    except CrankcheckError:
+        blank = blank_map(columns, scene, map_)
+        if blank is None:
+            raise
+        text, lacks = blank
+        write(path, text)
+        return f"the columns of {log}, to be filled in: {lacks}; then judge with --map {path}"
+    write(path, text)
+    return f"what {log} says, as it was understood"
+
+
+def write_results(
+    judged: JudgedLog,
+    facts: Mapping[str, str],
+    document: Path | None,
+    cases: Path | None,
+    page: Path | None,
+) -> None:
+    """Every output that was asked for, each whole or not at all."""
+    if document:
+        write(document, _json(judged, facts))
+    if cases:
+        write(cases, junit(suite(judged, facts)))
+    if page:
+        # It brings the drawings, which nothing else here needs.
+        from reports.page.log_page import log_page
+
+        write(page, log_page(judged, facts))
+
+
+def _json(judged: JudgedLog, facts: Mapping[str, str]) -> str:
+    """Facts, verdict, findings, causes and errors; what is not finite is null."""
+    fit = judged.fit
+    document = {
+        "facts": facts,
+        "log": judged.log.source,
+        "scene": judged.scene.name,
+        "verdict": judged.verdict,
+        "drive": judged.drive,
+        "fit": vars(fit) if fit else None,
+        "samples": judged.log.time_s.size,
+        "findings": [vars(finding) for finding in judged.findings],
+        "causes": [{**vars(each), "correction": dict(each.correction)} for each in judged.causes],
+        "not_judged": judged.not_judged,
+        "not_used": dict(judged.log.unused),
+        "notes": judged.notes,
+        "errors": row_table(judged),
+    }
+    return json.dumps(finite(document), indent=2) + "\n"
