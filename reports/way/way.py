@@ -6,12 +6,14 @@ add the folder and its name in `WAYS`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence, Set
 from functools import cache
 from importlib import import_module
 from typing import Protocol, cast
 
 from models.scene import Scene
 from reports.compare.beside import Truth
+from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
 from sim.engine import Drive
 
@@ -38,6 +40,27 @@ class Way(Protocol):
     closed_form: bool
     """Whether the reference is solved at each instant by itself, with bounds that cost time."""
 
+    limits: Mapping[str, Tolerance]
+    """The tolerances of its runs, by name."""
+    roles: Set[Role]
+    """The roles of the quantities that its cells have columns of, forces apart."""
+    placed: Sequence[str]
+    """The quantities whose largest error is that of place."""
+    unlogged: Sequence[str]
+    """Quantities of the whole run that no column of a log has."""
+
+    noted: bool
+    """Whether the notes of its comparison stand under the tables."""
+    units: str
+    """The units of the numbers of its cells, in words."""
+    over_g: Sequence[str]
+    """What of its errors is over the sensitivity of the motion, in words."""
+
+    @property
+    def footer(self) -> object:
+        """What stands under the tables of its cells, parts as of `reports.verify.cell_table`."""
+        ...
+
     @property
     def table(self) -> object:
         """The table of its cells, a `reports.verify.cell_table.CellTable`."""
@@ -46,6 +69,15 @@ class Way(Protocol):
     @property
     def log(self) -> object:
         """What is particular to its logs, a `reports.own_log.log_kind.LogKind`."""
+        ...
+
+    @property
+    def columns(self) -> object:
+        """The columns that its cells have besides, a `reports.judge.rows.ColumnsOf`."""
+        ...
+
+    def roles_of(self, *, with_forces: bool) -> Set[Role]:
+        """The roles of the quantities of a run."""
         ...
 
     def takes(self, scene: Scene, drive: Drive) -> bool:

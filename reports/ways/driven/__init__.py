@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence, Set
 from typing import TYPE_CHECKING
 
 from models.scene import Same, Scene
 from reports.compare.beside import Truth, truth_of
+from reports.compare.facts import DRIVEN
 from reports.plan.forces import refuse_forceless
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular
 from reports.plan.steps import TURNS, counted
+from reports.quantities import named
+from reports.quantities.limits import DEFAULTS
+from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
 from sim.engine import Drive
 
 if TYPE_CHECKING:
+    from reports.judge.rows import ColumnsOf
     from reports.own_log.log_kind import LogKind
-    from reports.verify.cell_table import CellTable
+    from reports.verify.cell_table import CellTable, Part
 
 
 class DrivenWay:
@@ -25,6 +31,13 @@ class DrivenWay:
     name = "driven"
     drive: Drive = "prescribed"
     closed_form = True
+    limits: Mapping[str, Tolerance] = DEFAULTS
+    roles: Set[Role] = frozenset(("drive", "place", "closure", "derived"))
+    placed: Sequence[str] = named("place")
+    unlogged: Sequence[str] = ()
+    noted = False
+    units = DRIVEN.compared_with(" at the commanded time")
+    over_g: Sequence[str] = ()
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return True
@@ -54,6 +67,19 @@ class DrivenWay:
         from reports.ways.driven.table import TABLE  # what is shown is loaded when it is
 
         return TABLE
+
+    @property
+    def columns(self) -> ColumnsOf:
+        return lambda checked: {}
+
+    def roles_of(self, *, with_forces: bool) -> Set[Role]:
+        return {*self.roles, *(("force",) if with_forces else ())}
+
+    @property
+    def footer(self) -> Sequence[Part]:
+        from reports.ways.driven.footer import FOOTER  # what is shown is loaded when it is
+
+        return FOOTER
 
     def turn_s(self, scene: Scene) -> float:
         return scene.driver.law.period_s

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan.elastic import cut_scene, held_steps, logged_every, refuse_unelastic
+from reports.quantities.limits import ELASTIC
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
 from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
 if TYPE_CHECKING:
+    from reports.judge.rows import ColumnsOf
     from reports.own_log.log_kind import LogKind
-    from reports.verify.cell_table import CellTable
+    from reports.verify.cell_table import CellTable, Part
 
 
 class Bending:
     """What is particular to links that bend, whatever drives them; before the way of rigid ones."""
+
+    placed: Sequence[str] = ("deflection",)
 
     @property
     def log(self) -> LogKind:
@@ -33,6 +38,12 @@ class Bending:
 
         return TABLE
 
+    @property
+    def columns(self) -> ColumnsOf:
+        from reports.ways.elastic.columns import columns  # judged cells come after ways
+
+        return columns
+
     def given(self, scene: Scene, given: GivenAs) -> Scene:
         return cut_scene(scene, given)
 
@@ -42,6 +53,15 @@ class ElasticWay(Bending, DrivenWay):
 
     name = "elastic"
     closed_form = False
+    limits = ELASTIC
+    roles = DrivenWay.roles | {"elastic"}
+
+    @property
+    def footer(self) -> Sequence[Part]:
+        from reports.ways.driven.footer import STEPPED  # what is shown is loaded when it is
+        from reports.ways.elastic.footer import BENT_WORDS
+
+        return BENT_WORDS, STEPPED
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return bool(scene.elastic)

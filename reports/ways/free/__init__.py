@@ -2,27 +2,49 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence, Set
 from typing import TYPE_CHECKING
 
 from models.scene import Scene
 from reports.compare.beside import Truth
+from reports.compare.free.free_facts import FreeFacts
 from reports.plan.free import refuse_unreleased
 from reports.plan.steps import counted_free
+from reports.quantities import named
+from reports.quantities.limits import FREE
+from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
+from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
 if TYPE_CHECKING:
+    from reports.judge.rows import ColumnsOf
     from reports.own_log.log_kind import LogKind
-    from reports.verify.cell_table import CellTable
+    from reports.verify.cell_table import CellTable, Part
 
 
-class FreeWay:
+UNITS = (
+    "Let go: errors at the same time over G, by how much a small change of the start has grown; "
+    "geometry at the run's own angle; drift of energy over the largest kinetic energy T. Classes: "
+    "fine is a thousandth of the limit of the phase; 1e-1 and 1e-3 of the error as it is, and to "
+    "when 1e-3 holds."
+)
+
+
+class FreeWay(DrivenWay):
     """As of `Way`."""
 
     name = "free"
     drive: Drive = "free"
     closed_form = False
+    limits: Mapping[str, Tolerance] = FREE
+    roles: Set[Role] = frozenset(("free", "place", "closure", "derived"))
+    placed: Sequence[str] = ("phase", *named("place"))
+    unlogged: Sequence[str] = ("energy",)
+    noted = True
+    units = UNITS
+    over_g: Sequence[str] = FreeFacts.over_g
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return drive == "free"
@@ -50,14 +72,20 @@ class FreeWay:
 
         return TABLE
 
+    @property
+    def footer(self) -> Sequence[Part]:
+        from reports.ways.free.footer import FOOTER  # what is shown is loaded when it is
+
+        return FOOTER
+
     def turn_s(self, scene: Scene) -> float:
         return 1.0
 
-    def every(self, steps: int, steps_per_turn: float) -> int:
-        return 1
+    @property
+    def columns(self) -> ColumnsOf:
+        from reports.ways.free.columns import columns  # judged cells come after ways
 
-    def given(self, scene: Scene, given: GivenAs) -> Scene:
-        return scene
+        return columns
 
     def note(self, scene: Scene, duration_s: float) -> str:
         return ""
