@@ -76,7 +76,7 @@ class ForceFacts:
     inertia_share: float = 1.0
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True)
 class MotionFacts:
     """How errors grow with a motion: those of a driver that follows its law do not.
 

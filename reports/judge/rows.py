@@ -14,7 +14,7 @@ from reports.quantities import QUANTITIES, named
 from reports.quantities.quantity import BodyKind, Source
 
 ColumnsOf = Callable[[Checked], dict[str, object]]
-"""What cells of a kind have besides (`Way.columns`)."""
+"""What cells of a kind have besides (part `columns` of a way)."""
 Column = tuple[str, str, BodyKind, Source, ErrorKind]
 
 
@@ -87,7 +87,7 @@ def cell_row(checked: Checked) -> dict[str, object]:
         )
     row["place_pure"] = _worst(*(row[f"{name}_pure"] for name in cell.way.placed))
     convergence = checked.convergence
-    row |= cast(ColumnsOf, cell.way.columns)(checked) | {
+    row |= cast(ColumnsOf, cell.way.part("columns"))(checked) | {
         "trend": convergence.trend if convergence else None,
         "order": convergence.order if convergence else None,
         "floor": convergence.floor if convergence else None,

@@ -70,7 +70,7 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
         forces_of="steps" if borne and borne.of_steps else "states",
     )
     assert run.motion is not None
-    return cast(LogSide, way.log).beside(log, truth, run)
+    return cast(LogSide, way.part("log")).beside(log, truth, run)
 
 
 def _instants(log: OwnLog, order: Order) -> Array:
@@ -119,7 +119,7 @@ def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
 
 def readings_of(log: OwnLog, quantity: str, body: str) -> tuple[Reading, ...]:
     """The readings that a quantity of a body is judged by."""
-    side = cast(LogSide, way_of(log.scene).log)
+    side = cast(LogSide, way_of(log.scene).part("log"))
     return tuple(
         each
         for each in log.readings

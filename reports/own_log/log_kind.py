@@ -65,4 +65,4 @@ class LogKind(Protocol):
 
 def log_kind(scene: Scene) -> LogKind:
     """That of the scene."""
-    return cast(LogKind, way_of(scene).log)
+    return cast(LogKind, way_of(scene).part("log"))

@@ -23,7 +23,7 @@ def footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
     of_all: list[Part] = [(OF_FORCES, _of_forces), (NOTES, _notes)]
     own = {part: [*checked] for part in of_all}
     for one in checked:
-        for part in cast(Sequence[Part], one.cell.way.footer):
+        for part in cast(Sequence[Part], one.cell.way.part("footer")):
             own.setdefault(part, []).append(one)
     parts = sorted(own, key=lambda part: part[0])
     lines = [line for part in parts for line in part[1](own[part])]

@@ -1,7 +1,7 @@
 """A way: how scenes of a kind are run and compared with the reference.
 
 A kind of scene is a folder of the room `ways`, found by its name, with a value ``WAY``; to add one,
-add the folder and its name in `WAYS`.
+add the folder and its name in `WAYS`. Its parts in other rooms are modules of the folder (`Parts`).
 """
 
 from __future__ import annotations
@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence, Set
 from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
+from types import ModuleType
 from typing import Protocol, cast
 
 from models.scene import Scene
@@ -29,6 +31,42 @@ class StudyLengths(Protocol):
     dt_s: list[float]
     duration_s: float | None
     times_held: list[float]
+
+
+class Parts:
+    """The parts of a way: each is a module in its folder, or in one of a way that it builds on, and
+    is loaded where it is needed.
+
+    ========== =====================================================================
+    columns    the columns of its cells, a `reports.judge.rows.ColumnsOf`
+    table      the table of its cells, a `reports.verify.cell_table.CellTable`
+    footer     the lines under the table, `reports.verify.cell_table.Part` each
+    log        how its logs are judged, a `reports.own_log.log_kind.LogKind`
+    ========== =====================================================================
+
+    The value of a module has its name, in capitals.
+    """
+
+    def part(self, name: str) -> object:
+        """The part of that name."""
+        return _part(type(self).__mro__[:-1], name)
+
+    def own_part(self, name: str, default: object = ()) -> object:
+        """The part of that name of the way alone, and of none that it builds on."""
+        module = _module(type(self), name)
+        return getattr(module, name.upper()) if module else default
+
+
+@cache
+def _part(classes: tuple[type, ...], name: str) -> object:
+    found = (_module(cls, name) for cls in classes if cls is not Parts)
+    return getattr(next(module for module in found if module), name.upper())
+
+
+def _module(cls: type, name: str) -> ModuleType | None:
+    """The module of that name in the folder of a class, None where there is none."""
+    whole = f"{cls.__module__}.{name}"
+    return import_module(whole) if find_spec(whole) else None
 
 
 class Way(Protocol):
@@ -56,24 +94,12 @@ class Way(Protocol):
     over_g: Sequence[str]
     """What of its errors is over the sensitivity of the motion, in words."""
 
-    @property
-    def footer(self) -> object:
-        """What stands under the tables of its cells, parts as of `reports.verify.cell_table`."""
+    def part(self, name: str) -> object:
+        """The part of that name, as of `Parts`."""
         ...
 
-    @property
-    def table(self) -> object:
-        """The table of its cells, a `reports.verify.cell_table.CellTable`."""
-        ...
-
-    @property
-    def log(self) -> object:
-        """What is particular to its logs, a `reports.own_log.log_kind.LogKind`."""
-        ...
-
-    @property
-    def columns(self) -> object:
-        """The columns that its cells have besides, a `reports.judge.rows.ColumnsOf`."""
+    def own_part(self, name: str, default: object = ()) -> object:
+        """As of `Parts`."""
         ...
 
     def roles_of(self, *, with_forces: bool) -> Set[Role]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
-from typing import TYPE_CHECKING
 
 from models.scene import Same, Scene
 from reports.compare.beside import Truth, truth_of
@@ -16,16 +15,11 @@ from reports.quantities import named
 from reports.quantities.limits import DEFAULTS
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
-from reports.way.way import StudyLengths
+from reports.way.way import Parts, StudyLengths
 from sim.engine import Drive
 
-if TYPE_CHECKING:
-    from reports.judge.rows import ColumnsOf
-    from reports.own_log.log_kind import LogKind
-    from reports.verify.cell_table import CellTable, Part
 
-
-class DrivenWay:
+class DrivenWay(Parts):
     """As of `Way`."""
 
     name = "driven"
@@ -56,30 +50,8 @@ class DrivenWay:
             refuse_forceless(run.scene, run.duration_s)
         refuse_short_tables(run.scene, run.duration_s)
 
-    @property
-    def log(self) -> LogKind:
-        from reports.ways.driven.log import LOG  # for logs alone
-
-        return LOG
-
-    @property
-    def table(self) -> CellTable:
-        from reports.ways.driven.table import TABLE  # what is shown is loaded when it is
-
-        return TABLE
-
-    @property
-    def columns(self) -> ColumnsOf:
-        return lambda checked: {}
-
     def roles_of(self, *, with_forces: bool) -> Set[Role]:
         return {*self.roles, *(("force",) if with_forces else ())}
-
-    @property
-    def footer(self) -> Sequence[Part]:
-        from reports.ways.driven.footer import FOOTER  # what is shown is loaded when it is
-
-        return FOOTER
 
     def turn_s(self, scene: Scene) -> float:
         return scene.driver.law.period_s

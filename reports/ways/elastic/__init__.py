@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from models.scene import Scene
 from reports.compare.beside import Truth
@@ -15,34 +14,11 @@ from reports.way.way import StudyLengths
 from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
-if TYPE_CHECKING:
-    from reports.judge.rows import ColumnsOf
-    from reports.own_log.log_kind import LogKind
-    from reports.verify.cell_table import CellTable, Part
-
 
 class Bending:
     """What is particular to links that bend, whatever drives them; before the way of rigid ones."""
 
     placed: Sequence[str] = ("deflection",)
-
-    @property
-    def log(self) -> LogKind:
-        from reports.ways.elastic.log import LOG  # for logs alone
-
-        return LOG
-
-    @property
-    def table(self) -> CellTable:
-        from reports.ways.elastic.table import TABLE  # what is shown is loaded when it is
-
-        return TABLE
-
-    @property
-    def columns(self) -> ColumnsOf:
-        from reports.ways.elastic.columns import columns  # judged cells come after ways
-
-        return columns
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
         return cut_scene(scene, given)
@@ -55,13 +31,6 @@ class ElasticWay(Bending, DrivenWay):
     closed_form = False
     limits = ELASTIC
     roles = DrivenWay.roles | {"elastic"}
-
-    @property
-    def footer(self) -> Sequence[Part]:
-        from reports.ways.driven.footer import STEPPED  # what is shown is loaded when it is
-        from reports.ways.elastic.footer import BENT_WORDS
-
-        return BENT_WORDS, STEPPED
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return bool(scene.elastic)

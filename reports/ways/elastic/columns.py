@@ -18,3 +18,6 @@ def columns(checked: Checked) -> dict[str, object]:
         "doubt_pure": known.doubt if known else None,
         "linear_pure": known.linear if known else None,
     }
+
+
+COLUMNS = columns

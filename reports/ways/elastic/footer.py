@@ -9,6 +9,7 @@ from reports.compare.elastic.elastic_facts import BENT
 from reports.judge.cell import Checked
 from reports.judge.rules.elastic import TruthEnds
 from reports.verify.footer import LINK_UNITS
+from reports.ways.driven.footer import STEPPED
 
 CHAINS = "engine: against the exact chain of as many segments instead; chain: that against the beam"
 BEAMS = (
@@ -44,3 +45,4 @@ def words(bent: Sequence[Checked]) -> Sequence[str]:
 
 
 BENT_WORDS = (LINK_UNITS, words)
+FOOTER = (BENT_WORDS, STEPPED)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
-from typing import TYPE_CHECKING
 
 from models.scene import Scene
 from reports.compare.beside import Truth
@@ -17,12 +16,6 @@ from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
 from reports.ways.driven import DrivenWay
 from sim.engine import Drive
-
-if TYPE_CHECKING:
-    from reports.judge.rows import ColumnsOf
-    from reports.own_log.log_kind import LogKind
-    from reports.verify.cell_table import CellTable, Part
-
 
 UNITS = (
     "Let go: errors at the same time over G, by how much a small change of the start has grown; "
@@ -60,32 +53,8 @@ class FreeWay(DrivenWay):
     def refuse(self, run: Planned) -> None:
         refuse_unreleased(run.scene, run.duration_s)
 
-    @property
-    def log(self) -> LogKind:
-        from reports.ways.free.log import LOG  # for logs alone
-
-        return LOG
-
-    @property
-    def table(self) -> CellTable:
-        from reports.ways.free.table import TABLE  # what is shown is loaded when it is
-
-        return TABLE
-
-    @property
-    def footer(self) -> Sequence[Part]:
-        from reports.ways.free.footer import FOOTER  # what is shown is loaded when it is
-
-        return FOOTER
-
     def turn_s(self, scene: Scene) -> float:
         return 1.0
-
-    @property
-    def columns(self) -> ColumnsOf:
-        from reports.ways.free.columns import columns  # judged cells come after ways
-
-        return columns
 
     def note(self, scene: Scene, duration_s: float) -> str:
         return ""

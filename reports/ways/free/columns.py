@@ -24,3 +24,6 @@ def columns(checked: Checked) -> dict[str, object]:
         },
         "horizon_limit_s": known.judged_horizon_s(limit.number) if known and limit else None,
     }
+
+
+COLUMNS = columns

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
-
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan.elastic import (
@@ -20,10 +17,6 @@ from reports.ways.elastic import Bending
 from reports.ways.free import FreeWay
 from sim.engine import Drive
 
-if TYPE_CHECKING:
-    from reports.judge.rows import ColumnsOf
-    from reports.verify.cell_table import Part
-
 
 class FreeElasticWay(Bending, FreeWay):
     """As of `Way`."""
@@ -31,18 +24,6 @@ class FreeElasticWay(Bending, FreeWay):
     name = "free_elastic"
     limits = FREE_ELASTIC
     roles = FreeWay.roles | {"elastic"}
-
-    @property
-    def columns(self) -> ColumnsOf:
-        free, bent = FreeWay().columns, super().columns
-        return lambda checked: free(checked) | bent(checked)
-
-    @property
-    def footer(self) -> Sequence[Part]:
-        from reports.ways.elastic.footer import BENT_WORDS  # what is shown is loaded when it is
-        from reports.ways.free.footer import STEPPED
-
-        return BENT_WORDS, STEPPED
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return super().takes(scene, drive) and bool(scene.elastic)
