@@ -37,12 +37,15 @@ class Parts:
     """The parts of a way: each is a module in its folder, or in one of a way that it builds on, and
     is loaded where it is needed.
 
-    ========== =====================================================================
+    ========== ===============================================================================
     columns    the columns of its cells, a `reports.judge.rows.ColumnsOf`
     table      the table of its cells, a `reports.verify.cell_table.CellTable`
     footer     the lines under the table, `reports.verify.cell_table.Part` each
+    faults     the faults that are planted in its runs, a `reports.selftest.fault_runs.FaultSet`
+    cases      the hard cases of its scenes, by group (`reports.stability.case.Case`)
+    series     what hard runs are compared with, by name (`reports.stability.yardstick.Yardstick`)
     log        how its logs are judged, a `reports.own_log.log_kind.LogKind`
-    ========== =====================================================================
+    ========== ===============================================================================
 
     The value of a module has its name, in capitals.
     """
@@ -91,6 +94,8 @@ class Way(Protocol):
     """Whether the notes of its comparison stand under the tables."""
     units: str
     """The units of the numbers of its cells, in words."""
+    no_case: str
+    """The sentence on a hard case that is none of such scenes."""
     over_g: Sequence[str]
     """What of its errors is over the sensitivity of the motion, in words."""
 

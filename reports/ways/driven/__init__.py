@@ -30,6 +30,7 @@ class DrivenWay(Parts):
     placed: Sequence[str] = named("place")
     unlogged: Sequence[str] = ()
     noted = False
+    no_case = "no driven case"
     units = DRIVEN.compared_with(" at the commanded time")
     over_g: Sequence[str] = ()
 

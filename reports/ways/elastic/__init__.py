@@ -19,6 +19,7 @@ class Bending:
     """What is particular to links that bend, whatever drives them; before the way of rigid ones."""
 
     placed: Sequence[str] = ("deflection",)
+    no_case = "no elastic link in it"
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
         return cut_scene(scene, given)

@@ -36,6 +36,7 @@ class FreeWay(DrivenWay):
     placed: Sequence[str] = ("phase", *named("place"))
     unlogged: Sequence[str] = ("energy",)
     noted = True
+    no_case = "no case of free motion"
     units = UNITS
     over_g: Sequence[str] = FreeFacts.over_g
 
