@@ -11,7 +11,7 @@ from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from types import ModuleType
-from typing import Protocol, cast
+from typing import Any, Protocol, cast
 
 from models.scene import Scene
 from reports.compare.beside import Truth
@@ -20,7 +20,8 @@ from reports.way.length import GivenAs, Length, Planned
 from sim.engine import Drive
 
 WAYS = ("free_elastic", "elastic", "free", "driven")
-"""The kinds, the more special first: a scene is of the first that takes it."""
+"""The kinds, the more special first: a scene is of the first that takes it. A name with a dot is
+that of a package elsewhere."""
 
 
 class StudyLengths(Protocol):
@@ -44,6 +45,9 @@ class Parts:
     faults     the faults that are planted in its runs, a `reports.selftest.fault_runs.FaultSet`
     cases      the hard cases of its scenes, by group (`reports.stability.case.Case`)
     series     what hard runs are compared with, by name (`reports.stability.yardstick.Yardstick`)
+    results    what is said of its stored cells, a `reports.results.result_kind.ResultKind`
+    figures    its figures of a store, by name (`reports.figures.drawing.Drawing`)
+    section    its section of the page (`reports.page.sections.section.WaySection`)
     log        how its logs are judged, a `reports.own_log.log_kind.LogKind`
     ========== ===============================================================================
 
@@ -78,6 +82,8 @@ class Way(Protocol):
     name: str
     drive: Drive
     """Of a run of such a scene, where none is named."""
+    kinds: Sequence[str]
+    """What its cells are, in words: figures show those of some."""
     closed_form: bool
     """Whether the reference is solved at each instant by itself, with bounds that cost time."""
 
@@ -128,6 +134,10 @@ class Way(Protocol):
         """Refuse a run that has no reference. Raises CrankcheckError."""
         ...
 
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        """Whether a row of a store is a cell of the kind, or of one that builds on it."""
+        ...
+
     def turn_s(self, scene: Scene) -> float:
         """What lengths of runs are multiples of [s]: a turn of the driver, or a second."""
         ...
@@ -138,6 +148,10 @@ class Way(Protocol):
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
         """The scene that an engine is given: of elastic links, the segments."""
+        ...
+
+    def moved(self, scene: Scene) -> Scene:
+        """A scene as a run of the kind moves it, where it says otherwise."""
         ...
 
     def note(self, scene: Scene, duration_s: float) -> str:
@@ -152,7 +166,7 @@ class Way(Protocol):
 @cache
 def way(name: str) -> Way:
     """The way of that name."""
-    return cast(Way, import_module(f"..ways.{name}", __package__).WAY)
+    return cast(Way, import_module(name if "." in name else f"..ways.{name}", __package__).WAY)
 
 
 def way_of(scene: Scene, drive: Drive | None = None) -> Way:
@@ -169,3 +183,8 @@ def laid_out(
     step = chosen.counted(scene, length, given)
     chosen.refuse(Planned(scene, *step, given, with_forces))
     return step
+
+
+def way_of_row(row: Mapping[Any, Any]) -> Way:
+    """The way of a stored cell."""
+    return next(each for each in map(way, WAYS) if each.stored(row))

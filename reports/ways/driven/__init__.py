@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
+from typing import Any
 
 from models.scene import Same, Scene
 from reports.compare.beside import Truth, truth_of
@@ -24,6 +25,7 @@ class DrivenWay(Parts):
 
     name = "driven"
     drive: Drive = "prescribed"
+    kinds: Sequence[str] = ("driven",)
     closed_form = True
     limits: Mapping[str, Tolerance] = DEFAULTS
     roles: Set[Role] = frozenset(("drive", "place", "closure", "derived"))
@@ -54,6 +56,9 @@ class DrivenWay(Parts):
     def roles_of(self, *, with_forces: bool) -> Set[Role]:
         return {*self.roles, *(("force",) if with_forces else ())}
 
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        return True
+
     def turn_s(self, scene: Scene) -> float:
         return scene.driver.law.period_s
 
@@ -61,6 +66,9 @@ class DrivenWay(Parts):
         return 1
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
+        return scene
+
+    def moved(self, scene: Scene) -> Scene:
         return scene
 
     def note(self, scene: Scene, duration_s: float) -> str:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 from models.scene import Scene
 from reports.compare.beside import Truth
@@ -18,8 +19,14 @@ from sim.engine import Drive
 class Bending:
     """What is particular to links that bend, whatever drives them; before the way of rigid ones."""
 
+    kinds: Sequence[str] = ("elastic",)
     placed: Sequence[str] = ("deflection",)
     no_case = "no elastic link in it"
+
+    def bends(self, row: Mapping[Any, Any]) -> bool:
+        """Whether links of a stored cell bend."""
+        segments = row.get("segments")  # a number, or none: NaN is not itself
+        return segments is not None and bool(segments == segments)
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
         return cut_scene(scene, given)
@@ -32,6 +39,9 @@ class ElasticWay(Bending, DrivenWay):
     closed_form = False
     limits = ELASTIC
     roles = DrivenWay.roles | {"elastic"}
+
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        return self.bends(row)
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return bool(scene.elastic)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
+from typing import Any
 
+from analytic.free.loosened import loosened
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.compare.free.free_facts import FreeFacts
@@ -30,6 +32,7 @@ class FreeWay(DrivenWay):
 
     name = "free"
     drive: Drive = "free"
+    kinds: Sequence[str] = ("let go",)
     closed_form = False
     limits: Mapping[str, Tolerance] = FREE
     roles: Set[Role] = frozenset(("free", "place", "closure", "derived"))
@@ -54,8 +57,14 @@ class FreeWay(DrivenWay):
     def refuse(self, run: Planned) -> None:
         refuse_unreleased(run.scene, run.duration_s)
 
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        return str(row["drive"]) == "free"
+
     def turn_s(self, scene: Scene) -> float:
         return 1.0
+
+    def moved(self, scene: Scene) -> Scene:
+        return loosened(scene)
 
     def note(self, scene: Scene, duration_s: float) -> str:
         return ""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan.elastic import (
@@ -23,7 +26,11 @@ class FreeElasticWay(Bending, FreeWay):
 
     name = "free_elastic"
     limits = FREE_ELASTIC
+    kinds = (*Bending.kinds, *FreeWay.kinds)
     roles = FreeWay.roles | {"elastic"}
+
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        return super().stored(row) and self.bends(row)
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return super().takes(scene, drive) and bool(scene.elastic)

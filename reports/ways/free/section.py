@@ -6,13 +6,15 @@ from models.scene import Scene
 from reports.output.numbers import duration
 from reports.page.sections.convergence import drawn
 from reports.page.sections.free_courses import FreeCourses, sizes_of
-from reports.page.sections.section import Section
+from reports.page.sections.section import Section, WaySection
 from reports.page.thinning import BUDGET, steps_held
-from reports.results.lines import Line, lines, turn_of
+from reports.results.lines import Line, lines
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation
 from reports.results.table import short_target
+from reports.way.clock import clock_of
 
+KIND = "let go"
 SHOWN = (
     *("phase_pure", "phase_limit_pure", "geometry_pure", "energy_pure"),
     *("horizon_1e-1_s", "horizon_1e-3_s", "precision", "sensitivity", "dt_s", "verdict", "status"),
@@ -37,12 +39,15 @@ ERRORS = {
 def build(report: Report, room: int = BUDGET) -> Section | None:
     """The section; None where everything was driven. ``room`` is that of its drawings and curves
     [characters]."""
-    lines = report.free_lines
+    lines = report.of_kind(KIND)
     if not lines:
         return None
     names = list(dict.fromkeys(line.scene for line in lines))
     sizes = sizes_of(report, lines)
     held = steps_held(sizes, lines, room)
+    costs = [
+        one for one in report.recommendations if one.best.way and one.best.way.kinds == (KIND,)
+    ]
     fits = {name: _fits(report, name) for name in ERRORS if name in report.cells}
     return Section(
         anchor="free",
@@ -52,7 +57,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
             "rows": [row for line in lines for row in _rows(report, line)],
             "scenes": [_words(name, report.scenes[name]) for name in names],
             "errors": {name: ERRORS[name][0] for name in fits},
-            "costs": [cost_row(one) for one in report.recommendations if _is_rigid_free(one)],
+            "costs": [cost_row(one) for one in costs],
             "thinned": held < max(len(line.cells) for line in lines),
             "held": held,
         },
@@ -94,16 +99,12 @@ def cost_row(one: Recommendation, period_s: float = 1.0) -> dict[str, object]:
         "reason": one.reason.replace(FREE_DRIVE, ""),
         "caution": one.caution.replace(FREE_DRIVE, ""),
         "dt_s": 1.0 / best.steps_per_turn,
-        "steps": f"{best.steps_per_turn:g} a {turn_of(best.drive)}",
+        "steps": f"{best.steps_per_turn:g} a {clock_of(best.drive).name}",
         "us_per_step": best.us_per_step,
         "ms": 1e3 * best.s_per_turn,
         "error": best.worst_error,
         "scene": best.worst_scene,
     }
-
-
-def _is_rigid_free(one: Recommendation) -> bool:
-    return one.best.drive == "free" and not one.best.bends
 
 
 def _horizon(time_s: float | None) -> str:
@@ -125,5 +126,8 @@ def _fits(report: Report, quantity: str) -> list[dict[str, object]]:
     return [
         drawn(report, line) | {"lasts_s": line.period_s}
         for line in lines(report.stored, quantity)
-        if line.drive == "free"
+        if KIND in line.way.kinds
     ]
+
+
+SECTION = WaySection(build, build)

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
 import numpy as np
 
 from models.array import Array
+from reports.compare.last_turn import Trace
 from reports.drawing.moving import first_turn
 from reports.drawing.packed import packed
 from reports.output.numbers import duration
 from reports.page.sections.convergence import drawn
-from reports.page.sections.free import cost_row
-from reports.page.sections.section import Section
-from reports.results.lines import Line, lines, turn_of
+from reports.page.sections.section import Section, WaySection
+from reports.results.lines import Line, lines
 from reports.results.overview import Report
+from reports.way.clock import SECONDS, TURNS, Clock, clock_of
+from reports.ways.free.section import cost_row
 
+KIND = "elastic"
 SHOWN = (
     *("deflection_pure", "deflection_limit_pure", "segments_pure", "segments_limit_pure"),
     *("extension_pure", "angle_pure", "gap_pure", "chain_pure", "doubt_pure", "linear_pure"),
@@ -35,11 +40,11 @@ PREFIX = "deflection."
 
 def build(report: Report) -> Section | None:
     """The section; None where no link bends."""
-    own = report.elastic_lines
+    own = report.of_kind(KIND)
     if not own:
         return None
     names = list(dict.fromkeys(line.scene for line in own))
-    bent = [one for one in report.recommendations if one.best.bends]
+    bent = [one for one in report.recommendations if one.best.way and KIND in one.best.way.kinds]
     fits = {name: _fits(report, name) for name in ERRORS if name in report.cells}
     return Section(
         anchor="elastic",
@@ -64,7 +69,7 @@ def build(report: Report) -> Section | None:
 def _rows(report: Report, line: Line) -> list[dict[str, object]]:
     """The cells of a line as rows of the table."""
     return [
-        {"scene": line.scene, "look": report.look(line), "turn": turn_of(line.drive)}
+        {"scene": line.scene, "look": report.look(line), "turn": clock_of(line.drive).name}
         | {name: cell.get(name) for name in SHOWN}
         for cell in line.cells.to_dict("records")
     ]
@@ -75,7 +80,7 @@ def _fits(report: Report, quantity: str) -> list[dict[str, object]]:
     return [
         drawn(report, line) | {"lasts_s": line.period_s}
         for line in lines(report.stored, quantity)
-        if line.bends
+        if KIND in line.way.kinds
     ]
 
 
@@ -86,15 +91,15 @@ def _courses(report: Report, line: Line) -> list[dict[str, object]]:
         return []
     cell = ran.iloc[-1]
     trace = report.stored.trace(str(cell["key"]))
-    free = line.drive == "free"
+    over, x = COURSES[clock_of(line.drive)](trace)
     return [
         {
             "scene": line.scene,
             "look": report.look(line).number,
             "step": duration(float(cell["dt_s"])),
             "link": name.removeprefix(PREFIX),
-            "over": "time [s]" if free else "angle of the driver [deg]",
-            "x": trace["time_s"] if free else _degrees(trace["driver_rad"]),
+            "over": over,
+            "x": x,
             "rows": packed(np.vstack([series, trace[f"deflection_error.{name[len(PREFIX) :]}"]])),
         }
         for name, series in trace.items()
@@ -102,5 +107,12 @@ def _courses(report: Report, line: Line) -> list[dict[str, object]]:
     ]
 
 
-def _degrees(driver_rad: Array) -> Array:
-    return np.degrees(first_turn(driver_rad))
+COURSES: Mapping[Clock, Callable[[Trace], tuple[str, Array]]] = {
+    TURNS: lambda trace: (
+        "angle of the driver [deg]",
+        np.degrees(first_turn(trace["driver_rad"])),
+    ),
+    SECONDS: lambda trace: ("time [s]", trace["time_s"]),
+}
+"""What courses go over: its name, and its numbers (T,)."""
+SECTION = WaySection(build)
