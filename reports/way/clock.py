@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from reports.output.numbers import duration
 
@@ -17,9 +18,9 @@ class Clock:
     per: str
     unit: str
 
-    def step(self, dt_s: float, steps_per_turn: float) -> str:
-        """The step of a run, in words: so many in a turn."""
-        return f"{steps_per_turn:g}"
+    def step(self, row: Mapping[Any, Any]) -> str:
+        """The step of a stored cell, in words: so many in a turn."""
+        return f"{row['steps_per_turn']:g}"
 
     def lasts(self, turns: float) -> str:
         """How long a run is, in words behind its name."""
@@ -33,8 +34,8 @@ class Clock:
 class Seconds(Clock):
     """As of `Clock`: what nothing drives has no turns."""
 
-    def step(self, dt_s: float, steps_per_turn: float) -> str:
-        return duration(dt_s)
+    def step(self, row: Mapping[Any, Any]) -> str:
+        return duration(row["dt_s"])
 
     def lasts(self, turns: float) -> str:
         return f" for {turns:g} s"

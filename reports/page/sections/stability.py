@@ -67,7 +67,7 @@ def holds(cells: pd.DataFrame) -> Holds:
 
 def _step(row: pd.Series) -> str:
     """The step of a cell: steps in a turn, or what is let go has none, its time."""
-    return clock_of(row["drive"]).step(row["dt_s"], row["steps_per_turn"])
+    return clock_of(row["drive"]).step(row.to_dict())
 
 
 def _runs(steps: list[str], ran: list[bool], why: str) -> str:

@@ -14,7 +14,8 @@ from models.files import load_scene
 from reports.judge.cell import Cell
 from reports.plan.study import Variant, load_study
 from reports.requests.sweep import SweepRequest
-from reports.results.recommend import TARGETS, Recommendation, recommendations
+from reports.results.recommend import Recommendation, recommendations
+from reports.results.result_kind import TARGETS
 from reports.store.reader import Stored, read_store
 from sim.engine import Drive
 from sim.mujoco.settings import writing

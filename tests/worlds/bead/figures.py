@@ -19,7 +19,7 @@ def draw(report: Report, name: str) -> Figure | None:
     figure, (axes,) = sheet(PAGE_IN, Panels(), f"Bead: {name}", [], notes(report, lines))
     for line in lines:
         trace = report.stored.trace(str(line.cells.iloc[-1]["key"]))
-        axes.plot(trace["time_s"], trace["angle.spoke"], **mark_of[named(line)].line)
+        axes.plot(trace["time_s"], trace["drive"], **mark_of[named(line)].line)
     axes.set_xlabel("time [s]")
     axes.set_ylabel("error of the spoke [rad]")
     return figure
