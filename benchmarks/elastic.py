@@ -24,7 +24,7 @@ import numpy as np
 
 from analytic.elastic.discretisation import REFERENCE, Discretisation, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.segment_start import segment_start
+from analytic.elastic.engine_start import segment_start
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.elastic import Shape

@@ -28,14 +28,14 @@ if __name__ == "__main__":  # run as a file: the packages are beside this folder
 
 from analytic.elastic.discretisation import Discretisation, Modes, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.linearised import linearise
+from analytic.elastic.engine_start import node_start
 from analytic.elastic.natural import lowest_rad_s
-from analytic.elastic.node_start import node_start
 from analytic.elastic.periodic import (
     FIRST,
     PeriodicMotion,
     instants,
     linear_motion,
+    linearise,
     periodic_motion,
 )
 from analytic.elastic.reduced import ReducedForm

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.multibody.body_set import Marker, Markers
+from analytic.multibody.bodies import Marker, Markers
 from models.array import Array
 from models.elastic import ElasticLink
 from models.elastic_line import Line

@@ -14,9 +14,8 @@ import numpy as np
 
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS, PointKinematics, Real, Vec
-from analytic.forces.balance import PrismaticPair
 from analytic.forces.bounded import Bounded, BoundedVec
-from analytic.forces.free_body import FreeBody
+from analytic.forces.free_body import FreeBody, PrismaticPair
 from analytic.kinematics import counted_angle, unit_chunk
 from analytic.prepared import prepared
 from models.array import Array

@@ -11,8 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.in_assembly import in_assembly
-from analytic.kinematics import solve
+from analytic.kinematics import in_assembly, solve
 from models.errors import CrankcheckError
 from models.laws import ConstantSpeed
 from models.motion import Motion

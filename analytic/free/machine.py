@@ -21,11 +21,9 @@ import numpy as np
 
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import Real
-from analytic.forces.reduced_machine import inertia_and_slope, loaded_bodies
 from analytic.forces.springs import spring_lengths
-from analytic.forces.virtual_power import torque_by_power
-from analytic.free.arc import Arc
-from analytic.free.chart import Chart
+from analytic.forces.virtual_power import inertia_and_slope, loaded_bodies, torque_by_power
+from analytic.free.chart import Arc, Chart
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError

@@ -19,8 +19,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.free.arc import Arc
-from analytic.free.chart import Chart
+from analytic.free.chart import Arc, Chart
 from analytic.free.free_motion import LimitPassage
 from analytic.free.machine import Machine
 from analytic.kinematics import solve_driven

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.forces.jolts import jolts
+from analytic.forces.late_impulses import jolts
 from models.errors import ReachError
 from models.poses import mass_ratio
 from reports.compare.beside import Beside

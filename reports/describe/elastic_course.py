@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analytic.elastic.elastic_motion import ElasticHistory, bent, sampled
 from analytic.elastic.released import ReleasedElasticMotion
-from analytic.elastic.sampled import ElasticHistory, bent, sampled
 from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
 from analytic.kinematics import solve

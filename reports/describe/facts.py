@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from analytic.kinematics import reach
 from analytic.mechanism.cycle import Along, Output
 from analytic.mechanism.fourbar import FourBar
-from analytic.mechanism.speeds import ExtremeSpeed, extreme_speeds
-from analytic.mechanism.travel import Travel, travels
+from analytic.mechanism.travel import ExtremeSpeed, Travel, extreme_speeds, travels
 from analytic.structure.mobility import Structure
 from models.errors import CrankcheckError, StructureError
 from models.laws import ConstantSpeed, FromRest, Law, Oscillating

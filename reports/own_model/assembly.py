@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.in_assembly import in_assembly
-from analytic.kinematics import reach, solve, solve_driven
+from analytic.kinematics import in_assembly, reach, solve, solve_driven
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, ReachError, few
 from models.laws import ConstantSpeed

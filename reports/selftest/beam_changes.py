@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from analytic.elastic.node_start import node_start
+from analytic.elastic.engine_start import node_start
 from models.beamed import BeamedScene
 from models.beams import Beam
 from models.elastic import Shape

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic.elastic.segment_start import segment_start
+from analytic.elastic.engine_start import segment_start
 from models.elastic import Shape
 from models.motion import State
 from models.scene import Link, Scene

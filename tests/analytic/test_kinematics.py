@@ -14,8 +14,7 @@ from hypothesis import given
 
 from analytic import prepared
 from analytic.dyads.plane import EPS
-from analytic.kinematics import reach, solve, solve_driven
-from analytic.nearness import nearness
+from analytic.kinematics import nearness, reach, solve, solve_driven
 from analytic.structure.mobility import sides_of
 from models import moved_scene as transform
 from models.array import Array

@@ -13,9 +13,8 @@ import pytest
 
 from analytic.dyads.plane import EPS
 from analytic.kinematics import solve
-from analytic.mechanism.coriolis import coriolis
 from analytic.mechanism.cycle import Along
-from analytic.mechanism.travel import travel
+from analytic.mechanism.travel import coriolis, travel
 from models.array import Array
 from models.files import load_scene, parse_scene, shipped
 from models.laws import Accelerating

@@ -21,7 +21,7 @@ from itertools import chain
 
 import numpy as np
 
-from analytic.multibody.joint_forces import joint_forces
+from analytic.multibody.dynamics import joint_forces
 from models.array import Array
 from models.driver_course import driver_course
 from models.errors import CrankcheckError

@@ -16,9 +16,8 @@ from functools import cached_property, lru_cache
 from typing import ClassVar
 
 from analytic.elastic.discretisation import Segments
-from analytic.elastic.node_start import node_start
-from analytic.elastic.segment_start import segment_start
-from analytic.elastic.stiffness import fastest_rad_s
+from analytic.elastic.elastic_motion import fastest_rad_s
+from analytic.elastic.engine_start import node_start, segment_start
 from analytic.kinematics import solve
 from models.array import Array
 from models.beamed import BeamedScene

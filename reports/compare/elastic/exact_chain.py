@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from analytic.elastic.sampled import ElasticHistory
-from analytic.elastic.segment_start import chain_motion
+from analytic.elastic.elastic_motion import ElasticHistory
+from analytic.elastic.engine_start import chain_motion
 from models.array import Array
 from models.elastic import Shape
 from models.motion import Motion

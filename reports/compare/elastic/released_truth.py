@@ -14,11 +14,11 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from analytic.elastic.elastic_doubt import ElasticDoubt
+from analytic.elastic.discretisation import ElasticDoubt
+from analytic.elastic.elastic_motion import energies, sampled
 from analytic.elastic.released import ReleasedElasticMotion
-from analytic.elastic.sampled import energies, sampled
 from analytic.free.free_motion import FreeMotion, LimitPassage
-from analytic.multibody.energy_balance import EnergyBalance
+from analytic.multibody.bodies import EnergyBalance
 from models.array import Array
 from models.errors import EngineError, ReachError
 from models.motion import Motion

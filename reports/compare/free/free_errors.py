@@ -8,8 +8,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from analytic.forces.jolts import jolts
-from analytic.forces.late_impulses import late_impulses
+from analytic.forces.late_impulses import jolts, late_impulses
 from models.array import Array
 from models.errors import CrankcheckError
 from models.joints import has_loops

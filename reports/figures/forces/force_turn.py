@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
-from analytic.forces.reduced_machine import ReducedMachine, reduced_machine
+from analytic.forces.virtual_power import ReducedMachine, reduced_machine
 from models.array import Array
 from models.characteristics import Constant
 from models.driver_shown import driver_axis, driver_shown

@@ -11,8 +11,7 @@ from rich.console import Console
 
 from analytic.lectures.drawings.drawn_polygons import draw_polygons
 from analytic.lectures.drawings.placed_mechanism import DriverState
-from analytic.structure.cranked import refuse_other_than_cranked
-from analytic.structure.mobility import analyse
+from analytic.structure.mobility import analyse, refuse_other_than_cranked
 from models.array import Array
 from models.files import find_scene, load_scene
 from models.scene import Scene

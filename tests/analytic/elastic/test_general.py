@@ -9,11 +9,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.elastic.cubic_nodes import CubicNodes, cubic_nodes, strain_places
 from analytic.elastic.discretisation import REFERENCE, Discretisation, Polynomials, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.node_start import node_start
-from analytic.elastic.segment_start import segment_start
+from analytic.elastic.engine_start import (
+    CubicNodes,
+    cubic_nodes,
+    node_start,
+    segment_start,
+    strain_places,
+)
 from analytic.forces.kinetostatics import forces
 from models.array import Array
 from models.beamed import BeamedScene

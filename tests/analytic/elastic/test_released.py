@@ -13,9 +13,8 @@ import pytest
 
 from analytic.elastic.control import ControlledForces, control_elastic, released_under_control
 from analytic.elastic.discretisation import Discretisation, Elements, Modes, Segments
-from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.elastic_motion import DrivenElasticMotion, fastest_rad_s
 from analytic.elastic.released import assembled, release_elastic
-from analytic.elastic.stiffness import fastest_rad_s
 from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
 from analytic.kinematics import solve

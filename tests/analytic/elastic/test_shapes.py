@@ -10,11 +10,15 @@ import pytest
 from scipy.integrate import solve_ivp  # type: ignore[import-untyped]
 
 from analytic.elastic.beam import Beam, ElasticBody
-from analytic.elastic.elements import HermiteElements
-from analytic.elastic.modes import SineModes
-from analytic.elastic.polynomials import LegendrePolynomials
 from analytic.elastic.segments import SegmentChain, SegmentedBody
-from analytic.elastic.shapes import Shapes, places, shortening
+from analytic.elastic.shapes import (
+    HermiteElements,
+    LegendrePolynomials,
+    Shapes,
+    SineModes,
+    places,
+    shortening,
+)
 from models.array import Array
 from models.elastic import ElasticLink
 from models.elastic_line import Line

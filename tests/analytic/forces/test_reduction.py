@@ -12,7 +12,7 @@ import pytest
 
 from analytic.forces.kinetostatics import forces
 from analytic.forces.late_impulses import ON_TIME, LateImpulses, late_impulses
-from analytic.forces.reduced_machine import reduced_machine
+from analytic.forces.virtual_power import reduced_machine
 from analytic.kinematics import solve
 from models.array import Array
 from models.characteristics import Constant

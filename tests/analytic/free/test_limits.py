@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from analytic.free.doubt import _moved
+from analytic.free.coordinate_history import _moved
 from analytic.free.limit_position import REACH
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release

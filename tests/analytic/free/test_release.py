@@ -12,13 +12,12 @@ import numpy as np
 import pytest
 
 from analytic.free.bodies_motion import BodiesMotion
-from analytic.free.formula_change import FormulaChange
 from analytic.free.free_motion import FreeMotion
+from analytic.free.kinks import FormulaChange, WindowKinks
 from analytic.free.machine import Machine
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
 from analytic.free.window import WindowSolution
-from analytic.free.window_kinks import WindowKinks
 from analytic.kinematics import reach
 from analytic.multibody.multibody_motion import Projection
 from models.characteristics import Constant

@@ -12,11 +12,10 @@ import pytest
 from analytic.free.release import release
 from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve
-from analytic.multibody.configuration import Configuration
-from analytic.multibody.joint_equations import JointEquations
+from analytic.multibody.assembly import JointEquations
+from analytic.multibody.bodies import Configuration, RigidBodies
 from analytic.multibody.multibody_motion import MultibodyMotion, Projection
 from analytic.multibody.release_multibody import release_multibody
-from analytic.multibody.rigid import RigidBodies
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene

@@ -14,8 +14,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.elastic.node_start import node_start
-from analytic.elastic.segment_start import segment_start
+from analytic.elastic.engine_start import node_start, segment_start
 from analytic.free.machine import Machine
 from models.array import Array
 from models.beamed import BeamedScene

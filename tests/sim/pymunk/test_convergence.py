@@ -11,7 +11,7 @@ import numpy as np
 import pymunk
 import pytest
 
-from analytic.elastic.segment_start import segment_start
+from analytic.elastic.engine_start import segment_start
 from models.errors import EngineError
 from models.files import load_scene, parse_scene
 from models.motion import State
