@@ -21,12 +21,11 @@ from analytic.result import Selection
 from analytic.structure.groups import Group, Triad
 from analytic.structure.mobility import Structure, analyse
 from analytic.turns.count import Counter
-from models.array import Array
+from models.array import Array, beside, samples
 from models.errors import CrankcheckError, ReachError, StructureError
+from models.files.names import MOST_ASSEMBLIES
 from models.laws import ConstantSpeed, Law
 from models.motion import Motion
-from models.names import MOST_ASSEMBLIES
-from models.samples import beside, samples
 from models.scene import Scene
 
 

@@ -27,8 +27,8 @@ from analytic.structure.mobility import Structure, analyse
 from analytic.turns.count import CellSolver, Counter, Turns
 from models.array import Array, Mask
 from models.errors import ReachError
+from models.files.names import MOST_ASSEMBLIES
 from models.motion import Crossing, Motion
-from models.names import MOST_ASSEMBLIES
 from models.scene import GROUND, KEPT, Same, Scene
 
 CHUNK = 12288

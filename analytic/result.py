@@ -15,8 +15,8 @@ from analytic.dyads.steps import Step
 from analytic.turns.count import SURE
 from models.array import Array
 from models.errors import CrankcheckError
+from models.files.inputs import names_in
 from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
-from models.one_or_more import names_in
 from models.scene import Scene
 
 

@@ -41,8 +41,8 @@ from analytic.elastic.periodic import (
 from analytic.elastic.reduced import ReducedForm
 from analytic.lectures.vibration.any_speed import at_speed
 from models.array import Array
-from models.beamed import BeamedScene
-from models.files import load_scene
+from models.cut_scenes import BeamedScene
+from models.files.reading import load_scene
 from models.scene import Scene
 from sim.run import run
 

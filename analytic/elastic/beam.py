@@ -23,8 +23,8 @@ import numpy as np
 from analytic.elastic.shapes import Shapes, places, shortening
 from analytic.multibody.bodies import Marker, Markers
 from models.array import Array
+from models.cut_links import Line
 from models.elastic import ElasticLink
-from models.elastic_line import Line
 from models.joints import turned
 from models.scene import Point
 

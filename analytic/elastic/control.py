@@ -1,4 +1,4 @@
-"""Elastic links of a mechanism whose driver is controlled (`models.controlled`).
+"""Elastic links of a mechanism whose driver is controlled (`models.driver`).
 
 Nothing tells the driver's angle: it is one of the freedoms, as in what is let go, with the torque
 of the controller on it. What the rigid mechanism needs comes from its kinetostatics.
@@ -19,13 +19,12 @@ from analytic.multibody.assembly import Assembly
 from analytic.multibody.bodies import Configuration
 from analytic.multibody.generalised_forces import GeneralisedForces, Strokes
 from models.array import Array
-from models.controlled import Controlled
+from models.characteristics import FourierSum
+from models.cut_links import with_rigid_links
+from models.driver import Controlled, check_duration, let_go
 from models.elastic import Shape
 from models.errors import CrankcheckError
-from models.released import check_duration, let_go
-from models.rigid import with_rigid_links
 from models.scene import Same, Scene
-from models.waves import FourierSum
 
 
 def elastic_history(

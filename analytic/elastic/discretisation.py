@@ -11,10 +11,10 @@ from analytic.elastic.beam import ElasticBody
 from analytic.elastic.segments import SegmentedBody
 from analytic.elastic.shapes import HermiteElements, LegendrePolynomials, Shapes, SineModes
 from models.array import Array
+from models.cut_links import line_of
 from models.elastic import ElasticLink
-from models.elastic_line import line_of
-from models.elastic_tables import SLENDER
 from models.errors import CrankcheckError
+from models.files.elastic_table import SLENDER
 from models.motion import Motion
 from models.scene import Scene
 

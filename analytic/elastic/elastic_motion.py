@@ -28,12 +28,11 @@ from analytic.multibody.bodies import Configuration, EnergyBalance
 from analytic.multibody.dynamics import joint_forces
 from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.structure.mobility import refuse_other_than_cranked
-from models.array import Array
+from models.array import Array, samples
 from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.motion import ElasticMotion as LinkShape
 from models.motion import Motion
-from models.samples import samples
 from models.scene import Scene
 
 PER_TURN, PER_CYCLE = 24, 6

@@ -15,11 +15,10 @@ from analytic.elastic.released import ENOUGH
 from analytic.elastic.segments import SegmentChain
 from analytic.multibody.as_motion import as_motion
 from models.array import Array
-from models.beamed import BeamedScene
+from models.cut_links import line_of
+from models.cut_scenes import BeamedScene, SegmentedScene
 from models.elastic import Shape
-from models.elastic_line import line_of
 from models.motion import State
-from models.segmented import SegmentedScene
 
 
 def chain_motion(own: SegmentedScene, start: Shape, until_s: float = 1.0) -> ElasticHistory:

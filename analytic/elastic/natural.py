@@ -15,8 +15,8 @@ import numpy as np
 
 from analytic.elastic.reduced import ReducedForm
 from models.array import Array
+from models.cut_links import line_of
 from models.elastic import ElasticLink
-from models.elastic_line import line_of
 from models.laws import ConstantSpeed
 from models.scene import Scene
 

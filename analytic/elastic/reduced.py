@@ -25,7 +25,7 @@ from analytic.multibody.assembly import Assembly
 from analytic.multibody.bodies import Configuration, FlexibleBody
 from analytic.multibody.generalised_forces import GeneralisedForces
 from models.array import Array
-from models.controlled import Controlled
+from models.driver import Controlled
 from models.errors import CrankcheckError
 from models.joints import block_name, sliding_angle
 from models.laws import Law

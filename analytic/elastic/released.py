@@ -30,11 +30,10 @@ from analytic.multibody.bodies import Configuration, EnergyBalance
 from analytic.multibody.dynamics import Dynamics, joint_forces
 from analytic.multibody.generalised_forces import GeneralisedForces, edges
 from analytic.multibody.release_multibody import Acting, ready
-from models.array import Array
+from models.array import Array, samples
+from models.driver import check_duration
 from models.errors import CrankcheckError, StructureError
 from models.motion import Motion, State
-from models.released import check_duration
-from models.samples import samples
 from models.scene import Scene
 
 Method = Literal["collocation", "library"]

@@ -13,12 +13,11 @@ from analytic.forces.virtual_power import reduced_machine
 from analytic.kinematics import repeats_after, solve
 from analytic.structure.mobility import analyse
 from models.array import Array
-from models.driver_course import driver_course
+from models.driver import driver_course
 from models.errors import CrankcheckError
-from models.forces import Forces
 from models.joints import block_name
 from models.laws import ConstantSpeed, Oscillating
-from models.motion import Motion
+from models.motion import Forces, Motion
 from models.scene import GROUND, Scene
 
 LOOKS = 720
@@ -201,7 +200,7 @@ def efficiency(scene: Scene, count: int = SAMPLES) -> Efficiency:
 def friction_power(scene: Scene, motion: Motion, friction: Mapping[str, Array]) -> dict[str, Array]:
     """The power of friction by joint [W], (T,), never positive.
 
-    ``friction`` is that of the forces of the motion (`models.forces.Forces`).
+    ``friction`` is that of the forces of the motion (`models.motion.Forces`).
     """
     turning = {name: link.omega for name, link in motion.links.items()}
     turning[GROUND] = np.zeros_like(motion.time_s)

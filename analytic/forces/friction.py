@@ -28,7 +28,7 @@ from analytic.forces.free_body import Balance, Displaced, FreeBody
 from analytic.forces.rubbing import Rubbing
 from analytic.structure.mobility import Structure
 from models.array import Array, Mask
-from models.friction import CoulombFriction
+from models.loads import CoulombFriction
 from models.scene import Scene
 
 

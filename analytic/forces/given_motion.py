@@ -20,7 +20,7 @@ from analytic.dyads.plane import (
     rounding_of_angles,
 )
 from analytic.prepared import CHUNK
-from models.driver_course import driver_course
+from models.driver import driver_course
 from models.errors import CrankcheckError
 from models.joints import block_name
 from models.motion import Motion

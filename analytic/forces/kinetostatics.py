@@ -24,12 +24,10 @@ from analytic.forces.springs import apply_springs
 from analytic.forces.virtual_power import torque_by_power
 from analytic.kinematics import chunks, unit_chunk
 from analytic.structure.mobility import Structure, analyse
-from models.array import Array, Mask
+from models.array import Array, Mask, samples
 from models.errors import CrankcheckError, few
-from models.forces import ForceBound, Forces, FrictionSolution, SliderForces
-from models.friction import ConstantFriction, CoulombFriction, Friction
-from models.motion import Motion
-from models.samples import samples
+from models.loads import ConstantFriction, CoulombFriction, Friction
+from models.motion import ForceBound, Forces, FrictionSolution, Motion, SliderForces
 from models.scene import Scene
 
 

@@ -23,9 +23,8 @@ from analytic.forces.bounded import NOUGHT, Bounded, BoundedVec
 from analytic.forces.free_body import FreeBody, apply_loads
 from analytic.forces.springs import apply_springs
 from analytic.kinematics import chunks, unit_chunk
-from models.array import Array
+from models.array import Array, samples
 from models.joints import block_name
-from models.samples import samples
 from models.scene import GROUND, Point, Scene
 
 

@@ -21,8 +21,8 @@ from analytic.free.limit_position import LimitPosition
 from analytic.kinematics import solve_driven
 from analytic.prepared import Prepared, prepared, ranges
 from models.array import Array
+from models.driver import Released
 from models.errors import CrankcheckError
-from models.released import Released
 from models.scene import Scene
 
 BEYOND = (1e-9, 1e-6, 1e-4, 1e-2)

@@ -16,10 +16,9 @@ from analytic.free.motion_along import motion_along, places_beside
 from analytic.free.window import gauss, sums
 from analytic.kinematics import solve_driven
 from analytic.multibody.bodies import EnergyBalance
-from models.array import Array
+from models.array import Array, from_end, samples
 from models.errors import CrankcheckError
 from models.motion import Motion
-from models.samples import from_end, samples
 from models.scene import Scene
 
 

@@ -22,7 +22,7 @@ from analytic.multibody.bodies import Configuration, EnergyBalance
 from analytic.multibody.generalised_forces import GeneralisedForces, Strokes
 from models.array import Array
 from models.errors import CrankcheckError
-from models.forces import Forces, SliderForces
+from models.motion import Forces, SliderForces
 from models.scene import Scene
 
 WEAK = 1e-2

@@ -18,10 +18,9 @@ from analytic.multibody.generalised_forces import edges
 from analytic.multibody.outset import Outset
 from analytic.multibody.singular_passage import SingularPassage
 from analytic.multibody.steps import FixedSteps, StateHistory
-from models.array import Array, Mask
+from models.array import Array, Mask, from_end, samples
 from models.errors import CrankcheckError
 from models.motion import Motion
-from models.samples import from_end, samples
 from models.scene import Scene
 
 TOLERANCE = 1e-13

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from models.forces import Forces
+from models.motion import Forces
 from reports.compare.errors import Error, Unbalanced
 from reports.output.numbers import count
 from reports.quantities.forces import acting

@@ -14,10 +14,10 @@ from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
 from analytic.kinematics import solve
 from models.array import Array
-from models.controlled import Controlled
+from models.cut_links import with_rigid_links
+from models.driver import Controlled
 from models.elastic import Shape
 from models.motion import Motion
-from models.rigid import with_rigid_links
 from models.scene import Scene
 from reports.describe.elastic_words import described
 

@@ -13,7 +13,7 @@ from rich.table import Table
 from analytic.elastic.elastic_motion import ElasticHistory, energies
 from analytic.elastic.released import ReleasedElasticMotion
 from models.array import Array
-from models.elastic_line import line_of
+from models.cut_links import line_of
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.elastic_course import SHARES, ElasticCourse

@@ -51,7 +51,7 @@ def speed_facts(
 ) -> SpeedFacts | None:
     """The largest and smallest speeds of links, sliders and points along directions, at the
     driver's angles at which they have no acceleration; None where a cycle of the mechanism has
-    none. ``clockwise`` turns a driver of one speed round, as in `models.passing`."""
+    none. ``clockwise`` turns a driver of one speed round, as in `models.driver`."""
     try:
         every = extreme_speeds(scene, _outputs(scene, along))
     except CrankcheckError:

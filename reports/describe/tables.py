@@ -10,7 +10,7 @@ from rich.table import Table
 
 from analytic.mechanism.travel import coriolis
 from models.array import Array
-from models.driver_course import driver_place
+from models.driver import driver_place
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.facts import SpeedFacts

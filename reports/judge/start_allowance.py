@@ -32,7 +32,7 @@ the largest force at the start: up to 1.26, at 90 and 720 steps a turn on every 
 
 Elements of a beam that stand where the true line does are stretched, as a cubic can not bend
 without stretching somewhere, and set off by what that pushes their ends with
-(`models.beams.Beam.pushed`): of fourbar-elastic 0.13 of the driver's speed squared with 2 of them
+(`models.elastic.Beam.pushed`): of fourbar-elastic 0.13 of the driver's speed squared with 2 of them
 and 0.009 with 4, at every step, until that is damped.
 
 The caps are what anyone would call wrong, whatever the theory grants: a tenth of the driver's speed

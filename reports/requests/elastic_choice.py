@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast, get_args
 
-from models.controlled import Controlled
+from models.driver import Controlled
 from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.laws import ConstantSpeed, Oscillating

@@ -17,9 +17,9 @@ from analytic.circuits.rotatability import Rotation, at_limit, dead_points, rota
 from analytic.dyads.chunk import driver_scale
 from analytic.mechanism.grashof import grashof_of
 from analytic.structure.mobility import analyse
-from models.driver_shown import driver_unit
+from models.driver import driver_unit
 from models.errors import CrankcheckError, StructureError, harmless, shown
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.output.columns import plain_table
 from reports.requests.options import SceneName

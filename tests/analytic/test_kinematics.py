@@ -19,7 +19,7 @@ from analytic.structure.mobility import sides_of
 from models import moved_scene as transform
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.motion import Motion
 from models.moved_scene import mirrored
 from models.scene import Scene

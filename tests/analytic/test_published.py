@@ -16,7 +16,7 @@ from analytic.kinematics import solve
 from analytic.mechanism.cycle import Along
 from analytic.mechanism.travel import coriolis, travel
 from models.array import Array
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.laws import Accelerating
 from models.scene import Scene
 from tests.analytic.four_bars import fourbar

@@ -28,10 +28,9 @@ from analytic.multibody.bodies import Configuration
 from analytic.multibody.dynamics import Saddle, joint_forces
 from analytic.multibody.generalised_forces import GeneralisedForces, edges
 from analytic.multibody.multibody_motion import Baumgarte, Method, Projection
-from models.array import Array
+from models.array import Array, samples
 from models.errors import CrankcheckError
 from models.motion import Motion
-from models.samples import samples
 
 PROJECTED = Projection()
 MOST_PROJECTIONS = 10

@@ -20,10 +20,10 @@ from analytic.elastic.elastic_motion import ElasticHistory
 from analytic.elastic.natural import lowest_rad_s
 from analytic.elastic.released import ROUGH
 from models.array import Array
+from models.cut_scenes import SegmentedScene
 from models.elastic import Shape
 from models.motion import Motion
 from models.scene import Scene
-from models.segmented import SegmentedScene
 from reports.compare.elastic.exact_chain import ExactChain
 from reports.quantities.elastic import largest_deflection
 

@@ -8,9 +8,9 @@ from functools import cached_property
 from analytic.elastic.elastic_motion import ElasticHistory
 from analytic.elastic.engine_start import chain_motion
 from models.array import Array
+from models.cut_scenes import SegmentedScene
 from models.elastic import Shape
 from models.motion import Motion
-from models.segmented import SegmentedScene
 
 
 @dataclass(frozen=True)

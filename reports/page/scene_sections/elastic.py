@@ -11,7 +11,7 @@ import numpy as np
 
 from analytic.elastic.elastic_motion import ElasticHistory
 from models.array import Array
-from models.elastic_line import line_of
+from models.cut_links import line_of
 from models.laws import ConstantSpeed
 from reports.describe.elastic_certainty import certainty
 from reports.describe.elastic_course import ElasticCourse, elastic_course, start_of

@@ -19,7 +19,7 @@ from analytic.kinematics import reach, solve, solve_driven
 from analytic.mechanism.fourbar import FourBar
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.scene import Scene
 from tests.analytic.four_bars import fourbar, random_bars
 from tests.worlds.tiers import few, slowly

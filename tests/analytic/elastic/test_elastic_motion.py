@@ -25,7 +25,7 @@ from benchmarks.elastic_theories import row
 from models.array import Array
 from models.elastic import Shape
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
 from models.moved_scene import scaled

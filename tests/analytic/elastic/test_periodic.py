@@ -36,7 +36,7 @@ from analytic.lectures.vibration.swing import spectrum, swings
 from models.array import Array
 from models.characteristics import Polynomial, Sine
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.laws import ConstantSpeed, FromRest
 from models.loads import Load
 from models.scene import Scene

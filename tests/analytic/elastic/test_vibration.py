@@ -21,7 +21,7 @@ from analytic.free.window import gauss
 from analytic.multibody.multibody_motion import Baumgarte, Method, Projection
 from models.elastic import Shape
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.laws import FromRest
 from models.motion import Motion
 from models.scene import Scene

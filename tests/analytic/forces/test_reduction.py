@@ -17,7 +17,7 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.characteristics import Constant
 from models.errors import CrankcheckError
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.laws import Accelerating, ConstantSpeed
 from models.loads import Load
 from models.scene import Driver

@@ -25,9 +25,9 @@ from analytic.forces.friction import (
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import parse_scene
-from models.friction import ConstantFriction, CoulombFriction
+from models.files.reading import parse_scene
 from models.laws import Accelerating, Oscillating
+from models.loads import ConstantFriction, CoulombFriction
 from models.scene import Driver, Scene
 from tests.worlds.loading import rubbed_mechanism
 from tests.worlds.tiers import slowly

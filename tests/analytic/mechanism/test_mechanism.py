@@ -19,10 +19,10 @@ from analytic.mechanism.grashof import (
     slider_crank_type,
 )
 from analytic.mechanism.travel import Travel, coriolis, extreme_speeds, travel, travels
+from models.driver import passing
 from models.errors import CrankcheckError, ReachError, StructureError
-from models.files import load_scene, parse_scene
+from models.files.reading import load_scene, parse_scene
 from models.laws import ConstantSpeed
-from models.passing import passing
 from models.scene import Driver
 from tests.analytic.four_bars import fourbar, random_bars
 from tests.worlds.tiers import slowly

@@ -18,11 +18,11 @@ from analytic.multibody.multibody_motion import MultibodyMotion, Projection
 from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
+from models.hard import Chain
 from models.loads import Load
 from models.moved_scene import scaled
 from models.tabulated import Tabulated
-from models.window_chain import Chain
 from tests.analytic.free.mechanisms import fourbar
 from tests.analytic.multibody.scenes import (
     DOUBLE_PENDULUM,

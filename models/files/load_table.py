@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from models.loads import Over, Stroke
-from models.table_fields import Degrees, Name, Number, Positive, Table
-from models.tabulated import Interpolation
+from models.characteristics import (
+    Characteristic,
+    Constant,
+    FourierSum,
+    Polynomial,
+    Pulse,
+    Sine,
+    Staircase,
+)
+from models.errors import CrankcheckError
+from models.files.schema import Degrees, Name, Number, Positive, Table, within_a_turn
+from models.joints import block_name
+from models.loads import Load, Over, Stroke
+from models.scene import Slider
+from models.tabulated import Interpolation, Tabulated
 
 UNIT: dict[str, str] = {
     "time": "s",
@@ -198,3 +212,117 @@ LOADS: dict[str, type[LawOfLoad]] = {
     "polynomial": PolynomialLoad,
     "table": TableLoad,
 }
+
+
+def load_of(
+    name: str, table: LawOfLoad, sliders: Mapping[str, Slider], faults: list[str]
+) -> Load | None:
+    """The load of a table, or None and why it has no magnitude."""
+    body, point = table.link, table.point
+    if table.block is not None:
+        block = sliders[table.block]
+        body, point = block_name(block), block.point
+    assert body is not None
+    try:
+        characteristic = _characteristic(table)
+    except ValueError as error:
+        faults.append(f"loads.{name}: {error}")
+        return None
+    return Load(
+        name=name,
+        body=body,
+        point=None if table.magnitude[0] is None else point,
+        characteristic=characteristic,
+        over=getattr(table, "over", "time"),
+        slider=table.slider,
+        stroke=table.stroke,
+        direction_rad=within_a_turn(table.direction_deg or 0.0),
+        frame=table.frame or "ground",
+    )
+
+
+def _characteristic(table: LawOfLoad) -> Characteristic:
+    """How the magnitude goes, angles in radians. Raises ValueError."""
+    magnitude = table.force_n if table.force_n is not None else table.torque_n_m
+    if isinstance(table, PolynomialLoad):
+        return Polynomial(tuple(magnitude))  # type: ignore[arg-type]
+    turning = getattr(table, "over", "time") == "angle"
+    if isinstance(table, SineLoad):
+        period = math.radians(table.period) if turning else table.period
+        return Sine(float(magnitude), period, within_a_turn(table.phase_deg))  # type: ignore[arg-type]
+    if isinstance(table, PulseLoad):
+        return Pulse(float(magnitude), table.period_s, table.start_s)  # type: ignore[arg-type]
+    if isinstance(table, StepsLoad):
+        return Staircase(table.at_s, tuple(magnitude))  # type: ignore[arg-type]
+    if isinstance(table, FourierLoad):
+        period = math.radians(table.period) if turning else table.period
+        count = max(len(table.cosines), len(table.sines))
+        cosines, sines = (
+            (*waves, *[0.0] * (count - len(waves))) for waves in (table.cosines, table.sines)
+        )
+        return FourierSum(float(magnitude), cosines, sines, period)  # type: ignore[arg-type]
+    if isinstance(table, TableLoad):
+        places, values = table.places, tuple(magnitude)  # type: ignore[arg-type]
+        if not turning:
+            return Tabulated(places, values, table.interpolation)
+        period = math.radians(table.period_deg or 360.0)
+        places = tuple(math.radians(place) for place in places)
+        return Tabulated(places, values, table.interpolation, period)
+    return Constant(float(magnitude))  # type: ignore[arg-type]
+
+
+def load_table(load: Load) -> Mapping[str, object]:
+    """The table. Raises CrankcheckError for a characteristic of another kind."""
+    table: dict[str, object] = {}
+    block = load.body.removeprefix("block ")  # no link has a space in its name
+    if block != load.body:
+        table["block"] = block
+    else:
+        table["link"] = load.body
+        if load.point is not None:
+            table["point"] = load.point
+    if load.point is not None:
+        table |= {"direction_deg": in_degrees(load.direction_rad), "frame": load.frame}
+    if load.stroke != "both" or load.over in ("displacement", "speed"):
+        table |= {"slider": load.slider, "stroke": load.stroke}
+    key = "torque_n_m" if load.point is None else "force_n"
+    return table | _law_table(load, key)
+
+
+def in_degrees(angle_rad: float) -> float:
+    """An angle in degrees that reads as itself, where one of twelve decimals does: 10, and not
+    10.000000000000002."""
+    plain = round(math.degrees(angle_rad), 12)
+    return plain if math.radians(plain) == angle_rad else math.degrees(angle_rad)
+
+
+def _law_table(load: Load, key: str) -> dict[str, object]:
+    """The law with its numbers; ``key`` is that of the magnitude."""
+    unit, turns = UNIT[load.over], load.over == "angle"
+    match load.characteristic:
+        case Constant(value):
+            return {"law": "constant", key: value}
+        case Sine(amplitude, period, phase_rad):
+            own = {
+                f"period_{unit}": in_degrees(period) if turns else period,
+                "phase_deg": in_degrees(phase_rad),
+            }
+            return {"law": "sine", "over": load.over, key: amplitude, **own}
+        case Pulse(amplitude, period, start):
+            return {"law": "pulse", key: amplitude, "period_s": period, "start_s": start}
+        case Staircase(places, values):
+            return {"law": "steps", "at_s": places, key: values}
+        case FourierSum(mean, cosines, sines, period):
+            own = {f"period_{unit}": in_degrees(period) if turns else period}
+            waves = {"cosines": cosines, "sines": sines, **own}
+            return {"law": "fourier", "over": load.over, key: mean, **waves}
+        case Polynomial(coefficients):
+            return {"law": "polynomial", "over": load.over, key: coefficients}
+        case Tabulated(places, values, interpolation, period):
+            at = tuple(map(in_degrees, places)) if turns else places
+            rows = {f"at_{unit}": at, key: values}
+            own = {} if period is None else {"period_deg": in_degrees(period)}
+            law = {"law": "table", "over": load.over, "interpolation": interpolation}
+            return {**law, **rows, **own}
+    kind = type(load.characteristic).__name__
+    raise CrankcheckError(f"load {load.name}: a scene file has no words for a {kind}")

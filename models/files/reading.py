@@ -9,20 +9,17 @@ from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from models.assemble import scene_from_table
-from models.controlled import Controlled
-from models.driver_tables import DRIVERS, SLIDES, DriverTable
+from models.driver import Controlled, Released
 from models.errors import CrankcheckError, SceneError, cut, few, nearest, shown, suggestion
-from models.load_tables import LOADS, LawOfLoad
-from models.names import faults_of_names
-from models.one_or_more import names_in
-from models.regular import UnreadableError, regular_text
-from models.released import Released
+from models.files.assemble import scene_from_table
+from models.files.driver_table import DRIVERS, SLIDES, DriverTable
+from models.files.inputs import UnreadableError, names_in, regular_text, tables
+from models.files.load_table import LOADS, LawOfLoad
+from models.files.names import faults_of_names
+from models.files.schema import ElasticTable, SceneTable
 from models.scene import Scene
-from models.schema import SceneTable
-from models.toml_text import tables
 
-SCENE_FOLDER = Path(__file__).parent / "scenes"
+SCENE_FOLDER = Path(__file__).parents[1] / "scenes"
 """Of folders of scene files, one for each kind."""
 KINEMATICS = "kinematics"
 """The kind that is meant where none is named, and all its scenes where no scene is."""
@@ -270,8 +267,7 @@ def _line(
 
 def _keys_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
     """The keys that the table holding the unknown key ``loc`` may have."""
-    from models import schema
-    from models.elastic_schema import ElasticTable
+    from models.files import schema
 
     tables: dict[str, type[BaseModel]] = {
         "ground": schema.GroundTable,

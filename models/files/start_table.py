@@ -1,15 +1,44 @@
-"""What a scene says of its free motion that can not be: of a start, of masses, of friction."""
+"""From the table `[start]` of a scene file to a start, and what is wrong with its names."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import Any
 
-from models.controlled import Controlled
-from models.released import Released
-from models.scene import Scene
+from models.driver import Controlled, Released
+from models.errors import cut, few
+from models.files.schema import StartTable
+from models.scene import Scene, Start
 from models.tabulated import Tabulated
+
+OF_LINKS, OF_SLIDERS = ("angles_deg", "rates_rad_s"), ("displacements_m", "speeds_m_s")
+
+
+def start_of(table: StartTable) -> Start:
+    """The start, angles in radians."""
+    return Start(
+        {link: math.radians(angle) for link, angle in table.angles_deg.items()},
+        dict(table.rates_rad_s),
+        dict(table.displacements_m),
+        dict(table.speeds_m_s),
+        table.shape,
+    )
+
+
+def faults_of_start(
+    start: Mapping[str, Any], links: Mapping[str, Any], sliders: Mapping[str, Any]
+) -> Iterator[str]:
+    """One line per link or slider of the raw table that the scene has not."""
+    for keys, known in ((OF_LINKS, links), (OF_SLIDERS, sliders)):
+        for key in keys:
+            table = start.get(key)
+            for name in table if isinstance(table, Mapping) else ():
+                if name not in known:
+                    have = f"use one of {few(map(cut, known), 12)}" if known else "there is none"
+                    yield f"start.{key}: found {cut(name)}; {have}"
+
 
 SAME = 1e-9
 """Numbers that a file says twice, in degrees once and once in radians, agree to so much."""

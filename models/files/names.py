@@ -1,7 +1,7 @@
 """References within a scene file to things that it does not have.
 
 Read from the raw tables, so that these faults are reported beside faults of number or type: what
-does not have the right shape is left out here, and is a fault of `models.schema`.
+does not have the right shape is left out here, and is a fault of `models.files.schema`.
 """
 
 from __future__ import annotations
@@ -11,13 +11,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain, islice
 from typing import Any
 
-from models.driver_names import faults_of_driver
-from models.elastic_tables import faults_of_elastic
-from models.errors import cut
-from models.friction_names import faults_of_friction
+from models.errors import cut, few
+from models.files.elastic_table import faults_of_elastic
+from models.files.spring_table import faults_of_friction, faults_of_springs
+from models.files.start_table import faults_of_start
 from models.scene import GROUND
-from models.spring_tables import faults_of_springs
-from models.start_table import faults_of_start
 
 MOST_ASSEMBLIES = 6
 """Of a group of four links: the real ones that it has at most."""
@@ -141,3 +139,69 @@ def _branch(
             )
         elif name not in links and chosen not in (-1, 1):
             yield f"branch.{cut(name)}: found {cut(str(chosen))}; use 1 or -1"
+
+
+def faults_of_driver(
+    driver: Mapping[str, Any],
+    points: Mapping[str, set[str]],
+    sliders: Mapping[str, Any],
+    ground: set[str],
+) -> Iterator[str]:
+    """One line per fault of the raw table; what has the wrong shape is a fault of the schema."""
+    link, pin, slider = driver.get("link"), driver.get("pin"), driver.get("slider")
+    if isinstance(link, str):
+        if link not in points:
+            yield f"driver.link: found {cut(link)}; use one of {few(map(cut, points), LISTED)}"
+        elif not points[link] & ground:
+            yield (
+                f"driver.link: {cut(link)} has no ground pin to turn about; give it a ground "
+                "point, or drive the pin of two links: pin = ..., links = [..., ...]"
+            )
+    if isinstance(slider, str) and slider not in sliders:
+        have = f"use one of {few(map(cut, sliders), LISTED)}" if sliders else "the scene has none"
+        yield f"driver.slider: found {cut(slider)}; {have}"
+    if isinstance(pin, str):
+        yield from _of_pin(pin, driver.get("links"), points, _blocks(sliders), ground)
+
+
+def _blocks(sliders: Mapping[str, Any]) -> dict[str, str]:
+    """The points of blocks, and the sliders whose they are, as far as the raw tables tell."""
+    return {
+        str(table.get("point", name)): name
+        for name, table in sliders.items()
+        if isinstance(table, Mapping) and "link" not in table
+    }
+
+
+def _of_pin(
+    pin: str,
+    named: object,
+    points: Mapping[str, set[str]],
+    blocks: Mapping[str, str],
+    ground: set[str],
+) -> Iterator[str]:
+    """A pin that is none, or does not join the links that are named."""
+    joined = [GROUND] * (pin in ground) + [name for name, own in points.items() if pin in own]
+    if len(joined) == 1 and pin in blocks:
+        yield (
+            f"driver.pin: found {cut(pin)}, by which {joined[0]} turns against the block of slider "
+            f"{cut(blocks[pin])}; drive that slider, slider = {cut(blocks[pin])!r}, or a pin of "
+            "two links"
+        )
+        return
+    if len(joined) < 2:
+        what = f"it is a point of {joined[0]} alone" if joined else "no body has such a point"
+        yield f"driver.pin: found {cut(pin)}, and {what}; name a point that two bodies share"
+        return
+    both = few(map(cut, joined), LISTED)
+    if named is None:
+        if len(joined) > 2:
+            yield f"driver.links: missing, and pin {cut(pin)} joins {both}; name two of them"
+        return
+    if not (isinstance(named, list) and all(isinstance(name, str) for name in named)):
+        return
+    for name in named:
+        if name not in joined:
+            yield f"driver.links: pin {cut(pin)} joins {both}, not {cut(name)}; name two of them"
+    if len(named) == 2 and named[0] == named[1]:
+        yield f"driver.links: found {cut(named[0])} twice; pin {cut(pin)} joins {both}"

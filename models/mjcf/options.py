@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from xml.sax.saxutils import quoteattr
 
 from models.laws import ConstantSpeed
 from models.poses import inertia_scale
@@ -87,3 +88,25 @@ def armature(scene: Scene, writing: Writing) -> float:
     if not writing.flywheel:
         return 0.0
     return writing.flywheel_ratio * inertia_scale(scene) / scene.driver_arm_m**2
+
+
+AttributeRow = dict[str, AttributeValue]
+
+
+def attributes(row: Attributes) -> str:
+    """Attributes of an element; numbers in the shortest form that reads back as the same double."""
+    return "".join(f" {name}={quoteattr(_text(value))}" for name, value in row.items())
+
+
+def _text(value: AttributeValue) -> str:
+    """A value as MJCF text."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, int | float):
+        return repr(value if isinstance(value, int) else float(value) + 0.0)
+    return " ".join(_text(number) for number in value)
+
+
+def commentable(text: str) -> str:
+    """Text that may stand in an XML comment, where two hyphens would end it."""
+    return text.replace("--", "- -").replace("--", "- -")

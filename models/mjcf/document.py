@@ -9,29 +9,41 @@ The assembled state is the keyframe ``assembled``.
 A massless slider block needs no body: the body that it would be pinned to carries a slide and a
 hinge. The crank is driven by a flywheel: an ``armature`` on its hinge so heavy that the mechanism
 cannot change its speed. A law other than constant speed comes as a control stream: the motor's
-control is the angular acceleration of the crank. Loads are actuators too (`models.mjcf_loads`),
-constant friction is in the joints (`models.mjcf_friction`), springs are tendons
-(`models.mjcf_springs`).
+control is the angular acceleration of the crank. Loads are actuators too, constant friction is in
+the joints, springs are tendons (`models.mjcf.forces`).
 """
 
 from __future__ import annotations
 
 from xml.sax.saxutils import quoteattr
 
-from models.controlled import Controlled
-from models.driven_freedom import driven_freedom
-from models.driver_course import driver_rates
+from models.driver import Controlled, driver_rates
 from models.errors import EngineError
 from models.joints import bodies, local_point
-from models.mjcf_friction import friction_of, planned
-from models.mjcf_loads import load_actuators, load_sites, load_sizes
-from models.mjcf_options import Attributes, Writing, armature, exact, has_control
-from models.mjcf_springs import spring_points, spring_tendons, tendon_lines
-from models.mjcf_text import AttributeRow, attributes, commentable
+from models.mjcf.forces import (
+    friction_of,
+    load_actuators,
+    load_sites,
+    load_sizes,
+    planned,
+    spring_points,
+    spring_tendons,
+    tendon_lines,
+)
+from models.mjcf.options import (
+    AttributeRow,
+    Attributes,
+    Writing,
+    armature,
+    attributes,
+    commentable,
+    exact,
+    has_control,
+)
 from models.motion import State
 from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
-from models.tree import Limb, Tree
+from models.tree import Limb, Tree, driven_freedom
 
 LEAST_MASS = 1e-15
 """MuJoCo refuses moving bodies with a mass [kg] or inertia [kg m^2] below this (mjMINVAL)."""

@@ -6,13 +6,12 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from models.cut_links import line_of
 from models.elastic import ElasticLink
-from models.elastic_line import line_of
-from models.elastic_schema import ElasticTable
 from models.errors import cut, few
+from models.files.schema import ElasticTable, SceneTable
 from models.laws import ConstantSpeed, Oscillating
 from models.scene import Scene
-from models.schema import SceneTable
 
 SAME = 1e-9
 """What masses and lengths that a file says twice agree to."""

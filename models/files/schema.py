@@ -2,23 +2,143 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Literal
 
-from pydantic import Field, StrictInt, StringConstraints, model_validator
-
-from models.elastic_schema import ElasticTable
-from models.table_fields import (
-    MOST_BODIES,
-    MOST_POINTS,
-    Coordinates,
-    Degrees,
-    Name,
-    NonNegative,
-    Number,
-    Positive,
-    Table,
-    Text,
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    StrictInt,
+    StringConstraints,
+    model_validator,
 )
+
+from models.driver import LONGEST_S
+
+NAME = r"[A-Za-z][A-Za-z0-9_-]{0,39}"
+"""What a name is: nothing in it leaves a path, a tag or a cell."""
+Name = Annotated[str, StringConstraints(pattern=rf"^{NAME}$")]
+ACTING = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u206f\ufffe\uffff"
+"""Characters that act instead of being seen: a terminal obeys them, or they break lines or turn the
+order of letters round; the last two XML can not hold."""
+Text = Annotated[str, StringConstraints(max_length=2000, pattern=rf"^[^{ACTING}]*$")]
+"""Text that is shown and written into other files."""
+LARGEST = 1e15
+"""No number of a scene is larger, and no length or mass smaller than its inverse: squares of
+them, and products with rates, stay numbers."""
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-LARGEST, le=LARGEST)]
+Duration = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST, le=LONGEST_S)]
+"""Of free motion [s]."""
+Degrees = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=1e6)]
+Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST, le=LARGEST)]
+NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=LARGEST)]
+Coordinates = tuple[Number, Number]
+MOST_BODIES, MOST_POINTS = 1000, 100
+"""Links of a scene (sliders, and points of the ground, too), and points of a link: the distances
+between all points of a link are looked at many times."""
+
+
+def not_tiny(value: float) -> float:
+    """Refuse a number so near to 0 that its inverse, a period, is no number to work with."""
+    if 0.0 < abs(value) < 1 / LARGEST:
+        raise ValueError(
+            f"found {value:g}; use {1 / LARGEST:g} or more, or {-1 / LARGEST:g} or less"
+        )
+    return value
+
+
+RateNumber = Annotated[Number, AfterValidator(not_tiny)]
+
+
+class Table(BaseModel):
+    """A table of the file: unknown keys are faults, nothing is changed after reading."""
+
+    # Built where a scene has such a table: most have few of them, and each takes a millisecond.
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
+
+
+SECTION = "width_m and height_m, or area_m2 and second_moment_m4"
+Section = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST**2, le=LARGEST)]
+"""What goes with squares of lengths, and their squares: that of a thin strip is under 1e-15."""
+
+
+class ElasticTable(Table):
+    """How a link bends, stretches, or both: by its modulus and section, or by EI and EA. With a
+    density its section says its mass, which otherwise is that of the link."""
+
+    modulus_pa: Positive | None = None
+    width_m: Positive | None = None
+    height_m: Positive | None = None
+    """Of a rectangle, in the plane of the motion."""
+    area_m2: Section | None = None
+    second_moment_m4: Section | None = None
+    flexural_n_m2: Section | None = None
+    axial_n: Positive | None = None
+    density_kg_m3: Positive | None = None
+    damping_s: NonNegative = 0.0
+    bends: bool = True
+    stretches: bool = False
+
+    @property
+    def area(self) -> float | None:
+        """Of the section [m^2]."""
+        if self.width_m is not None and self.height_m is not None:
+            return self.width_m * self.height_m
+        return self.area_m2
+
+    @property
+    def second_moment(self) -> float | None:
+        """Of the area, about the axis across the plane [m^4]."""
+        if self.width_m is not None and self.height_m is not None:
+            return self.width_m * self.height_m**3 / 12.0
+        return self.second_moment_m4
+
+    @property
+    def flexural(self) -> float | None:
+        """EI [N m^2]."""
+        if self.modulus_pa is not None and self.second_moment is not None:
+            return self.modulus_pa * self.second_moment
+        return self.flexural_n_m2
+
+    @property
+    def axial(self) -> float | None:
+        """EA [N]."""
+        if self.modulus_pa is not None and self.area is not None:
+            return self.modulus_pa * self.area
+        return self.axial_n
+
+    @model_validator(mode="after")
+    def _has_one_section(self) -> ElasticTable:
+        rectangle, other = (self.width_m, self.height_m), (self.area_m2, self.second_moment_m4)
+        if self.width_m is not None and self.height_m is None:
+            raise ValueError("width_m goes with height_m, which is missing")
+        if None not in rectangle and any(each is not None for each in other):
+            raise ValueError(f"found two sections; give one: {SECTION}")
+        if self.modulus_pa is not None and (self.flexural_n_m2 or self.axial_n):
+            raise ValueError(
+                "modulus_pa with a section says flexural_n_m2 and axial_n too; give one of them"
+            )
+        if self.density_kg_m3 is not None and self.area is None:
+            raise ValueError(f"density_kg_m3 goes with a section: {SECTION}")
+        return self
+
+    @model_validator(mode="after")
+    def _gives_way(self) -> ElasticTable:
+        if not (self.bends or self.stretches):
+            raise ValueError("it neither bends nor stretches; leave the table out")
+        missing = [
+            f"{key} (or modulus_pa with {SECTION})"
+            for key, asked, value in (
+                ("flexural_n_m2", self.bends, self.flexural),
+                ("axial_n", self.stretches, self.axial),
+            )
+            if asked and value is None
+        ]
+        if missing:
+            raise ValueError(f"its stiffness is missing: give {' and '.join(missing)}")
+        return self
 
 
 class GroundTable(Table):
@@ -121,7 +241,7 @@ class StartTable(Table):
 
 class FrictionTable(Table):
     """What rubs in the joint that the table is named after; whether its keys fit a pin or a slider
-    is for `models.friction_names` to say, which knows the joints."""
+    is for `models.files.spring_table` to say, which knows the joints."""
 
     mu: NonNegative | None = None
     radius_m: Positive | None = None
@@ -142,8 +262,8 @@ class FrictionTable(Table):
 
 
 class SceneTable(Table):
-    """A whole scene file; its driver is checked by `models.driver_tables.DRIVERS` after its law is
-    known, its loads by `models.load_tables.LOADS`."""
+    """A whole scene file; its driver is checked by `models.files.driver_table.DRIVERS` after its
+    law is known, its loads by `models.files.load_table.LOADS`."""
 
     name: Name
     source: Annotated[Text, StringConstraints(min_length=1)]
@@ -160,3 +280,8 @@ class SceneTable(Table):
     springs: dict[Name, SpringTable] = Field(default_factory=dict, max_length=MOST_BODIES)
     start: StartTable = Field(default_factory=StartTable)
     elastic: dict[Name, ElasticTable] = Field(default_factory=dict, max_length=MOST_BODIES)
+
+
+def within_a_turn(degrees: float) -> float:
+    """An angle that counts but for whole turns, in radians: without them it loses no digits."""
+    return math.radians(math.fmod(degrees, 360.0))
