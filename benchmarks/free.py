@@ -29,7 +29,7 @@ from analytic.free.machine import Machine
 from analytic.free.release import release
 from models.array import Array
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.output.provenance import processor
 from sim.registry import engine

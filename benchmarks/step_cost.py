@@ -14,7 +14,7 @@ from contextlib import closing
 import numpy as np
 
 from analytic.kinematics import solve
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.laws import ConstantSpeed
 from models.motion import State
 from models.scene import Scene

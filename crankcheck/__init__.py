@@ -56,9 +56,8 @@ if TYPE_CHECKING:
         SceneError,
         StructureError,
     )
-    from models.files import load_scene
-    from models.forces import Forces
-    from models.motion import Motion, State
+    from models.files.reading import load_scene
+    from models.motion import Forces, Motion, State
     from models.scene import Scene
     from reports.causes.cause import Cause
     from reports.compare.errors import Error, Errors
@@ -134,9 +133,9 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
             case "CrankcheckError" | "EngineError" | "ReachError" | "SceneError" | "StructureError":
                 from models import errors as home
             case "load_scene":
-                from models import files as home
+                from reports.own_model.sentences import reading as home
             case "Forces":
-                from models import forces as home
+                from models import motion as home
             case "Motion" | "State":
                 from models import motion as home
             case "Scene":

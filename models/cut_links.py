@@ -4,7 +4,7 @@
 
     A o-----@-----@-----@ ... -----o B        n pieces, n - 1 nodes between them and one at each pin
 
-The bodies are the pieces (`models.segmented`) or the nodes (`models.beamed`).
+The bodies are the pieces or the nodes (`models.cut_scenes`).
 """
 
 from __future__ import annotations
@@ -18,14 +18,12 @@ from functools import cached_property
 import numpy as np
 
 from models.array import Array
-from models.beams import Beam
-from models.elastic_line import Line, line_of
+from models.elastic import Beam
 from models.errors import CrankcheckError
-from models.loads import Load
+from models.joints import joined_at, less, turned
+from models.loads import Load, PinSpring, Spring
 from models.motion import ElasticMotion, LinkMotion, Motion
-from models.scene import Link, Point, Scene
-from models.springs import PinSpring, Spring
-from models.start import Start
+from models.scene import Link, Point, Scene, Start
 
 
 @dataclass(frozen=True)
@@ -177,3 +175,39 @@ class CutScene(ABC):
         nodes = self.nodes(link)
         low, high = nodes[self.count // 2], nodes[(self.count + 1) // 2]
         return 0.5 * (motion.points[low].position + motion.points[high].position)
+
+
+@dataclass(frozen=True)
+class Line:
+    """From the first of two ``pins`` to the second, in the frame of the link: from ``start`` [m],
+    at ``lean_rad``, ``length_m`` long."""
+
+    pins: tuple[str, str]
+    start: Point
+    lean_rad: float
+    length_m: float
+    density_kg_m: float
+
+    def at(self, x: float) -> Point:
+        """The place on it that is x from the first pin [m], in the frame of the link."""
+        c, s = turned((x, 0.0), self.lean_rad)
+        return self.start[0] + c, self.start[1] + s
+
+    def along(self, place: Point) -> Point:
+        """A place in the frame of the link as x along the line from the first pin, and y across."""
+        return turned(less(place, self.start), -self.lean_rad)
+
+
+def line_of(scene: Scene, link: str) -> Line:
+    """The line of a link that has two pins."""
+    own, joined = scene.links[link], joined_at(scene)
+    first, second = (point for point in own.points if link in joined.get(point, ()))
+    (ax, ay), (bx, by) = own.points[first], own.points[second]
+    length = math.hypot(bx - ax, by - ay)
+    lean = math.atan2(by - ay, bx - ax)
+    return Line((first, second), (ax, ay), lean, length, own.mass_kg / length)
+
+
+def with_rigid_links(scene: Scene) -> Scene:
+    """The scene with all its links rigid."""
+    return replace(scene, elastic={}, start=replace(scene.start, shape=None))

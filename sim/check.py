@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
-from models.controlled import Controlled
+from models.driver import Controlled
 from models.errors import EngineError
 from models.joints import bodies
+from models.loads import PinSpring
 from models.motion import State
 from models.poses import centre_of, frames, mass_of
 from models.scene import Scene
-from models.springs import PinSpring
 from sim.drive import pace, start_speed
 from sim.engine import Drive, Engine, Facts
 from sim.measure import gaps

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from models.array import Array
-from models.forces import Forces, SliderForces
 from models.joints import block_name, joined_at, joints, riding_body
+from models.motion import Forces, SliderForces
 from models.scene import Scene
 from sim.momentum_balance import JointPushes
 

@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 
 from models.array import Array
-from models.forces import Forces
+from models.motion import Forces
 from models.scene import Scene
 from sim.energy import energy
 from sim.engine import BodyPose, Cost, Facts, ForceSession, Log, Poses, Run, Session, Status

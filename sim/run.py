@@ -80,7 +80,7 @@ def run(
     if scene.elastic:
         raise EngineError(
             f"{scene.name}: {', '.join(scene.elastic)} bends, and an engine is given rigid "
-            "segments for it: `models.segmented.SegmentedScene(scene, count).rigid`"
+            "segments for it: `models.cut_scenes.SegmentedScene(scene, count).rigid`"
         )
     try:
         refuse_unknown_forces(scene, chosen, with_forces=with_forces, applying_beams=applying_beams)

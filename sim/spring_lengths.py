@@ -8,15 +8,15 @@ from dataclasses import replace
 import numpy as np
 
 from models.array import Array
+from models.joints import line_ends, whole_turns
+from models.loads import LineSpring, PinSpring
 from models.scene import Scene
-from models.spring_ends import line_ends, whole_turns
-from models.springs import LineSpring, PinSpring
 from sim.engine import Poses
 from sim.measure import PointPath, body_paths, motion
 
 
 def spring_lengths(scene: Scene, poses: Poses) -> Mapping[str, Array]:
-    """The q (T,) [m or rad] of each spring at the positions of the poses; see `models.springs`.
+    """The q (T,) [m or rad] of each spring at the positions of the poses; see `models.loads`.
 
     The first sample is taken as the start, from which whole turns in pins are counted.
     """

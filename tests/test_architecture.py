@@ -46,11 +46,11 @@ FLOORS: Mapping[str, str] = {
         lectures
         elastic
         free
-        circuits mechanism forces in_assembly
-        nearness kinematics
+        circuits mechanism forces
+        kinematics
         prepared
         assur
-        change_points reach result
+        change_points result
         turns
         dyads
         structure multibody

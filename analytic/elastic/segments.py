@@ -4,7 +4,7 @@
 
     A o--1--@--2--@--3--@ ... --n--o B        @ a pin with a spring, n - 1 of them
 
-The chain that `models.segmented` makes of an elastic link, as a body of the multibody form: so an
+The chain that `models.cut_scenes` makes of an elastic link, as a body of the multibody form: so an
 engine's chain has an exact one beside it. Its coordinates are those of the first segment, then the
 angle of each segment against the one before it.
 """
@@ -17,13 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.multibody.body_set import Marker, Markers
+from analytic.multibody.bodies import Marker, Markers
 from models.array import Array
+from models.cut_links import Line
+from models.cut_scenes import segment_spring
 from models.elastic import ElasticLink
-from models.elastic_line import Line
 from models.joints import turned
 from models.scene import Point
-from models.segmented import segment_spring
 
 Complexes = NDArray[np.complex128]
 

@@ -15,10 +15,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from analytic.dyads.plane import Vec
-from analytic.forces.balance import Balance, PrismaticPair
 from analytic.forces.bounded import NOUGHT, NOWHERE, Bounded, BoundedVec
-from analytic.structure.compound import as_triad
-from analytic.structure.groups import Group, JointKey, Leg, Triad
+from analytic.forces.free_body import Balance, PrismaticPair
+from analytic.structure.groups import Group, JointKey, Leg, Triad, as_triad
 from models.joints import local_point
 from models.scene import Point
 

@@ -18,12 +18,11 @@ import numpy as np
 
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import Real
-from analytic.forces.balance import Balance, Displaced, PrismaticPair
 from analytic.forces.bounded import Bounded, BoundedVec
-from analytic.forces.free_body import FreeBody
+from analytic.forces.free_body import Balance, Displaced, FreeBody, PrismaticPair
 from analytic.structure.mobility import Structure
 from models.errors import CrankcheckError, few
-from models.friction import ConstantFriction, Friction
+from models.loads import ConstantFriction, Friction
 from models.scene import GROUND, Scene
 
 STILL = 1e-12

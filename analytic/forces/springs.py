@@ -14,16 +14,14 @@ import numpy as np
 
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS, PointKinematics, Real, Vec
-from analytic.forces.balance import PrismaticPair
 from analytic.forces.bounded import Bounded, BoundedVec
-from analytic.forces.free_body import FreeBody
+from analytic.forces.free_body import FreeBody, PrismaticPair
 from analytic.kinematics import counted_angle, unit_chunk
 from analytic.prepared import prepared
 from models.array import Array
-from models.joints import block_name, local_point
+from models.joints import block_name, local_point, whole_turns
+from models.loads import LineSpring, PinSpring, SlideSpring, Spring
 from models.scene import GROUND, KEPT, Same, Scene
-from models.spring_ends import whole_turns
-from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 
 Stretch = tuple[Bounded, Bounded]
 """The q of a spring [m or rad] and its rate q' [m/s or rad/s]."""

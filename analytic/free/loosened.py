@@ -11,12 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.in_assembly import in_assembly
-from analytic.kinematics import solve
+from analytic.kinematics import in_assembly, solve
+from models.driver import Released, let_go
 from models.errors import CrankcheckError
 from models.laws import ConstantSpeed
 from models.motion import Motion
-from models.released import Released, let_go
 from models.scene import Driver, Scene
 
 STILL = 1e-9
@@ -24,7 +23,7 @@ STILL = 1e-9
 
 
 def loosened(scene: Scene, duration_s: float | None = None) -> Scene:
-    """The scene let go, as `models.released.let_go` has it, of whatever joint its driver is.
+    """The scene let go, as `models.driver.let_go` has it, of whatever joint its driver is.
 
     Raises
     ------

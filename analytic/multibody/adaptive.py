@@ -17,8 +17,14 @@ from scipy.integrate import DOP853  # type: ignore[import-untyped]  # ships no s
 from scipy.optimize import brentq  # type: ignore[import-untyped]
 
 from analytic.multibody.dynamics import Dynamics
-from analytic.multibody.generalised_forces import Strokes
-from analytic.multibody.runaway import Pace
+from analytic.multibody.generalised_forces import (
+    Strokes,
+    Switch,
+    edges,
+    state_cells,
+    strokes,
+    switches,
+)
 from analytic.multibody.singular_passage import (
     CLOSE,
     LEAST,
@@ -28,9 +34,7 @@ from analytic.multibody.singular_passage import (
     singular_at,
     smallest_singular,
 )
-from analytic.multibody.state_history import StateHistory
-from analytic.multibody.steps import Steps
-from analytic.multibody.switches import Switch, edges, state_cells, strokes, switches
+from analytic.multibody.steps import Pace, StateHistory, Steps
 from models.array import Array
 from models.errors import CrankcheckError
 

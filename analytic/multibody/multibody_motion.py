@@ -12,19 +12,15 @@ from scipy.linalg import qr  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.multibody.adaptive import Adaptive
 from analytic.multibody.as_motion import as_motion
-from analytic.multibody.configuration import Configuration
-from analytic.multibody.dynamics import Dynamics
-from analytic.multibody.energy_balance import EnergyBalance
-from analytic.multibody.fixed_steps import FixedSteps
-from analytic.multibody.joint_forces import joint_forces
+from analytic.multibody.bodies import Configuration, EnergyBalance
+from analytic.multibody.dynamics import Dynamics, joint_forces
+from analytic.multibody.generalised_forces import edges
 from analytic.multibody.outset import Outset
 from analytic.multibody.singular_passage import SingularPassage
-from analytic.multibody.state_history import StateHistory
-from analytic.multibody.switches import edges
-from models.array import Array, Mask
+from analytic.multibody.steps import FixedSteps, StateHistory
+from models.array import Array, Mask, from_end, samples
 from models.errors import CrankcheckError
 from models.motion import Motion
-from models.samples import from_end, samples
 from models.scene import Scene
 
 TOLERANCE = 1e-13

@@ -8,8 +8,8 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from models.errors import suggestion
+from models.files.schema import LARGEST, MOST_BODIES, Degrees, Name, Number, Table, Text
 from models.lectures.scheme import FREEDOMS, PLANAR
-from models.table_fields import LARGEST, MOST_BODIES, Degrees, Name, Number, Table, Text
 
 Vector = Annotated[list[Number], Field(min_length=2, max_length=3)]
 Radius = Annotated[float, Field(strict=True, allow_inf_nan=True, ge=-LARGEST)]

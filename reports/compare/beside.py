@@ -12,7 +12,7 @@ import numpy as np
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve, solve_driven
 from models.array import Array
-from models.driver_course import driver_place
+from models.driver import driver_place
 from models.motion import Motion, State
 from models.scene import Same, Scene
 from reports.compare.completeness import incomplete

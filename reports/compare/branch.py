@@ -8,8 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.in_assembly import choices, chosen_groups
-from analytic.kinematics import solve
+from analytic.kinematics import choices, chosen_groups, solve
 from analytic.structure.mobility import analyse
 from models.array import Mask
 from models.errors import CrankcheckError

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from models.forces import Forces
+from models.motion import Forces
 from reports.compare.errors import Error
 from reports.compare.facts import ForceFacts, Unbalanced
 from reports.output.numbers import count

@@ -11,8 +11,8 @@ import numpy as np
 from analytic.free.window_chain import ChainMotion
 from models.array import Array
 from models.errors import CrankcheckError
+from models.hard import Chain
 from models.motion import Motion
-from models.window_chain import Chain
 from reports.compare.branch import AWAY_RAD, CLOSED, HERE_RAD
 from reports.compare.errors import Departure
 from sim.engine import Engine, Run, SettingValue

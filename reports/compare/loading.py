@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.array import Array
-from models.driver_course import driver_course
+from models.driver import driver_course
 from models.errors import CrankcheckError
 from models.joints import block_name, blocks, local_point
 from models.loads import Load

@@ -19,10 +19,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from models.array import Array
+from models.driver import Released
+from models.loads import LineSpring, PinSpring, SlideSpring, Spring
 from models.motion import State
-from models.released import Released
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
-from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from sim.engine import Poses
 from sim.measure import motion
 

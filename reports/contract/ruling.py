@@ -9,7 +9,7 @@ from functools import partial
 from typing import Literal
 
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.contract.clause import Clause
 from reports.contract.clauses import CLAUSES
 from reports.contract.subject import NotTriedError, Subject

@@ -11,9 +11,8 @@ import numpy as np
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import EngineError
-from models.forces import Forces
 from models.laws import Law
-from models.motion import State
+from models.motion import Forces, State
 from models.scene import Same, Scene
 from reports.compare.beside import Beside, truth_of
 from reports.compare.compare import compare

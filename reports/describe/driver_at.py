@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
+from models.driver import LONGEST_S, passing
 from models.errors import CrankcheckError
 from models.laws import MOST_TURNS
-from models.passing import passing
-from models.released import LONGEST_S
 from models.scene import Scene
 
 MOST_DEG = 1e6

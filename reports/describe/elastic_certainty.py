@@ -8,10 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.elastic.discretisation import Discretisation, Elements, Segments
-from analytic.elastic.elastic_doubt import ElasticDoubt
+from analytic.elastic.discretisation import Discretisation, ElasticDoubt, Elements, Segments
+from analytic.elastic.elastic_motion import ElasticHistory
 from analytic.elastic.released import ReleasedElasticMotion
-from analytic.elastic.sampled import ElasticHistory
 from models.array import Array
 from models.motion import Motion
 from reports.describe.elastic_words import described

@@ -8,16 +8,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analytic.elastic.elastic_motion import ElasticHistory, bent, sampled
 from analytic.elastic.released import ReleasedElasticMotion
-from analytic.elastic.sampled import ElasticHistory, bent, sampled
 from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
 from analytic.kinematics import solve
 from models.array import Array
-from models.controlled import Controlled
+from models.cut_links import with_rigid_links
+from models.driver import Controlled
 from models.elastic import Shape
 from models.motion import Motion
-from models.rigid import with_rigid_links
 from models.scene import Scene
 from reports.describe.elastic_words import described
 

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.table import Table
 
+from analytic.elastic.elastic_motion import ElasticHistory, energies
 from analytic.elastic.released import ReleasedElasticMotion
-from analytic.elastic.sampled import ElasticHistory, energies
 from models.array import Array
-from models.elastic_line import line_of
+from models.cut_links import line_of
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.elastic_course import SHARES, ElasticCourse

@@ -7,8 +7,8 @@ import math
 from collections.abc import Iterator
 
 from analytic.elastic.discretisation import Discretisation, Elements, Modes, Polynomials
+from models.cut_links import line_of
 from models.elastic import ElasticLink, Shape
-from models.elastic_line import line_of
 from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.output.numbers import count, listed, readable

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from analytic.kinematics import reach
 from analytic.mechanism.cycle import Along, Output
 from analytic.mechanism.fourbar import FourBar
-from analytic.mechanism.speeds import ExtremeSpeed, extreme_speeds
-from analytic.mechanism.travel import Travel, travels
+from analytic.mechanism.travel import ExtremeSpeed, Travel, extreme_speeds, travels
 from analytic.structure.mobility import Structure
 from models.errors import CrankcheckError, StructureError
 from models.laws import ConstantSpeed, FromRest, Law, Oscillating
@@ -52,7 +51,7 @@ def speed_facts(
 ) -> SpeedFacts | None:
     """The largest and smallest speeds of links, sliders and points along directions, at the
     driver's angles at which they have no acceleration; None where a cycle of the mechanism has
-    none. ``clockwise`` turns a driver of one speed round, as in `models.passing`."""
+    none. ``clockwise`` turns a driver of one speed round, as in `models.driver`."""
     try:
         every = extreme_speeds(scene, _outputs(scene, along))
     except CrankcheckError:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from models.array import Array
-from models.forces import Forces
+from models.motion import Forces
 
 
 def acted_on(acting: Forces) -> Iterator[tuple[str, str, str, Array]]:

@@ -9,10 +9,8 @@ import numpy as np
 from rich.table import Table
 
 from models.array import Array
-from models.driver_course import driver_course, driver_place
-from models.driver_shown import driver_shown, driver_unit
-from models.forces import Forces
-from models.motion import Motion
+from models.driver import driver_course, driver_place, driver_shown, driver_unit
+from models.motion import Forces, Motion
 from models.scene import Scene
 from reports.describe.force_frame import acted_on
 from reports.describe.friction import (

@@ -9,8 +9,7 @@ from rich.table import Table
 from analytic.forces.efficiency import Efficiency, PowerFlow, efficiency, friction_power, power_flow
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError
-from models.forces import Forces
-from models.motion import Motion
+from models.motion import Forces, Motion
 from models.scene import Scene
 from reports.describe.tables import Columns, digits, head_table
 from reports.output.numbers import listed

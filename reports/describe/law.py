@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from models.controlled import Controlled
+from models.driver import Controlled, Released
 from models.laws import Accelerating, ConstantSpeed, FromRest, Oscillating
-from models.released import Released
 from models.scene import Scene
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from models.array import Array
-from models.forces import Forces
+from models.motion import Forces
 
 BESIDE = 5.0 / 360.0
 """The part of a turn on either side of a locked range that is not drawn."""

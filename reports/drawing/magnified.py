@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from models.elastic_line import line_of
+from models.cut_links import line_of
 from models.motion import Motion
 from models.scene import Scene
 

@@ -14,8 +14,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from models.array import Array
-from models.driver_course import driver_course
-from models.driver_shown import driver_axis, driver_unit
+from models.driver import driver_axis, driver_course, driver_unit
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene

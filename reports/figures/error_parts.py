@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
-from models.driver_shown import driver_axis
+from models.driver import driver_axis
 from models.scene import Scene
 from reports.drawing.moving import told_places
 from reports.figures.grids import grid

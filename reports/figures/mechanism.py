@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
-from models.driver_shown import driver_stands
+from models.driver import driver_stands
 from models.scene import Scene
 from reports.describe.law import describe_law
 from reports.drawing.gif import draw_bodies

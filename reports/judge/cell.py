@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from models.driver_shown import place_in_words
+from models.driver import place_in_words
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Scene

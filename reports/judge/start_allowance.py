@@ -2,10 +2,10 @@
 
 An impulse engine starts with velocities that belong half a step away from where its joints want
 them. The first solution makes up for that at once, by the jolt times the step
-(`analytic.forces.jolts`); from step to step it goes on as an error of place of jolt * step^2
-(`reports.judge.tolerance`). The jump is over with the next sample, or rings off where iterations
-leave a part of it. Differenced over two steps it is half as large; differenced twice, it is an
-acceleration of the jolt itself, at every step.
+(`analytic.forces.late_impulses`); from step to step it goes on as an error of place of jolt *
+step^2 (`reports.judge.tolerance`). The jump is over with the next sample, or rings off where
+iterations leave a part of it. Differenced over two steps it is half as large; differenced twice, it
+is an acceleration of the jolt itself, at every step.
 
 Measured for profile tuned at 90 to 1440 steps a turn on every shipped scene, and on a thousand
 random ones (tests/reports/judge/test_random.py), as multiples of ``step * jolt``, ``step * jolt /
@@ -32,7 +32,7 @@ the largest force at the start: up to 1.26, at 90 and 720 steps a turn on every 
 
 Elements of a beam that stand where the true line does are stretched, as a cubic can not bend
 without stretching somewhere, and set off by what that pushes their ends with
-(`models.beams.Beam.pushed`): of fourbar-elastic 0.13 of the driver's speed squared with 2 of them
+(`models.elastic.Beam.pushed`): of fourbar-elastic 0.13 of the driver's speed squared with 2 of them
 and 0.009 with 4, at every step, until that is damped.
 
 The caps are what anyone would call wrong, whatever the theory grants: a tenth of the driver's speed

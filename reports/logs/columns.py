@@ -12,10 +12,9 @@ import pandas as pd
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
 import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no types
 
-from models.array import Array
+from models.array import NO_NUMBERS, Array
 from models.errors import CrankcheckError, cut, suggestion
-from models.regular import UnreadableError, regular_bytes
-from models.samples import NO_NUMBERS
+from models.files.inputs import UnreadableError, regular_bytes
 from reports.logs.extent import refuse_columns, refuse_rows
 from reports.logs.text import Layout, text_columns
 from reports.logs.text_lines import row_line

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from models.regular import UnreadableError
+from models.files.inputs import UnreadableError
 
 MOST_ROWS = 2_000_000
 """Ten hours of samples at 60 Hz, half an hour at 1 kHz; judging them takes seconds."""

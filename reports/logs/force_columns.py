@@ -11,8 +11,8 @@ import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError, cut, few
-from models.forces import Forces, SliderForces
 from models.joints import joined_at
+from models.motion import Forces, SliderForces
 from models.scene import Scene
 from reports.logs.force_names import Place, drive_place, force_meaning, force_places, shown_names
 

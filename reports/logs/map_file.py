@@ -30,8 +30,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from models.errors import CrankcheckError, listed, shown, suggestion
-from models.regular import UnreadableError, regular_text
-from models.toml_text import tables
+from models.files.inputs import UnreadableError, regular_text, tables
 from reports.logs.channel import Channel, OwnLog
 from reports.logs.kinds import KINDS
 from reports.logs.spelling import DIMENSION

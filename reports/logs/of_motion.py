@@ -6,10 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from models.array import Array
+from models.array import Array, numbers, samples
 from models.errors import CrankcheckError, suggestion
 from models.motion import Motion
-from models.samples import numbers, samples
 from models.scene import Scene
 from reports.logs.channel import OwnLog
 from reports.logs.columns import Columns

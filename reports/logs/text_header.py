@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from models.regular import UnreadableError
+from models.files.inputs import UnreadableError
 from reports.logs.extent import refuse_columns
 from reports.logs.spelling import spelled_unit
 from reports.logs.text_fields import are_numbers, fields_of, is_number, separator_of

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from models.regular import UnreadableError
+from models.files.inputs import UnreadableError
 
 LOOK = 200_000
 """Bytes at the beginning in which the header, and the first row, must stand."""

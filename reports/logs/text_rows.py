@@ -10,7 +10,7 @@ import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
 import pyarrow.csv as pc  # type: ignore[import-untyped]  # ships no types
 
 from models.errors import cut
-from models.regular import UnreadableError
+from models.files.inputs import UnreadableError
 from reports.logs.extent import refuse_rows
 from reports.logs.text_fields import COMMA, SEPARATORS, is_number
 from reports.logs.text_header import TITLE, Header

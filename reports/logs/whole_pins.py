@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from models.forces import Forces
+from models.motion import Forces
 from reports.compare.beside import Truth
 
 

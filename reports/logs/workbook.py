@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from models.errors import cut, few, suggestion
-from models.regular import UnreadableError
+from models.files.inputs import UnreadableError
 from reports.logs.extent import refuse_columns, refuse_rows
 from reports.logs.text_fields import are_numbers
 from reports.logs.text_header import units_below, with_units

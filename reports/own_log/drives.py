@@ -9,7 +9,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from analytic.structure.cranked import refuse_other_than_cranked
+from analytic.structure.mobility import refuse_other_than_cranked
 from models.array import Array
 from models.errors import CrankcheckError, shown
 from models.laws import ConstantSpeed

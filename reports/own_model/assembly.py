@@ -9,12 +9,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.in_assembly import in_assembly
-from analytic.kinematics import reach, solve, solve_driven
+from analytic.kinematics import in_assembly, reach, solve, solve_driven
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, ReachError, few
+from models.files.names import MOST_ASSEMBLIES
 from models.laws import ConstantSpeed
-from models.names import MOST_ASSEMBLIES
 from models.poses import Frame, frames
 from models.scene import Driver, Scene
 from reports.own_model.request import ModelRequest

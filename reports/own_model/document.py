@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 
-from models.scene_text import scene_text
+from models.files.assemble import scene_text
 from reports.judge.rows import cell_row, error_row
 from reports.output.numbers import finite
 from reports.own_model.checked_line import CheckedLine

@@ -169,7 +169,7 @@ def _held_steps_s(scene: Scene, segments: int, springs: Springs) -> float:
     """Steps in a second that explicit methods hold so many segments with; 0 where a link stretches
     alone, and is no chain of them."""
     from analytic.elastic.discretisation import Segments
-    from analytic.elastic.stiffness import fastest_rad_s
+    from analytic.elastic.elastic_motion import fastest_rad_s
     from reports.compare.elastic.elastic_truth import STEADY
 
     if not all(link.bends for link in scene.elastic.values()):

@@ -12,8 +12,7 @@ import numpy as np
 
 from analytic.kinematics import repeats_after, solve, solve_driven
 from models.array import Array, Mask
-from models.driver_course import driver_course
-from models.driver_shown import driver_unit, place_in_words
+from models.driver import driver_course, driver_unit, place_in_words
 from models.errors import CrankcheckError, few
 from models.motion import Crossing, Motion
 from models.scene import Scene

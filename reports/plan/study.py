@@ -36,8 +36,7 @@ from pydantic import BaseModel, ConfigDict, Field, StrictFloat, StrictInt, Valid
 from pydantic_core import ErrorDetails
 
 from models.errors import CrankcheckError, cut, listed, shown, suggestion
-from models.regular import UnreadableError, regular_text
-from models.toml_text import tables
+from models.files.inputs import UnreadableError, regular_text, tables
 from reports.plan.yaml_text import value
 from sim.engine import SettingValue
 

@@ -12,8 +12,7 @@ import yaml
 from yaml.constructor import ConstructorError
 
 from models.errors import cut
-from models.parsed import DEEPEST, refuse_extreme
-from models.regular import UnreadableError
+from models.files.inputs import DEEPEST, UnreadableError, refuse_extreme
 
 MOST_VALUES = 5_000
 """Each counted as often as it is named by an alias: ten lines can stand for a billion values."""

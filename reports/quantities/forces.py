@@ -15,8 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from models.array import Array
-from models.forces import ForceBound, Forces
-from models.motion import Motion
+from models.motion import ForceBound, Forces, Motion
 from models.scene import Scene
 from reports.quantities.quantity import BodyKind, Criterion, Measure, Quantity, Series, Tolerance
 from sim.engine import Run

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from models.driver_course import driver_place
+from models.driver import driver_place
 from models.motion import Motion
 from models.scene import GROUND, Scene
 from reports.quantities.moving import every_place

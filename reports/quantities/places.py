@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from models.driver_course import driver_place
+from models.driver import driver_place
 from models.joints import joints
 from models.motion import Motion
 from models.scene import Scene

@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError, listed
-from models.files import find_scenes, parse_scene, scene_texts
+from models.files.reading import find_scenes, parse_scene, scene_texts
 from models.scene import Scene
 from reports.advise.advice import Advice, offers
 from reports.advise.choices import choices

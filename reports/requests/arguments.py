@@ -12,7 +12,7 @@ from typing import Any, cast
 import numpy as np
 
 from models.errors import CrankcheckError, shown, suggestion
-from models.files import every_shipped, load_scene
+from models.files.reading import every_shipped, load_scene
 from models.scene import KEPT, Scene
 from reports.output.numbers import listed
 from reports.plan.steps import positive

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast, get_args
 
-from models.controlled import Controlled
+from models.driver import Controlled
 from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.laws import ConstantSpeed, Oscillating
@@ -14,7 +14,7 @@ from reports.requests.arguments import is_true, one_of, whole_of
 
 if TYPE_CHECKING:  # a third of a second: not for scenes with rigid links
     from analytic.elastic.discretisation import Discretisation
-    from analytic.elastic.sampled import ElasticHistory
+    from analytic.elastic.elastic_motion import ElasticHistory
 
 MOST_MODES, MOST_ELEMENTS = 20, 12
 """More change nothing but the time that they take: the stiffest of them follow nothing."""
@@ -104,7 +104,7 @@ class ElasticChoice:
 
         Raises CrankcheckError for what can not be asked, and what it does not allow.
         """
-        from analytic.elastic.elastic_history import elastic_history
+        from analytic.elastic.control import elastic_history
 
         stiffened = not is_true(self.linear, "--linear")
         by, start = self.discretisation(scene), self.start(scene)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.elastic.sampled import ElasticHistory, sampled
+from analytic.elastic.elastic_motion import ElasticHistory, sampled
 from analytic.result import Selection
 from models.array import Array
 from models.errors import CrankcheckError

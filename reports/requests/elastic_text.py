@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from rich.console import Console
 
-from analytic.elastic.sampled import ElasticHistory
+from analytic.elastic.elastic_motion import ElasticHistory
 from analytic.structure.mobility import analyse
 from models.errors import StructureError
 from models.scene import Scene

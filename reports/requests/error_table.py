@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from rich.console import Console
 
-from models.driver_shown import driver_unit
+from models.driver import driver_unit
 from models.scene import Scene
 from reports.compare.errors import Error, ErrorKind, Errors, largest
 from reports.output.columns import plain_table

@@ -13,9 +13,9 @@ from rich.console import Console
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError, harmless
-from models.files import find_scene, load_scene
-from models.mjcf import build
-from models.mjcf_options import exact
+from models.files.reading import find_scene, load_scene
+from models.mjcf.document import build
+from models.mjcf.options import exact
 from models.motion import State
 from models.scene import Scene
 from reports.compare.free.kept_motion import released_state

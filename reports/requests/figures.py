@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.progress import track
 
 from models.errors import CrankcheckError, suggestion
-from models.table_fields import NAME
+from models.files.schema import NAME
 from reports.figures.all_figures import FIGURES
 from reports.figures.drawing import Drawing
 from reports.figures.saving import FORMATS, saved

@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from reports.output.write import check_file, write
 from reports.plan.steps import MOST_STEPS
 from reports.requests.export import opened

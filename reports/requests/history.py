@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
-from models.files import find_scenes
+from models.files.reading import find_scenes
 from reports.history.cache import alone, cache_folder
 from reports.history.document import page, table_text
 from reports.history.environments import EngineVersion, NotMeasuredError, ready, uv_here, wanted

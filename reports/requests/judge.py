@@ -12,8 +12,8 @@ from rich.console import Console
 
 from analytic.free.loosened import loosened
 from models.errors import CrankcheckError, harmless
-from models.files import find_scene, load_scene
-from models.one_or_more import names_in
+from models.files.inputs import names_in
+from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.judge.tolerance import check_names, parse, refuse_of_other_kinds
 from reports.logs.map_file import Map, read_map

@@ -13,7 +13,7 @@ from rich.console import Console
 
 from analytic.free.loosened import loosened
 from models.errors import CrankcheckError, harmless
-from models.files import find_scene
+from models.files.reading import find_scene
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.compare.free.kept_motion import released_state

@@ -3,7 +3,7 @@ for."""
 
 from __future__ import annotations
 
-from analytic.elastic.sampled import ElasticHistory
+from analytic.elastic.elastic_motion import ElasticHistory
 from analytic.free.free_motion import FreeMotion
 from models.scene import Scene
 from reports.describe.elastic_course import closely_sampled, drawn_course

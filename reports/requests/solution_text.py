@@ -9,7 +9,7 @@ from rich.console import Console
 from analytic.mechanism.cycle import Along
 from analytic.structure.groups import Bridge
 from analytic.structure.mobility import Structure
-from models.driver_course import driver_place
+from models.driver import driver_place
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene

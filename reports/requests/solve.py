@@ -15,12 +15,11 @@ from analytic import kinematics
 from analytic.mechanism.cycle import Along
 from analytic.result import Selection
 from analytic.structure.mobility import analyse
-from models.array import Array
+from models.array import Array, samples
 from models.errors import CrankcheckError, suggestion
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from models.laws import MOST_TURNS
 from models.motion import Motion
-from models.samples import samples
 from models.scene import Scene
 from reports.describe.driver_at import MOST_DEG, driver_at
 from reports.describe.facts import speed_facts

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rich.console import Console
 
-from analytic.elastic.sampled import ElasticHistory
+from analytic.elastic.elastic_motion import ElasticHistory
 from models.array import Array
 from models.errors import CrankcheckError, harmless
 from models.scene import Scene

@@ -17,7 +17,7 @@ from rich.text import Text
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
-from models.files import find_scenes, read_text
+from models.files.reading import find_scenes, read_text
 from reports.judge.three_steps import AT_ROUNDING
 from reports.output.provenance import crankcheck_version, provenance
 from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note

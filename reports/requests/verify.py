@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
-from models.files import find_scenes
+from models.files.reading import find_scenes
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked
 from reports.judge.tolerance import (

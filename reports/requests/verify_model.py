@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
-from models.scene_text import scene_text
+from models.files.assemble import scene_text
 from reports.judge.frames import cell_frame, error_frame
 from reports.judge.tolerance import parse
 from reports.output.frame_file import csv, parquet

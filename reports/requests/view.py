@@ -12,7 +12,7 @@ import typer
 from rich.console import Console
 
 from models.errors import harmless
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from reports.output.write import check_file, write
 from reports.requests.export import opened
 from reports.requests.options import SceneName

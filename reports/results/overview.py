@@ -10,7 +10,7 @@ import pandas as pd
 
 from analytic.free.loosened import loosened
 from models.errors import CrankcheckError
-from models.files import parse_scene
+from models.files.reading import parse_scene
 from models.scene import Scene
 from reports.plan.free import under_control
 from reports.results.candidates import Candidate, candidates

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, lru_cache
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.compare.elastic.elastic_truth import ChainTruth, ElasticTruth
 from reports.judge.cell import Cell

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Checked, check, examined
 from reports.judge.rules.rule import Finding

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, fields
 from typing import Literal
 
 from analytic.free.toggle_barrier import ToggleBarrier
+from models.cut_scenes import SegmentedScene
 from models.errors import CrankcheckError
+from models.hard import Chain
 from models.motion import State
 from models.scene import Scene
-from models.segmented import SegmentedScene
-from models.window_chain import Chain
 from reports.stability.matrix import CaseFacts, Outcome
 from sim.engine import Drive, SettingValue
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.nearness import nearness
+from analytic.kinematics import nearness
 from models.array import Array
 from models.joints import joints
 from models.motion import Motion

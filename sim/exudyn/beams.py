@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from models.beams import Beam
+from models.elastic import Beam
 from models.motion import State
 from models.poses import Frame
 from models.scene import Scene

@@ -9,11 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from models.array import Array
-from models.friction import ConstantFriction
 from models.joints import block_name, joined_at, sliding_angle
-from models.loads import Load
+from models.loads import ConstantFriction, Load, SlideSpring
 from models.scene import GROUND, Scene, Slider
-from models.springs import SlideSpring
 from sim.engine import Poses
 from sim.exudyn.friction import against, still_rad_s
 from sim.measure import motion

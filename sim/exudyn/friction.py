@@ -8,8 +8,8 @@ import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.friction import ConstantFriction
 from models.joints import joined_at
+from models.loads import ConstantFriction
 from models.scene import GROUND, Point, Scene
 from sim.engine import Drive
 from sim.exudyn.applied import Applied, Size

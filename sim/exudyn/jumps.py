@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from models.staircase import Staircase
+from models.characteristics import Staircase
 
 
 class StepMeans:

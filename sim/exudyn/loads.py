@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from models.characteristics import Constant
+from models.characteristics import Constant, Staircase
 from models.errors import EngineError, few
 from models.joints import bodies, sliding_angle
 from models.loads import Load
 from models.motion import State
 from models.scene import Point, Scene
-from models.staircase import Staircase
 from sim.engine import Drive
 from sim.exudyn.applied import Applied, Size, massless_blocks
 from sim.exudyn.jumps import StepMeans

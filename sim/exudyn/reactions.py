@@ -13,8 +13,8 @@ import math
 import numpy as np
 
 from models.array import Array
-from models.forces import Forces, SliderForces
 from models.joints import Prism, block_name, joined_at, joints, riding_body
+from models.motion import Forces, SliderForces
 from models.scene import Scene
 from sim.engine import Poses
 from sim.exudyn.blocks import BlockLoads, unit

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from models.joints import joints, riding_body, turned
+from models.joints import joints, line_ends, riding_body, turned, whole_turns
+from models.loads import LineSpring, PinSpring, SlideSpring
 from models.motion import State
 from models.poses import frames
 from models.scene import Scene
-from models.spring_ends import line_ends, whole_turns
-from models.springs import LineSpring, PinSpring, SlideSpring
 from sim.exudyn.library import items
 from sim.exudyn.plane_system import Index, PlaneSystem
 

@@ -15,7 +15,7 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.array import Array
-from models.mjcf_springs import SpringTendon
+from models.mjcf.forces import SpringTendon
 from models.tree import Limb
 from sim.mujoco.wrench import Wrench
 

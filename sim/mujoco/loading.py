@@ -12,10 +12,9 @@ import numpy as np
 
 from models.array import Array
 from models.characteristics import Constant
-from models.driven_freedom import driven_freedom
 from models.loads import Load
 from models.scene import Scene
-from models.tree import Limb
+from models.tree import Limb, driven_freedom
 from sim.engine import Drive
 from sim.load_magnitudes import ahead, known_ahead
 from sim.mujoco.load_stages import INSIDE, LoadStages

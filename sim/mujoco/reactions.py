@@ -7,13 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from models.array import Array
-from models.forces import Forces, SliderForces
-from models.joints import block_name, joined_at, joints, local_point, riding_body
-from models.mjcf_friction import rubbing_freedom
-from models.mjcf_loads import point_of_application
+from models.joints import block_name, joined_at, joints, line_ends, local_point, riding_body
+from models.loads import LineSpring, PinSpring, SlideSpring, Spring
+from models.mjcf.forces import point_of_application, rubbing_freedom
+from models.motion import Forces, SliderForces
 from models.scene import GROUND, Point, Scene, Slider
-from models.spring_ends import line_ends
-from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from models.tree import Limb, Tree
 from sim.engine import Poses
 from sim.mujoco.joint_forces import JointForces

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from itertools import islice
 
-from models.closings import closings
 from models.motion import State
 from models.scene import Scene
+from models.tree import closings
 from sim.engine import Settings
 from sim.remedies import Remedies
 

@@ -9,15 +9,13 @@ from dataclasses import replace
 import numpy as np
 
 from models.array import Array
-from models.driven_freedom import driven_freedom
 from models.errors import EngineError
-from models.mjcf import build
-from models.mjcf_friction import planned
-from models.mjcf_options import Writing, has_control
-from models.mjcf_springs import SpringTendon, spring_tendons
+from models.mjcf.document import build
+from models.mjcf.forces import SpringTendon, planned, spring_tendons
+from models.mjcf.options import Writing, has_control
 from models.motion import State
 from models.scene import Point, Scene
-from models.tree import Tree, plan
+from models.tree import Tree, driven_freedom, plan
 from sim import drive as drives
 from sim.engine import Drive, Facts, Log, Poses, Settings, SettingValue
 from sim.mujoco.joint_forces import JointForces

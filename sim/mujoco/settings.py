@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 
-from models import mjcf, mjcf_options
+from models.loads import SegmentSpring
+from models.mjcf import document, options
 from models.motion import State
 from models.poses import inertia_scale
 from models.scene import Scene
-from models.springs import SegmentSpring
 from sim.engine import Drive, Profile, Setting, Settings, SettingValue
 from sim.settings import check_choices, check_ranges
 
@@ -71,7 +71,7 @@ AS_SHIPPED = Profile(
         "islands": Setting("enable", "default"),
         "contact": Setting("enable", "default"),
         "close": Setting("", "the pins that `models.tree` chooses; names with + or , between"),
-        "flywheel_ratio": Setting(mjcf_options.FLYWHEEL_RATIO, "the drive, not an engine default"),
+        "flywheel_ratio": Setting(options.FLYWHEEL_RATIO, "the drive, not an engine default"),
         "servo_gain": Setting(1e3, "of the drive `servo`, over inertia scale times peak speed"),
         "servo_integrator": Setting("Euler", "default; takes the place of integrator under servo"),
         "free_timeconst_steps": Setting(0.0, "not used: let go, loops close as they do driven"),
@@ -86,26 +86,26 @@ TUNED = Profile(
     | {
         "integrator": Setting("RK4", "between the samples the motion is smooth: 500 x less error"),
         "tolerance": Setting(
-            mjcf_options.TOLERANCE,
+            options.TOLERANCE,
             "over flywheel_ratio, as MuJoCo's stopping rule is scaled by the inertia of the whole "
             "model, flywheel included; low enough for cranks of 0.01 rad/s, and 25 % faster than 0",
         ),
         "iterations": Setting(2, "pins give a quadratic problem: Newton is there after one"),
         "solref_timeconst_steps": Setting(
-            mjcf_options.STIFF_STEPS,
+            options.STIFF_STEPS,
             "with dampratio, 3 dt of stiffness: at 2 dt (the least MuJoCo allows) RK4 resolves the "
             "closing spring badly, above 4 dt it gives way more; found by `crankcheck tune` over "
             "several scenes",
         ),
         "solref_dampratio": Setting(
-            mjcf_options.STIFF_DAMPING,
+            options.STIFF_DAMPING,
             "as above; against 4 dt at 1 the worst of all shipped scenes has 1.6 times less error, "
             "and 3 times less in accelerations",
         ),
         "solimp_dmin": Setting(
-            mjcf_options.STIFF_IMPEDANCE, "the most MuJoCo allows: give way by 0.01 % only"
+            options.STIFF_IMPEDANCE, "the most MuJoCo allows: give way by 0.01 % only"
         ),
-        "solimp_dmax": Setting(mjcf_options.STIFF_IMPEDANCE, "as dmin: no dependence on the gap"),
+        "solimp_dmax": Setting(options.STIFF_IMPEDANCE, "as dmin: no dependence on the gap"),
         "servo_integrator": Setting(
             "discrete",
             "a stiff servo explodes under explicit integrators, and implicitfast solves the loops "
@@ -133,7 +133,7 @@ def checked(settings: Settings) -> None:
     check_ranges(settings, RANGES)
 
 
-def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf_options.Writing:
+def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> options.Writing:
     """The choices of the MJCF text that the settings amount to."""
     checked(settings)
     held = holds(settings, dt_s, drive)
@@ -144,7 +144,7 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf
     dmin, dmax = float(settings["solimp_dmin"]), float(settings["solimp_dmax"])
     solimp = (dmin, dmax, float(settings["solimp_width"]), 0.5, 2.0)
     damping, driven = float(settings["solref_dampratio"]), holds(settings, dt_s, "prescribed")
-    return mjcf_options.Writing(
+    return options.Writing(
         close=tuple(p.strip() for p in re.split("[+,]", str(settings["close"])) if p.strip()),
         option={
             "timestep": dt_s,
@@ -267,4 +267,4 @@ def text(
     drive: Drive = "prescribed",
 ) -> str:
     """The MJCF text that a run with these settings loads."""
-    return mjcf.build(scene, state, writing(scene, settings, dt_s, drive))
+    return document.build(scene, state, writing(scene, settings, dt_s, drive))

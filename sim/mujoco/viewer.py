@@ -9,9 +9,9 @@ import mujoco.viewer  # type: ignore[import-untyped]  # as above
 import numpy as np
 
 from models.laws import Law
-from models.mjcf import build
-from models.mjcf_friction import planned
-from models.mjcf_options import exact, has_control
+from models.mjcf.document import build
+from models.mjcf.forces import planned
+from models.mjcf.options import exact, has_control
 from models.motion import State
 from models.scene import Scene
 from sim.engine import Drive

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from models.errors import few, shown
-from models.forces import Forces, SliderForces
 from models.joints import joined_at
+from models.motion import Forces, SliderForces
 from models.scene import Scene
 
 

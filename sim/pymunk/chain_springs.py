@@ -11,9 +11,9 @@ import numpy as np
 import pymunk.batch
 
 from models.array import Array
+from models.joints import whole_turns
+from models.loads import SegmentSpring
 from models.scene import Scene
-from models.spring_ends import whole_turns
-from models.springs import SegmentSpring
 from sim.pymunk.body_rows import rows_of
 from sim.pymunk.space import SpaceModel
 

@@ -19,10 +19,10 @@ from dataclasses import replace
 import numpy as np
 
 from models.array import Array
+from models.characteristics import Staircase
 from models.joints import Slot, riding_body, sliding_angle, turned
 from models.loads import Load
 from models.scene import Point, Scene
-from models.staircase import Staircase
 from sim.engine import Drive
 from sim.load_magnitudes import ahead, known_ahead
 from sim.pymunk.pushes import Pushes

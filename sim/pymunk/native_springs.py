@@ -14,12 +14,22 @@ from dataclasses import dataclass
 
 import pymunk
 
-from models.joints import Prism, Slot, joints, less, local_point, riding_body, turned
+from models.joints import (
+    End,
+    Prism,
+    Slot,
+    joints,
+    less,
+    line_ends,
+    local_point,
+    riding_body,
+    turned,
+    whole_turns,
+)
+from models.loads import LineSpring, PinSpring, SlideSpring
 from models.motion import State
 from models.poses import Frame
 from models.scene import Point, Scene
-from models.spring_ends import End, line_ends, whole_turns
-from models.springs import LineSpring, PinSpring, SlideSpring
 from sim.pymunk.pushes import Pushes, moves_freely
 
 

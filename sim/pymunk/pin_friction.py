@@ -16,8 +16,8 @@ import pymunk
 
 from models.array import Array
 from models.errors import EngineError
-from models.friction import ConstantFriction
 from models.joints import Slot, block_name, joined_at, joints
+from models.loads import ConstantFriction
 from models.scene import Scene
 from sim.pymunk.pushes import moves_freely
 

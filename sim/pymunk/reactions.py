@@ -22,8 +22,8 @@ import pymunk
 import pymunk.batch
 
 from models.array import Array
-from models.forces import Forces
 from models.joints import turned
+from models.motion import Forces
 from models.poses import centre_of, mass_of
 from models.scene import Scene
 from sim.forces_by_body import forces_by_body

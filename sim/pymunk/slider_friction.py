@@ -10,8 +10,8 @@ import math
 from collections.abc import Mapping
 
 from models.errors import EngineError
-from models.friction import ConstantFriction
 from models.joints import Slot, joints, riding_body, turned
+from models.loads import ConstantFriction
 from models.scene import Scene
 from sim.engine import Drive
 from sim.pymunk.pushes import Pushes

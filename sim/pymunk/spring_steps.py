@@ -7,10 +7,9 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping
 
-from models.joints import Prism, Slot, joints, less, riding_body, turned
+from models.joints import Prism, Slot, joints, less, line_ends, riding_body, turned, whole_turns
+from models.loads import LineSpring, PinSpring, SlideSpring, Spring
 from models.scene import Point, Scene
-from models.spring_ends import line_ends, whole_turns
-from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from sim.pymunk.pushes import Pushes
 from sim.pymunk.space import SpaceModel
 from sim.pymunk.step_end import Course, Frames, SliderCourse, anchor_of, frames_at_end

@@ -13,9 +13,9 @@ from analytic.lectures.regulation.flywheel import WantedFlywheel, wanted_flywhee
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.characteristics import Polynomial
-from models.files import load_scene
+from models.driver import Released
+from models.files.reading import load_scene
 from models.loads import Load
-from models.released import Released
 from models.scene import Driver, Scene
 from tests.worlds.runs import ran
 from tests.worlds.tiers import slow, slowly

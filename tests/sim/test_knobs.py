@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from benchmarks.step_cost import exudyn, fit, mujoco, points, pymunk, start
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.scene import Scene
 from sim.exudyn import knobs as exudyn_knobs
 from sim.exudyn.session import ExudynSession

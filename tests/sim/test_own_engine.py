@@ -11,7 +11,7 @@ import pytest
 
 from analytic.kinematics import solve
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
 from sim import registry
 from sim.engine import Run
 from sim.own_engine import known, spelling

@@ -17,7 +17,7 @@ import pytest
 from analytic.kinematics import solve
 from models.characteristics import Constant
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.hard import double_parallelogram
 from models.loads import Load
 from models.scene import Scene

@@ -14,7 +14,7 @@ import numpy as np
 import pymunk
 import pytest
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from sim.engine import Facts, Settings, SettingValue
 from sim.exudyn.engine import ENGINE
 from sim.exudyn.solver import simulation

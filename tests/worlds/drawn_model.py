@@ -1,7 +1,7 @@
 """A scene as somebody else might write it in MJCF: in any plane, with frames and axes anywhere.
 
-Nothing here is taken from `models.mjcf`: bodies are placed one by one in space, so that what reads
-such a model is held to another writer.
+Nothing here is taken from `models.mjcf.document`: bodies are placed one by one in space, so that
+what reads such a model is held to another writer.
 """
 
 from __future__ import annotations

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from models.array import Array
-from models.joints import block_name, joints, local_point, riding_body
+from models.joints import block_name, joints, line_ends, local_point, riding_body
+from models.loads import LineSpring, PinSpring, SlideSpring
 from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
-from models.spring_ends import line_ends
-from models.springs import LineSpring, PinSpring, SlideSpring
 from sim.engine import BodyPose, Log
 from sim.spring_lengths import spring_lengths
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import Motion
 from reports.quantities import ACCELERATION, QUANTITIES
 from reports.quantities.quantity import Criterion, Measure, Quantity

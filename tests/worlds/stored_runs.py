@@ -9,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from models.files import shipped
+from models.files.reading import shipped
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.judge.frames import cell_frame, error_frame

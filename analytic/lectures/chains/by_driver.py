@@ -12,8 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from analytic.lectures.chains.assur_group import AssurGroup, groups_on
-from analytic.structure.compound import Compound
-from analytic.structure.groups import Group, Pairs, Triad, decompose
+from analytic.structure.groups import Compound, Group, Pairs, Triad, decompose
 from analytic.structure.mobility import Structure
 from models.scene import GROUND, Scene
 

@@ -29,8 +29,8 @@ from analytic.lectures.drawings.vector_equation import (
     crossing,
     sine_between,
 )
-from analytic.structure.cranked import refuse_other_than_cranked
 from analytic.structure.groups import Bridge, Group, Triad
+from analytic.structure.mobility import refuse_other_than_cranked
 from models.array import Array
 from models.scene import GROUND, Scene
 

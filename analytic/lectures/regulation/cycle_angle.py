@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.forces.springs import spring_lengths
 from analytic.kinematics import reach, repeats_after, unit_chunk
-from analytic.structure.cranked import refuse_other_than_cranked
+from analytic.structure.mobility import refuse_other_than_cranked
 from models.characteristics import Constant
 from models.errors import CrankcheckError, few
 from models.laws import ConstantSpeed

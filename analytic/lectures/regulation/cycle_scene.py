@@ -8,8 +8,8 @@ import numpy as np
 
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from models.characteristics import Constant
+from models.driver import Released
 from models.loads import Load
-from models.released import Released
 from models.scene import Driver, Scene
 
 DRIVE = "drive"

@@ -14,10 +14,9 @@ import numpy as np
 
 from analytic.dyads.chunk import Chunk
 from analytic.forces.bounded import Bounded
-from analytic.forces.reduced_machine import inertia_and_slope, loaded_bodies
 from analytic.forces.rubbing import put_constant_friction, rubbing_joints
 from analytic.forces.springs import apply_springs
-from analytic.forces.virtual_power import torque_by_power
+from analytic.forces.virtual_power import inertia_and_slope, loaded_bodies, torque_by_power
 from analytic.kinematics import driven_chunk, unit_chunk
 from analytic.lectures.regulation.cycle_angle import cycle_angle
 from analytic.structure.mobility import analyse

@@ -13,9 +13,8 @@ from analytic.lectures.regulation.angle_cells import CELLS
 from analytic.lectures.regulation.turning_machine import TurningMachine, follows_speed
 from analytic.structure.mobility import analyse
 from models.array import Array
-from models.characteristics import Constant, Sine
+from models.characteristics import Constant, FourierSum, Sine
 from models.loads import Load
-from models.waves import FourierSum
 
 LOOKS = 720
 """Of a turn, for where a slider passes a row of a table."""

@@ -17,8 +17,8 @@ from analytic.lectures.synthesis.construction import Dot, Step
 from analytic.lectures.synthesis.design import Proposal
 from analytic.lectures.synthesis.fourbar_draft import INPUT, letters_beside
 from analytic.lectures.synthesis.to_and_fro import ToAndFro, choices
+from models.files.assemble import Table
 from models.lectures.draft import bar, plate
-from models.scene_text import Table
 
 O6 = "O6"
 SHARE = 0.6

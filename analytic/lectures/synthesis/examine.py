@@ -25,13 +25,13 @@ from analytic.kinematics import solve_driven
 from analytic.lectures.synthesis.asked import PrecisionPosition
 from analytic.lectures.synthesis.asked_motion import asked_motion
 from analytic.lectures.synthesis.design import Proposal
-from analytic.mechanism.grashof_of_scene import grashof_of
+from analytic.mechanism.grashof import grashof_of
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
+from models.files.assemble import Table
 from models.laws import ConstantSpeed, Law, Oscillating
 from models.lectures.draft import SPEED_RAD_S, Draft
 from models.scene import Scene
-from models.scene_text import Table
 
 LOOKS = 361
 """Looks at the driver's way, for transmission and size."""

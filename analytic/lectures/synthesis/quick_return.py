@@ -25,9 +25,9 @@ from analytic.lectures.synthesis.design import Proposal
 from analytic.lectures.synthesis.quick_crank_rocker import crank_rockers
 from analytic.lectures.synthesis.strokes import lag_of
 from models.errors import CrankcheckError
+from models.files.assemble import Table
 from models.lectures.draft import Draft, bar
 from models.lectures.tasks.quick_return import QuickReturnTask
-from models.scene_text import Table
 
 O2, O4, PIN, END, RAM = "O2", "O4", "A", "B", "C"
 LONGER = 1.25

@@ -16,8 +16,7 @@ import numpy as np
 
 from analytic.elastic.discretisation import Discretisation
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.linearised import LinearForm, linearise
-from analytic.elastic.periodic import FIRST, check_periodic, instants
+from analytic.elastic.periodic import FIRST, LinearForm, check_periodic, instants, linearise
 from analytic.elastic.reduced import ReducedForm
 from models.array import Array
 from models.errors import CrankcheckError

@@ -17,9 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.elastic.linearised import LinearForm, linearise
 from analytic.elastic.natural import NaturalModes, natural_modes
-from analytic.elastic.periodic import PeriodicMotion
+from analytic.elastic.periodic import LinearForm, PeriodicMotion, linearise
 from analytic.elastic.reduced import ReducedForm
 from analytic.lectures.vibration.monodromy import Monodromy, by_collocation
 from models.array import Array, Mask

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.elastic.linearised import LinearForm
-from analytic.free.gauss import gauss
+from analytic.elastic.periodic import LinearForm
+from analytic.free.window import gauss
 from models.array import Array
 
 NODES = 8

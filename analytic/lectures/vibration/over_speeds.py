@@ -15,10 +15,9 @@ from itertools import pairwise
 import numpy as np
 
 from analytic.elastic.discretisation import Modes
-from analytic.elastic.linearised import LinearForm
-from analytic.elastic.natural import lowest_rad_s, natural_modes
+from analytic.elastic.natural import MOST, Sensitivity, lowest_rad_s, natural_modes, sensitivity
+from analytic.elastic.periodic import LinearForm
 from analytic.elastic.reduced import ReducedForm
-from analytic.elastic.resonance import MOST, Sensitivity, sensitivity
 from analytic.lectures.vibration.any_speed import AnySpeed
 from analytic.lectures.vibration.floquet import (
     Deviation,

@@ -10,9 +10,14 @@ import numpy as np
 
 from analytic.elastic.discretisation import Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.linearised import linearise
 from analytic.elastic.natural import NaturalModes, natural_modes
-from analytic.elastic.periodic import FIRST, PeriodicMotion, linear_motion, periodic_motion
+from analytic.elastic.periodic import (
+    FIRST,
+    PeriodicMotion,
+    linear_motion,
+    linearise,
+    periodic_motion,
+)
 from analytic.elastic.reduced import ReducedForm
 from analytic.lectures.vibration.any_speed import AnySpeed
 from analytic.lectures.vibration.floquet import Stability, stability_of

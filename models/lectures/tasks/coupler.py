@@ -6,8 +6,8 @@ from typing import Literal
 
 from pydantic import model_validator
 
+from models.files.schema import Coordinates
 from models.lectures.tasks.positions import PositionsTask
-from models.table_fields import Coordinates
 
 
 class CouplerTask(PositionsTask):

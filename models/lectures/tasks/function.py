@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StringConstraints, model_validator
 
+from models.files.schema import Degrees, Number, Positive
 from models.lectures.formula import LONGEST_TEXT
 from models.lectures.tasks.task import TaskTable
-from models.table_fields import Degrees, Number, Positive
 
 MOST_ROWS = 10_000
 Rows = Annotated[list[Number], Field(min_length=2, max_length=MOST_ROWS)]

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from pydantic import Field, StrictInt, model_validator
 
+from models.files.schema import Coordinates, Degrees
 from models.lectures.tasks.task import TaskTable
-from models.table_fields import Coordinates, Degrees
 
 LEAST_POINTS, MOST_POINTS = 4, 50
 

@@ -6,8 +6,8 @@ import cmath
 
 from pydantic import Field, model_validator
 
+from models.files.schema import Coordinates, Degrees, Name, Table
 from models.lectures.tasks.task import TaskTable
-from models.table_fields import Coordinates, Degrees, Name, Table
 
 RIGID = 1e-3
 """By what share of it the distance of two points may differ between positions: exercises round."""

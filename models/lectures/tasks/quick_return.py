@@ -6,10 +6,10 @@ from typing import Literal
 
 from pydantic import model_validator
 
+from models.files.schema import Positive
 from models.lectures.tasks.rocker import Swing
 from models.lectures.tasks.stroke import TimeRatio
 from models.lectures.tasks.task import TaskTable
-from models.table_fields import Positive
 
 NEEDS = {
     "slotted-lever": ("crank_m", "pivots_m", "stroke_m"),

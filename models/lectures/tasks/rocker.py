@@ -6,9 +6,9 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from models.files.schema import Positive
 from models.lectures.tasks.positions import PoseTable, PositionsTask
 from models.lectures.tasks.task import TaskTable
-from models.table_fields import Positive
 
 Swing = Annotated[float, Field(strict=True, gt=0.0, lt=180.0)]
 

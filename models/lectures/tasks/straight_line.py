@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from models.files.schema import Coordinates, Degrees, Positive
 from models.lectures.tasks.task import TaskTable
-from models.table_fields import Coordinates, Degrees, Positive
 
 
 class StraightLineTable(TaskTable):

@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from models.files.schema import NonNegative, Positive
 from models.lectures.tasks.task import TaskTable
-from models.table_fields import NonNegative, Positive
 
 TimeRatio = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=1.0, lt=1000.0)]
 """Time of the slow stroke over that of the quick one."""

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.in_assembly import choices, chosen_groups
+from analytic.kinematics import choices, chosen_groups
 from analytic.structure.groups import Group, Triad
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError

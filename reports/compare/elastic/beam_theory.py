@@ -16,16 +16,16 @@ from typing import ClassVar
 
 import numpy as np
 
+from analytic.elastic.control import elastic_history
 from analytic.elastic.discretisation import REFERENCE, Polynomials
-from analytic.elastic.elastic_history import elastic_history
+from analytic.elastic.elastic_motion import ElasticHistory
 from analytic.elastic.natural import lowest_rad_s
 from analytic.elastic.released import ROUGH
-from analytic.elastic.sampled import ElasticHistory
 from models.array import Array
+from models.cut_scenes import SegmentedScene
 from models.elastic import Shape
 from models.motion import Motion
 from models.scene import Scene
-from models.segmented import SegmentedScene
 from reports.compare.elastic.exact_chain import ExactChain
 from reports.quantities.elastic import largest_deflection
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from models.beamed import BeamedScene
 from models.cut_links import CutScene
+from models.cut_scenes import BeamedScene, SegmentedScene
 from models.scene import Scene
-from models.segmented import SegmentedScene
 
 
 def cut(scene: Scene, count: int, springs: str) -> CutScene:

@@ -16,17 +16,15 @@ from functools import cached_property, lru_cache
 from typing import ClassVar
 
 from analytic.elastic.discretisation import Segments
-from analytic.elastic.node_start import node_start
-from analytic.elastic.segment_start import segment_start
-from analytic.elastic.stiffness import fastest_rad_s
+from analytic.elastic.elastic_motion import fastest_rad_s
+from analytic.elastic.engine_start import node_start, segment_start
 from analytic.kinematics import solve
 from models.array import Array
-from models.beamed import BeamedScene
 from models.cut_links import CutScene
+from models.cut_scenes import BeamedScene, SegmentedScene
 from models.errors import CrankcheckError, EngineError, ReachError
 from models.motion import Motion, State
 from models.scene import Scene, as_bytes
-from models.segmented import SegmentedScene
 from reports.compare.beside import Beside, Truth
 from reports.compare.elastic.beam_theory import LEAST, BeamTheory, shape_of
 from reports.compare.elastic.cut import cut

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from analytic.elastic.sampled import ElasticHistory
-from analytic.elastic.segment_start import chain_motion
+from analytic.elastic.elastic_motion import ElasticHistory
+from analytic.elastic.engine_start import chain_motion
 from models.array import Array
+from models.cut_scenes import SegmentedScene
 from models.elastic import Shape
 from models.motion import Motion
-from models.segmented import SegmentedScene
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from models.array import Array
 from models.cut_links import CutScene
-from models.forces import Forces
+from models.motion import Forces
 from sim.engine import Run
 
 

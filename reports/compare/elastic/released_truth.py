@@ -14,17 +14,17 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from analytic.elastic.elastic_doubt import ElasticDoubt
+from analytic.elastic.discretisation import ElasticDoubt
+from analytic.elastic.elastic_motion import energies, sampled
 from analytic.elastic.released import ReleasedElasticMotion
-from analytic.elastic.sampled import energies, sampled
 from analytic.free.free_motion import FreeMotion, LimitPassage
-from analytic.multibody.energy_balance import EnergyBalance
+from analytic.multibody.bodies import EnergyBalance
 from models.array import Array
+from models.cut_links import with_rigid_links
+from models.cut_scenes import SegmentedScene
 from models.errors import EngineError, ReachError
 from models.motion import Motion
-from models.rigid import with_rigid_links
 from models.scene import Scene, as_bytes
-from models.segmented import SegmentedScene
 from reports.compare.beside import Beside
 from reports.compare.elastic.beam_theory import FreeBeamTheory
 from reports.compare.elastic.elastic_truth import (

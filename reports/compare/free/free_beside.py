@@ -18,7 +18,7 @@ from sim.engine import Run
 
 if TYPE_CHECKING:
     from analytic.free.free_motion import LimitPassage
-    from analytic.multibody.energy_balance import EnergyBalance
+    from analytic.multibody.bodies import EnergyBalance
 
 
 class FreeReference(Protocol):

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.array import Array
+from models.driver import Released
 from models.motion import Motion, State
-from models.released import Released
 from models.scene import Driver, Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.free.free_beside import FreeBeside

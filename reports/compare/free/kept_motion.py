@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.driver import LONGEST_S
 from models.motion import State
-from models.released import LONGEST_S
 from models.scene import Scene, as_bytes
 
 if TYPE_CHECKING:

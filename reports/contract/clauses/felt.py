@@ -11,10 +11,9 @@ import numpy as np
 from analytic.forces import kinetostatics
 from models.array import Array
 from models.characteristics import Constant, Sine
-from models.forces import Forces
-from models.friction import ConstantFriction
 from models.joints import blocks, bodies, joined_at
-from models.loads import Load
+from models.loads import ConstantFriction, Load
+from models.motion import Forces
 from models.poses import centre_of, mass_of
 from models.scene import Scene
 from reports.contract.clause import Clause

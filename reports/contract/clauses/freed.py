@@ -11,10 +11,10 @@ import numpy as np
 
 from models.array import Array
 from models.characteristics import Polynomial
+from models.driver import Released
 from models.errors import EngineError
 from models.loads import Load
 from models.motion import Motion, State
-from models.released import Released
 from models.scene import Driver, Scene
 from reports.contract.clause import Clause
 from reports.contract.clauses.reactions import pulled

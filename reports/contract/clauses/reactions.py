@@ -12,9 +12,8 @@ import numpy as np
 from analytic.forces import kinetostatics
 from analytic.kinematics import solve
 from models.array import Array
-from models.forces import Forces
 from models.joints import block_name, joined_at, local_point
-from models.motion import Motion
+from models.motion import Forces, Motion
 from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
 from reports.contract.clause import Clause

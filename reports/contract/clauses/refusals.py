@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import get_args
 
 from models.errors import EngineError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.scene import Scene
 from reports.contract.clause import Clause
 from reports.contract.clauses.start import is_other

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from models.controlled import Controlled
+from models.driver import Controlled
 from models.motion import Motion
 from reports.describe.elastic_course import ElasticCourse
 from reports.figures.elastic.course_axis import DASHES, ELASTIC, RIGID, SIDES, CourseAxis, notes

@@ -6,7 +6,7 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from models.elastic_line import line_of
+from models.cut_links import line_of
 from reports.describe.elastic_course import ElasticCourse
 from reports.figures.elastic.course_axis import COLOURS, DASHES, SIDES, CourseAxis, notes
 from reports.figures.sheet import Panels, sheet

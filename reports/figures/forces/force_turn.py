@@ -11,13 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
-from analytic.forces.reduced_machine import ReducedMachine, reduced_machine
+from analytic.forces.virtual_power import ReducedMachine, reduced_machine
 from models.array import Array
 from models.characteristics import Constant
-from models.driver_shown import driver_axis, driver_shown
-from models.forces import Forces
+from models.driver import driver_axis, driver_shown
 from models.laws import ConstantSpeed
-from models.motion import Motion
+from models.motion import Forces, Motion
 from models.scene import Scene
 from reports.describe.law import describe_law
 from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_forces

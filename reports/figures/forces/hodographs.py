@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
-from models.driver_shown import driver_shown
+from models.driver import driver_shown
 from reports.describe.force_frame import acted_on
 from reports.drawing.lettering import Label, place
 from reports.drawing.moving import goes_round

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
-from models.driver_shown import driver_stands
+from models.driver import driver_stands
 from reports.drawing.force_arrows import force_arrows
 from reports.drawing.gif import draw_bodies
 from reports.drawing.names import Sheet, names

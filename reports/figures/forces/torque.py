@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from models.array import Array
-from models.driver_course import driver_course
+from models.driver import driver_course
 from reports.describe.friction import flow_of
 from reports.figures.forces.force_turn import SIDES, ForceTurn
 from reports.figures.sheet import Panels, sheet

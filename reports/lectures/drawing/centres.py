@@ -11,10 +11,9 @@ from rich.console import Console
 
 from analytic.lectures.drawings.drawn_polygons import draw_polygons
 from analytic.lectures.drawings.placed_mechanism import DriverState
-from analytic.structure.cranked import refuse_other_than_cranked
-from analytic.structure.mobility import analyse
+from analytic.structure.mobility import analyse, refuse_other_than_cranked
 from models.array import Array
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.describe.driver_at import angle_at, driver_at
 from reports.lectures.drawing.positions import ENDINGS, save_sheet

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from analytic.lectures.drawings.graphical import METHODS, Method
 from models.errors import CrankcheckError, shown
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
 from reports.lectures.drawing.sheets.graphs.graph_drawing import DrawnGraphs, drawn_graphs
 from reports.lectures.drawing.sheets.graphs.graph_log import graph_log

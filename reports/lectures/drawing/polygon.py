@@ -11,10 +11,9 @@ from rich.console import Console
 
 from analytic.lectures.drawings.drawn_polygons import DrawnPolygons, polygons_of
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
-from analytic.structure.cranked import refuse_other_than_cranked
-from analytic.structure.mobility import analyse
+from analytic.structure.mobility import analyse, refuse_other_than_cranked
 from models.errors import CrankcheckError, harmless
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.lectures.drawing.sheets.polygons.logged_instant import LoggedInstant, LogInstants

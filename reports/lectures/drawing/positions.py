@@ -10,7 +10,7 @@ import typer
 from rich.console import Console
 
 from models.errors import harmless
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from reports.lectures.drawing.sheets.canvas import Canvas
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.lectures.drawing.sheets.position_sheet import draw_positions, positions

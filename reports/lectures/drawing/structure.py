@@ -15,7 +15,7 @@ from analytic.lectures.chains.by_driver import ClassedGroup, by_drivers, classed
 from analytic.structure.groups import Bridge
 from analytic.structure.mobility import Structure, analyse
 from models.errors import CrankcheckError
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.describe.driver_at import place_at
 from reports.describe.roman import roman

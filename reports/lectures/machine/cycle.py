@@ -13,7 +13,7 @@ from analytic.lectures.regulation.cycle_search import cycle_of
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.errors import harmless
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from reports.lectures.machine.cycle_frame import cycle_document, cycle_frame
 from reports.lectures.machine.regulation_tables import show_cycle
 from reports.output.frame_file import ENDINGS, write_frame

@@ -13,8 +13,8 @@ from analytic.lectures.regulation.cycle_scene import cycle_scene
 from analytic.lectures.regulation.flywheel import CoefficientError, WantedFlywheel, wanted_flywheel
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.errors import CrankcheckError
-from models.files import find_scene, load_scene
-from models.scene_text import scene_text
+from models.files.assemble import scene_text
+from models.files.reading import find_scene, load_scene
 from reports.lectures.machine.cycle import NUMBERS, PAGE, check_outputs_of, tell_of
 from reports.lectures.machine.cycle_frame import cycle_frame, flywheel_document
 from reports.lectures.machine.regulation_tables import show_flywheel

@@ -24,7 +24,7 @@ from analytic.lectures.vibration.steady_vibration import (
 )
 from models.array import Array
 from models.errors import CrankcheckError, harmless, shown
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.lectures.machine import vibration_files as files
 from reports.lectures.machine.vibration_tables import show_map, show_speeds, show_vibration

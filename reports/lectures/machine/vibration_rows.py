@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.elastic.natural import link_modes, lowest_rad_s
-from analytic.elastic.resonance import Sensitivity
+from analytic.elastic.natural import Sensitivity, link_modes, lowest_rad_s
 from analytic.lectures.vibration.floquet import STABLE
 from analytic.lectures.vibration.steady_vibration import SteadyVibration
 from reports.output.numbers import readable

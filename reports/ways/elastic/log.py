@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from models.controlled import Controlled
+from models.driver import Controlled, Released
 from models.errors import CrankcheckError
-from models.released import Released
 from models.scene import Scene
 from reports.causes.cause import Cause
 from reports.compare.beside import Truth

@@ -11,7 +11,7 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.errors import EngineError, cut
-from models.regular import UnreadableError, regular_bytes
+from models.files.inputs import UnreadableError, regular_bytes
 from sim.mujoco.own_model.closures import name_of
 from sim.mujoco.own_model.fault import ModelError
 from sim.mujoco.own_model.xml_tags import XmlError, tags

@@ -8,7 +8,7 @@ from typing import Any
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 
-from models.mjcf_options import STIFF_DAMPING, STIFF_IMPEDANCE, STIFF_STEPS
+from models.mjcf.options import STIFF_DAMPING, STIFF_IMPEDANCE, STIFF_STEPS
 from sim.engine import Profile, Setting, Settings, SettingValue
 from sim.mujoco.settings import INTEGRATORS
 from sim.own_models import Advised

@@ -23,7 +23,7 @@ from analytic.lectures.drawings.polygon import Vector
 from analytic.lectures.drawings.similarity import similarity
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.motion import Motion, Order
 from models.scene import Scene
 from tests.worlds.tiers import slowly

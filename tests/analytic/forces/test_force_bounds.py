@@ -15,8 +15,8 @@ from analytic.forces.kinetostatics import forces
 from analytic.forces.springs import spring_lengths
 from analytic.kinematics import chunks, solve
 from models.array import Array
-from models.files import load_scene, shipped
-from models.forces import Forces
+from models.files.reading import load_scene, shipped
+from models.motion import Forces
 from models.moved_scene import moved
 from models.scene import Scene
 from tests.analytic.chain import Chain, coordinates

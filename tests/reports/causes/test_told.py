@@ -16,7 +16,7 @@ import pytest
 from analytic import prepared
 from analytic.kinematics import solve
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import Motion
 from reports.causes import Case, Cause, causes
 from reports.causes.words import change

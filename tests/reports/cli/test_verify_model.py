@@ -13,7 +13,7 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.own_model.account import Account, checked_line, read_here
 from reports.own_model.checked_line import CheckedLine
 from reports.own_model.judged import JudgedModel

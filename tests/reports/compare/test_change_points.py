@@ -14,7 +14,7 @@ import pytest
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.errors import ReachError
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.hard import fourbar, slider_crank, slotted_lever
 from models.motion import Crossing
 from models.scene import Scene

@@ -14,7 +14,7 @@ import pytest
 from analytic.kinematics import solve
 from analytic.structure.mobility import sides_of
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import LinkMotion
 from models.moved_scene import mirrored, moved, rotated, scaled
 from models.scene import Scene

@@ -14,11 +14,9 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
 from models.characteristics import Characteristic, Constant, Polynomial, Sine
-from models.files import load_scene, parse_scene
-from models.forces import Forces
-from models.friction import ConstantFriction
-from models.loads import Load
-from models.motion import Motion
+from models.files.reading import load_scene, parse_scene
+from models.loads import ConstantFriction, Load
+from models.motion import Forces, Motion
 from models.scene import Scene
 from models.tabulated import Tabulated
 from reports.compare.beside import Beside, Truth

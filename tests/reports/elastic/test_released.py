@@ -7,7 +7,7 @@ from functools import cache
 
 import pytest
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.compare.elastic.released_truth import ReleasedElasticTruth
 from reports.compare.facts import DRIVEN, RIGID

@@ -11,7 +11,7 @@ import pytest
 
 from analytic.elastic.natural import lowest_rad_s
 from analytic.lectures.vibration.any_speed import at_speed
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row

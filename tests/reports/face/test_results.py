@@ -17,7 +17,7 @@ import pandas as pd
 import pytest
 
 import crankcheck
-from models.files import parse_scene
+from models.files.reading import parse_scene
 from reports.drawing.svg import svg
 from reports.own_model.account import read_here
 from reports.requests import verify_model as model_verdict

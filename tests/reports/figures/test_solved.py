@@ -21,9 +21,8 @@ from analytic.lectures.regulation.turning_machine import TurningMachine
 from analytic.lectures.vibration.over_inertia import over_inertia as inertia_map
 from analytic.lectures.vibration.over_speeds import OverSpeeds, over_speeds
 from analytic.lectures.vibration.steady_vibration import SteadyVibration, steady_vibration
-from models.files import load_scene
-from models.friction import ConstantFriction, CoulombFriction
-from models.loads import Load
+from models.files.reading import load_scene
+from models.loads import ConstantFriction, CoulombFriction, Load
 from models.scene import Scene
 from models.tabulated import Tabulated
 from reports.describe.elastic_course import drawn_course

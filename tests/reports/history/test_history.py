@@ -15,7 +15,7 @@ from packaging.version import Version
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from models.files import shipped
+from models.files.reading import shipped
 from reports.history import verification
 from reports.history.environments import EngineVersion, NotMeasuredError
 from reports.requests.history import HistoryRequest

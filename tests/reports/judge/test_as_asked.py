@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from models.files import load_scene, shipped
-from models.friction import ConstantFriction
+from models.files.reading import load_scene, shipped
 from models.laws import ConstantSpeed
+from models.loads import ConstantFriction
 from models.scene import Scene
 from reports.compare.asked import not_asked_for
 from reports.compare.errors import Error

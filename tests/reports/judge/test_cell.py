@@ -17,7 +17,7 @@ from analytic.kinematics import solve
 from benchmarks.verify_overhead import LINKS, chain
 from models.array import Array
 from models.errors import EngineError, ReachError
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.laws import Accelerating
 from models.motion import Motion
 from models.scene import Scene

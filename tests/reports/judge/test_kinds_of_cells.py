@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from analytic.forces.late_impulses import LateImpulses
-from models.files import load_scene, parse_scene
-from models.friction import ConstantFriction
-from models.released import let_go
+from models.driver import let_go
+from models.files.reading import load_scene, parse_scene
+from models.loads import ConstantFriction
 from models.scene import Scene
 from reports.compare.errors import Errors
 from reports.compare.facts import DRIVEN

@@ -27,7 +27,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from analytic.kinematics import solve
-from models.files import load_scene, parse_scene
+from models.files.reading import load_scene, parse_scene
 from models.scene import span
 from reports.judge.cell import Cell, Checked, check
 from reports.judge.rules import PLACES, RATES

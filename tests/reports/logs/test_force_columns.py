@@ -13,7 +13,7 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.describe.frame import motion_frame, run_frame
 from reports.logs import force_names

@@ -13,7 +13,7 @@ import pytest
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.describe.frame import motion_frame

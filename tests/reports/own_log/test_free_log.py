@@ -11,7 +11,7 @@ import pytest
 
 import crankcheck
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.free.kept_motion import kept_motion

@@ -14,8 +14,8 @@ import pytest
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError
-from models.files import load_scene
-from models.mjcf import build
+from models.files.reading import load_scene
+from models.mjcf.document import build
 from reports.own_model import assembly
 from reports.own_model.account import read, read_here
 from reports.own_model.request import ModelRequest

@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 
 from analytic.kinematics import solve
 from models.errors import EngineError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.laws import ConstantSpeed
-from models.mjcf import build
+from models.mjcf.document import build
 from models.motion import State
 from models.scene import Driver, Scene
 from reports.judge.cell import Cell, check

@@ -10,7 +10,7 @@ from xml.etree import ElementTree as Xml
 import pytest
 from rich.console import Console
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.judge.cell import Cell
 from reports.plan.study import Variant, load_study
 from reports.requests.sweep import SweepRequest

@@ -15,10 +15,10 @@ import pytest
 
 from analytic.kinematics import solve
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
+from models.joints import line_ends
+from models.loads import PinSpring
 from models.poses import mass_of
-from models.spring_ends import line_ends
-from models.springs import PinSpring
 from reports.compare.free.free_truth import free_truth
 from reports.judge.cell import CellRunner, check, examined
 from reports.selftest.all_faults import FAULTS, RUNS, chosen_faults

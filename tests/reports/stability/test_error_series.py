@@ -15,7 +15,7 @@ from analytic.kinematics import solve
 from benchmarks.toggle import LINES, RandomThrow, Thrown, right_from, threw, throws, told
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.compare.free.toggle_passage import toggle_passage
 from reports.requests.stability import _cases
 from reports.stability.all_cases import CATALOGUE

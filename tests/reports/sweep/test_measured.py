@@ -14,7 +14,7 @@ import pytest
 from rich.console import Console
 
 from analytic.kinematics import solve
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.compare.free.kept_motion import released_state
 from reports.judge.cell import Cell

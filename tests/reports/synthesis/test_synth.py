@@ -10,7 +10,7 @@ from typer.testing import CliRunner, Result
 
 from analytic.lectures.synthesis import coupler
 from analytic.lectures.synthesis.solutions import solutions_of
-from models.files import read_scene
+from models.files.reading import read_scene
 from models.lectures.tasks.files import find_task, load_task
 from reports.cli import app
 from reports.lectures.design import synth as command

@@ -15,7 +15,7 @@ from optuna.trial import TrialState
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from models.files import shipped
+from models.files.reading import shipped
 from reports.requests.tune import TuneRequest
 from reports.tune.attempt import Attempt, Bench
 from reports.workers.signals import Stopped

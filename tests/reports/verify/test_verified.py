@@ -8,7 +8,7 @@ from xml.etree import ElementTree as Xml
 
 import pytest
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, unfinished
 from reports.output.junit import junit

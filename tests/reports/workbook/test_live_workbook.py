@@ -16,7 +16,7 @@ import pytest
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.laws import ConstantSpeed
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
 from reports.lectures.drawing.workbook.beside_values import left_out

@@ -15,10 +15,9 @@ from analytic.forces import kinetostatics
 from models.array import Array
 from models.characteristics import Constant, Polynomial, Sine
 from models.errors import EngineError
-from models.files import load_scene, shipped
-from models.forces import Forces
-from models.friction import CoulombFriction
-from models.loads import Load
+from models.files.reading import load_scene, shipped
+from models.loads import CoulombFriction, Load
+from models.motion import Forces
 from models.scene import Scene
 from models.tabulated import Tabulated
 from reports.contract.clauses.reactions import named

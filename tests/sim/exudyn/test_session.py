@@ -11,7 +11,7 @@ import pytest
 
 from analytic.kinematics import solve
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.hard import double_parallelogram
 from models.laws import FromRest, Oscillating, SpeedChange
 from models.scene import Scene

@@ -10,7 +10,7 @@ import pymunk
 import pytest
 
 from models.errors import EngineError
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.scene import Scene
 from sim.pymunk.space import build
 from tests.worlds.runs import start_of

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.kinematics import driven_chunk, repeats_after, solve
-from analytic.structure.cranked import refuse_other_than_cranked
+from analytic.structure.mobility import refuse_other_than_cranked
 from models.array import Array
 from models.errors import CrankcheckError, ReachError, suggestion
 from models.laws import ConstantSpeed

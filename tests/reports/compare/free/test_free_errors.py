@@ -12,7 +12,7 @@ import pytest
 
 from analytic.kinematics import solve_driven
 from models.characteristics import Constant
-from models.files import load_scene, parse_scene
+from models.files.reading import load_scene, parse_scene
 from models.loads import Load
 from models.motion import Motion
 from models.scene import Scene

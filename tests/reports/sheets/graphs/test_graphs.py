@@ -16,7 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from analytic.lectures.drawings.graphical import METHODS, Method
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.figures.style import SMALL, styled
 from reports.lectures.drawing.sheets.graphs.graph_drawing import DrawnGraphs, drawn_graphs
 from reports.lectures.drawing.sheets.graphs.graph_log import graph_log

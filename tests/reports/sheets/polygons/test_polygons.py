@@ -23,7 +23,7 @@ from analytic.lectures.drawings.drawn_polygons import draw_polygons, polygons_of
 from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMechanism
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import Motion
 from reports.drawing.true_motion import true_motion
 from reports.lectures.drawing.sheets.paper import Paper

@@ -16,7 +16,7 @@ import numpy as np
 
 from analytic.kinematics import solve_driven
 from models.array import Array
-from models.driver_shown import driver_shown
+from models.driver import driver_shown
 from models.errors import CrankcheckError, few
 from models.laws import ConstantSpeed, Oscillating
 from models.motion import Motion, Order

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from models.array import Array
-from models.driver_shown import driver_unit
+from models.driver import driver_unit
 from reports.figures.style import INK, QUIET, TINY, width_in
 from reports.lectures.drawing.sheets.canvas import line, text
 from reports.lectures.drawing.sheets.graphs.graph_drawing import READ, DrawnGraphs

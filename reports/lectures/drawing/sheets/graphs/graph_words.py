@@ -7,7 +7,7 @@ from rich.console import Console
 
 from analytic.lectures.drawings.graphical import ORDERS, ThreeGraphs
 from models.array import Array
-from models.driver_shown import driver_unit
+from models.driver import driver_unit
 from models.errors import harmless
 from models.motion import Order
 from reports.lectures.drawing.sheets.graphs.graph_drawing import READ, DrawnGraphs
