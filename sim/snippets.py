@@ -6,7 +6,7 @@ import math
 import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import cast
+from typing import Literal, cast
 
 from sim.engine import Drive, Settings
 from sim.registry import capability
@@ -31,6 +31,12 @@ class Stepping:
     @property
     def steps_per_turn(self) -> float:
         return self.period_s / self.dt_s
+
+    def counted_in(self, drive: Drive) -> Literal["turns", "frames", "nothing"]:
+        """What its steps are a part of: of what nothing drives no speed says how long they are."""
+        if drive == "free":
+            return "nothing"
+        return "frames" if self.substeps else "turns"
 
 
 @dataclass(frozen=True)

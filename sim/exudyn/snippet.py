@@ -51,18 +51,18 @@ def exudyn_snippet(
 def _steps(stepping: Stepping, drive: Drive) -> list[str]:
     """The length of a step, and how it goes with the speed and with frames."""
     per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
-    told = [
-        f"{per_turn} steps a turn of a crank at {speed}. At another speed: dt = 2 pi / ({per_turn} "
-        "speed)."
-    ]
-    if stepping.substeps:
+    counted, told = stepping.counted_in(drive), list[str]()
+    if counted == "turns":
+        told = [
+            f"{per_turn} steps a turn of a crank at {speed}. At another speed: dt = 2 pi / "
+            f"({per_turn} speed)."
+        ]
+    if counted == "frames":
         frame, number = f"{stepping.dt_s * stepping.substeps:.6g} s", stepping.substeps
         told = [
             f"A frame of {frame} has numberOfSteps = {number}. A crank at {speed} has {per_turn} "
             "of these steps in a turn; a faster one needs more of them in a frame, in proportion."
         ]
-    if drive == "free":  # no speed of the crank says how long it may be
-        told = []
     return [
         *comment(told, WIDTH),
         f"dt = {stepping.dt_s!r}",

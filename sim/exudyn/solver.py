@@ -95,11 +95,11 @@ def per_drive(solver: Any, system: Any) -> Array:
     asked[-1] = 1.0
     moved = np.asarray(np.linalg.lstsq(held_by, asked, rcond=None)[0])
     _, sizes, ways = np.linalg.svd(held_by)
-    free = ways[np.count_nonzero(sizes > FREE * sizes[0]) :]
-    if len(free):
+    loose = ways[np.count_nonzero(sizes > FREE * sizes[0]) :]
+    if len(loose):
         solver.ComputeMassMatrix(system)
-        heavy = free @ np.array(solver.GetSystemMassMatrix())
-        moved -= free.T @ np.linalg.lstsq(heavy @ free.T, heavy @ moved, rcond=None)[0]
+        heavy = loose @ np.array(solver.GetSystemMassMatrix())
+        moved -= loose.T @ np.linalg.lstsq(heavy @ loose.T, heavy @ moved, rcond=None)[0]
     return moved
 
 

@@ -29,7 +29,7 @@ from sim.mujoco.settings import (
     held_share,
     holds,
     integrator,
-    not_used,
+    used,
     velocity_shift,
     weight_share,
     writing,
@@ -54,8 +54,7 @@ class MujocoSession(SteppedModel):
         with heard(self._warnings.append):
             model = compiled(build(scene, state, chosen, tree))
         self._weights = model.body_invweight0.copy()
-        if chosen.free:
-            model.body_invweight0[:] *= weight_share(scene, settings)
+        model.body_invweight0[:] *= weight_share(scene, settings, drive)
         self._hold(model, keyframe=0)
         self._servo = chosen.servo_gain is not None
         self._controlled = has_control(scene, chosen)
@@ -78,10 +77,8 @@ class MujocoSession(SteppedModel):
         model = self._model
         names = [limb.body for limb in self._limbs]
         opt = model.opt
-        unused = not_used(self._drive)
         settings: dict[str, SettingValue] = {
-            name: value for name, value in self._settings.items() if name not in unused
-        } | {
+            **used(self._settings, self._drive),
             **holds(self._settings, self._dt, self._drive),
             "close": self._closed,
             "timestep_s": float(opt.timestep),
@@ -90,7 +87,8 @@ class MujocoSession(SteppedModel):
             "integrator": INTEGRATORS[int(opt.integrator)],
         }
         if self._free:
-            settings |= held_share(self._scene, self._settings, self._share_of_weights())
+            share = self._share_of_weights()
+            settings |= held_share(self._scene, self._settings, self._drive, share)
         if model.neq:
             settings["solref_timeconst_s"] = float(model.eq_solref[0, 0])
             settings["solref_dampratio"] = float(model.eq_solref[0, 1])

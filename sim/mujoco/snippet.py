@@ -92,9 +92,10 @@ def _how_to_scale(complete: Settings, stepping: Stepping, drive: Drive) -> str:
     per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
     steps = float(complete["solref_timeconst_steps"])
     stiff = f", and solref = {steps:g} timestep." if steps else "."
-    if drive == "free":  # no speed of the crank says how long it may be
+    counted = stepping.counted_in(drive)
+    if counted == "nothing":
         return f"Let go: timestep = {stepping.dt_s:g} s{stiff}"
-    if not stepping.substeps:
+    if counted == "turns":
         return (
             f"{per_turn} steps a turn of a crank at {speed}. At another speed: timestep = 2 pi / "
             f"({per_turn} speed)" + stiff

@@ -54,8 +54,7 @@ class PymunkSession:
         self._model: SpaceModel = build(
             scene,
             state,
-            servo=drive == "servo",
-            free=drive == "free",
+            drive=drive,
             exact_lines=exact_lines(settings),
             with_springs=not springs_as_forces(settings),
             delay_s=VELOCITY_SHIFT * dt_s,

@@ -49,11 +49,14 @@ class LoadSteps:
             for load in scene.loads.values()
             if load.over == "omega"
         }
-        self._of_strokes = {
-            name: replace(load, stroke="both")
-            for name, load in scene.loads.items()
-            if load.stroke != "both" and drive == "free"
-        }
+        self._of_strokes: dict[str, Load] = {}
+        self._stairs: dict[str, Staircase] = {}
+        if drive == "free":
+            for name, load in scene.loads.items():
+                if load.stroke != "both":
+                    self._of_strokes[name] = replace(load, stroke="both")
+                if isinstance(load.characteristic, Staircase):
+                    self._stairs[name] = load.characteristic
         self._begun = False
         self._times: list[float] = []
         self._known: dict[str, list[float]] = {}
@@ -70,8 +73,8 @@ class LoadSteps:
 
     def _ahead(self, load: Load, times: Array) -> Array:
         sizes = ahead(self._scene, load, times)
-        if self._drive == "free" and isinstance(load.characteristic, Staircase):
-            late = late_share(load.characteristic, times, self._dt, first=not self._begun)
+        if load.name in self._stairs:
+            late = late_share(self._stairs[load.name], times, self._dt, first=not self._begun)
             return np.asarray(sizes + late)
         return sizes
 

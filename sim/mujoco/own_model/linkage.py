@@ -25,9 +25,9 @@ PAIRS = {
     "slide": "prism",
     "slide hinge": "point on line",
     "hinge slide": "line over point",
-    "slide slide hinge": "free",
-    "hinge slide slide": "free",
-    "slide hinge slide": "free",
+    "slide slide hinge": "none",
+    "hinge slide slide": "none",
+    "slide hinge slide": "none",
 }
 
 
@@ -169,7 +169,7 @@ def _pairs(bare: Linkage, body: RigidBody) -> Iterator[Pivot | Guide]:
             f"body {body.name}: its joints are {kinds}; a linkage has a hinge, a slide, or one of "
             "each; give what lies between two joints a body of its own"
         )
-    if kind == "free":
+    if kind == "none":
         return
     hinge = next((joint for joint in body.joints if joint.kind == "hinge"), None)
     slide = next((joint for joint in body.joints if joint.kind == "slide"), None)

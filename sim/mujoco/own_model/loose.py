@@ -33,7 +33,7 @@ def loose_joints(component: Component) -> list[str]:
     _, values, directions = np.linalg.svd(np.vstack(rows))
     held = int(np.count_nonzero(values > NOTHING * (values[0] or 1.0)))
     moving = np.abs(directions[held:]).max(axis=0, initial=0.0) > NOTHING**0.5
-    return [joint_name(model, joint) for joint, free in zip(joints, moving, strict=True) if free]
+    return [joint_name(model, joint) for joint, moves in zip(joints, moving, strict=True) if moves]
 
 
 def _rows(component: Component, closure: Closure) -> Array:

@@ -16,12 +16,12 @@ def scene_name(name: str, otherwise: str, taken: Container[str]) -> str:
     plain = re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-_")[:MOST]
     if not plain or not plain[0].isalpha():
         plain = f"{otherwise}{'-' if plain else ''}{plain}"[:MOST]
-    free, count = plain, 1
-    while free in taken:
+    unused, count = plain, 1
+    while unused in taken:
         count += 1
         tail = f"-{count}"
-        free = plain[: MOST - len(tail)] + tail
-    return free
+        unused = plain[: MOST - len(tail)] + tail
+    return unused
 
 
 def point_of(name: str, bodies: Container[str]) -> str:
