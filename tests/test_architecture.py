@@ -58,11 +58,8 @@ FLOORS: Mapping[str, str] = {
     "sim": f"""
         {" ".join(ENGINES)}
         spoil
-        timing
-        remedies run snippets tuning viewing own_models force_recipes
-        recording
-        check energy registry forces_by_body
-        spring_lengths
+        run offers own_models
+        check registry
         measure drive tree_poses settings own_engine load_magnitudes momentum_balance
         engine
     """,

@@ -19,7 +19,7 @@ from reports.results.recommend import Recommendation
 from reports.results.table import noise_line, short_target
 from reports.store.reader import Stored
 from sim.engine import Drive
-from sim.snippets import snippet_writer
+from sim.offers import snippet_writer
 
 ROOM = {
     "damage": 4_000,

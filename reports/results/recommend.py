@@ -12,8 +12,8 @@ from reports.results.cost import equal, noise, reached
 from reports.results.lines import Line, lines
 from reports.results.why_not import broken, nearest, nothing
 from reports.store.reader import Stored
+from sim.offers import PERIOD_S, snippet
 from sim.registry import offering
-from sim.snippets import PERIOD_S, snippet
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
 """Errors of place [rad, or of the longest link]."""

@@ -34,9 +34,7 @@ from models.poses import along, centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene, Slider, span
 from sim.engine import Drive
 from sim.momentum_balance import Hinge
-from sim.pymunk.native_springs import NativeSpring, native_springs
-from sim.pymunk.pin_friction import PinFriction, pin_friction
-from sim.pymunk.pushes import moves_freely
+from sim.pymunk.native import NativeSpring, PinFriction, moves_freely, native_springs, pin_friction
 from sim.pymunk.rail import Rail
 
 FAR = 1e3

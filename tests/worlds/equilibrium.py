@@ -11,7 +11,7 @@ from models.scene import GROUND, Scene
 from models.spring_ends import line_ends
 from models.springs import LineSpring, PinSpring, SlideSpring
 from sim.engine import BodyPose, Log
-from sim.spring_lengths import spring_lengths
+from sim.measure import spring_lengths
 
 
 def turned(pose: BodyPose, local: tuple[float, float]) -> Array:

@@ -27,7 +27,7 @@ from models.mjcf import build
 from models.scene import Scene
 from models.tabulated import Tabulated
 from models.window_chain import Chain
-from sim.mujoco import session
+from sim.mujoco import engine
 from sim.run import run
 from tests.worlds import runs
 from tests.worlds.equilibrium import left_over
@@ -278,7 +278,7 @@ def test_the_tree_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
         plans.append(args)
         return tree.plan(*args, **options)
 
-    for module in (mjcf_friction, session):
+    for module in (mjcf_friction, engine):
         monkeypatch.setattr(module, "plan", counted)
     opened(FOURBAR, settings={"close": "B"})
     assert len(plans) == 1

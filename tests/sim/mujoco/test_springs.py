@@ -27,7 +27,7 @@ from models.scene import GROUND, Driver, Link, Point, Scene
 from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from models.waves import Pulse
 from sim.check import refuse_other_model
-from sim.mujoco.session import MujocoSession
+from sim.mujoco.engine import MujocoSession
 from sim.run import run
 from tests.worlds import runs
 from tests.worlds.equilibrium import left_over

@@ -25,12 +25,12 @@ from models.staircase import Staircase
 from models.tabulated import Tabulated
 from models.window_chain import Chain
 from sim.engine import Run
+from sim.offers import Stepping
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.force_recipe import FORCE_RECIPE
 from sim.pymunk.snippet import SNIPPET
 from sim.run import run
 from sim.settings import resolved
-from sim.snippets import Stepping
 from tests.worlds.let_go import released
 from tests.worlds.runs import acted_on, opened, ran
 from tests.worlds.tiers import slowly
