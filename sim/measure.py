@@ -44,7 +44,7 @@ class PointPath:
 
     @cached_property
     def _across(self) -> Array:
-        return _turned(self._arm)
+        return across(self._arm)
 
     @cached_property
     def position(self) -> Array:
@@ -77,14 +77,14 @@ class _Seen:
     def _drift(self) -> Array:
         """The velocity against the guide, in the plane."""
         omega = self.guide.omega[:, None]
-        return self.track.velocity - self.guide.velocity - omega * _turned(self._place)
+        return self.track.velocity - self.guide.velocity - omega * across(self._place)
 
     @cached_property
     def _axes(self) -> tuple[Array, Array]:
         """Along the line and to the left of it, (T, 2) each."""
         angle = self.guide.theta + self.slider.direction_rad
-        c, s = np.cos(angle), np.sin(angle)
-        return _pairs(c, s), _pairs(-s, c)
+        along = directions(angle)
+        return along, across(along)
 
     @property
     def position(self) -> Array:
@@ -101,17 +101,28 @@ class _Seen:
     def acceleration(self) -> Array:
         omega, alpha = self.guide.omega[:, None], self.guide.alpha[:, None]
         push = self.track.acceleration - self.guide.origin_acceleration
-        turning = alpha * _turned(self._place)
+        turning = alpha * across(self._place)
         return self._split(
-            push - turning + omega**2 * self._place - 2 * omega * _turned(self._drift)
+            push - turning + omega**2 * self._place - 2 * omega * across(self._drift)
         )
 
     def _split(self, vector: Array) -> Array:
-        along, across = self._axes
-        return _pairs((vector * along).sum(axis=1), (vector * across).sum(axis=1))
+        along, left = self._axes
+        return _pairs((vector * along).sum(axis=1), (vector * left).sum(axis=1))
 
 
-def _turned(vector: Array) -> Array:
+def directions(angle_rad: Array) -> Array:
+    """Unit vectors at these angles, (T, 2)."""
+    return _pairs(np.cos(angle_rad), np.sin(angle_rad))
+
+
+def arms(theta: Array, local: Point) -> Array:
+    """A vector of a body's frame over time in the plane, (T, 2)."""
+    c, s = np.cos(theta), np.sin(theta)
+    return _pairs(c * local[0] - s * local[1], s * local[0] + c * local[1])
+
+
+def across(vector: Array) -> Array:
     """The vectors (T, 2) turned by a quarter, counter-clockwise."""
     return _pairs(-vector[:, 1], vector[:, 0])
 

@@ -21,8 +21,9 @@ import numpy as np
 
 from models.array import Array
 from models.forces import Forces, SliderForces
-from models.joints import Prism, Slot, block_name, joined_at, joints, local_point, riding_body
+from models.joints import Prism, Slot, block_name, joined_at, joints, less, local_point, riding_body
 from models.scene import GROUND, Point, Scene, Slider
+from sim.measure import across, arms, directions
 
 OnBlocks = Mapping[str, Array]
 """What acts on slider blocks without mass beside their two joints, by slider: (T, 3), a force [N]
@@ -55,9 +56,7 @@ class MomentumGain:
 
     def arm(self, local: Point) -> Array:
         """From ``place`` to a point of the body's frame [m], (T, 2)."""
-        c, s = np.cos(self.theta), np.sin(self.theta)
-        x, y = local[0] - self.centre[0], local[1] - self.centre[1]
-        return np.stack([c * x - s * y, s * x + c * y], axis=1)
+        return arms(self.theta, less(local, self.centre))
 
 
 @dataclass(frozen=True)
@@ -100,7 +99,7 @@ def joint_pushes(
     system = _System(gains)
     for hinge in hinges:
         system.hold(scene, hinge)
-    across = {slide.slider.name: system.carry(scene, slide) for slide in slides}
+    lines = {slide.slider.name: system.carry(scene, slide) for slide in slides}
     for slide in slides:
         if isinstance(slide, Prism):
             system.couple(slide.body, slide.slider.on)
@@ -111,7 +110,7 @@ def joint_pushes(
     pairs, normals, moments, torque = np.split(found, ends, axis=1)
     return JointPushes(
         {hinge: pairs[:, 2 * k : 2 * k + 2] for k, hinge in enumerate(hinges)},
-        across,
+        lines,
         {slide.slider.name: normals[:, k] for k, slide in enumerate(slides)},
         {name: moments[:, k] for k, name in enumerate(prisms)},
         torque[:, 0] if driven else np.zeros(len(found)),
@@ -139,10 +138,9 @@ class _System:
 
     def carry(self, scene: Scene, slide: Prism | Slot) -> Array:
         """A line: a force across it, in one line of action on both bodies; its direction."""
-        angle = self._line(slide.slider)
-        across = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
-        self._push_on(scene, slide.slider, riding_body(slide), across)
-        return across
+        direction = across(self._along(slide.slider))
+        self._push_on(scene, slide.slider, riding_body(slide), direction)
+        return direction
 
     def couple(self, body: str, against: str) -> None:
         """A torque on a body, and the opposite on another."""
@@ -158,9 +156,7 @@ class _System:
             self.couple(driver.link, driver.base)
             return
         slider = scene.sliders[driver.slider]
-        angle = self._line(slider)
-        along = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        self._push_on(scene, slider, driver.link, along)
+        self._push_on(scene, slider, driver.link, self._along(slider))
 
     def solution(self) -> Array:
         """The unknowns (T, unknowns): NaN where the joints are singular; those of least size where
@@ -179,10 +175,11 @@ class _System:
         found[lost] = np.nan
         return found
 
-    def _line(self, slider: Slider) -> Array:
-        """The angle of a line, (T,)."""
+    def _along(self, slider: Slider) -> Array:
+        """The direction of a line, (T, 2)."""
         guide = self._gains.get(slider.on)
-        return slider.direction_rad + (np.zeros(self._samples) if guide is None else guide.theta)
+        theta = np.zeros(self._samples) if guide is None else guide.theta
+        return directions(slider.direction_rad + theta)
 
     def _push_on(self, scene: Scene, slider: Slider, rider: str, direction: Array) -> None:
         """Have a further unknown push what slides at its point, and the guide back."""

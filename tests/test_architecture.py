@@ -59,8 +59,8 @@ FLOORS: Mapping[str, str] = {
         {" ".join(ENGINES)}
         spoil
         run offers own_models
-        check registry
-        measure drive tree_poses settings own_engine load_magnitudes momentum_balance
+        check registry momentum_balance
+        measure drive tree_poses settings own_engine load_magnitudes
         engine
     """,
 }

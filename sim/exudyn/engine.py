@@ -22,6 +22,7 @@ from sim.exudyn.reactions import reactions
 from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, of_rigid, placing
 from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_drive, simulation
 from sim.exudyn.system import PlaneSystem, build, held_beams, node_masses, rounding_n
+from sim.measure import across, arms
 
 LEVELS = ("Coordinates", "Coordinates_t", "Coordinates_tt")
 
@@ -41,8 +42,8 @@ def beam_angles(
     for row, (name, node) in enumerate(made.node.items()):
         if name in looked:
             place = levels[len(LEVELS) * row] + made.system.GetNode(node)["referenceCoordinates"]
-            turned = np.arctan2(place[:, 3], place[:, 2])
-            angles[name] = np.unwrap(np.concatenate([[looked[name]], turned]))[1:]
+            angle = np.arctan2(place[:, 3], place[:, 2])
+            angles[name] = np.unwrap(np.concatenate([[looked[name]], angle]))[1:]
     return angles
 
 
@@ -65,15 +66,14 @@ def body_poses(
 def _pose(place: Array, rate: Array, push: Array, centre: Point) -> BodyPose:
     """The frame in which ``centre`` is where the node is, from coordinates and their rates."""
     theta, omega, alpha = place[:, 2], rate[:, 2], push[:, 2]
-    c, s = np.cos(theta), np.sin(theta)
-    arm = np.stack([c * centre[0] - s * centre[1], s * centre[0] + c * centre[1]], axis=-1)
-    across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
+    arm = arms(theta, centre)
+    turned = across(arm)
     return BodyPose(
         origin=place[:, :2] - arm,
         theta=theta,
-        velocity=rate[:, :2] - omega[:, None] * across,
+        velocity=rate[:, :2] - omega[:, None] * turned,
         omega=omega,
-        origin_acceleration=push[:, :2] - alpha[:, None] * across + omega[:, None] ** 2 * arm,
+        origin_acceleration=push[:, :2] - alpha[:, None] * turned + omega[:, None] ** 2 * arm,
         alpha=alpha,
     )
 

@@ -23,7 +23,7 @@ from sim.engine import Poses
 from sim.exudyn.passive import against, still_rad_s
 from sim.exudyn.solver import Multipliers
 from sim.exudyn.system import PlaneSystem
-from sim.measure import motion
+from sim.measure import directions, motion
 
 
 class BlockLoads:
@@ -48,16 +48,16 @@ class BlockLoads:
             if load.point is not None:
                 turned = line - slider.direction_rad + sliding_angle(slider)
                 angle = load.direction_rad + (turned if load.frame == "body" else 0.0 * line)
-                total += self._magnitude(load)[:, None] * unit(angle)
+                total += self._magnitude(load)[:, None] * directions(angle)
         for friction in self._rubbing(slider.name):
             still = still_rad_s(self._scene) * self._scene.longest_m
             speed = self._motion.sliders[slider.name].speed
-            total += against(friction.size, speed, still)[:, None] * unit(line)
+            total += against(friction.size, speed, still)[:, None] * directions(line)
         for spring in self._scene.springs.values():
             if isinstance(spring, SlideSpring) and spring.slider == slider.name:
                 slid = self._motion.sliders[slider.name]
                 pull = spring.rate * (slid.displacement - spring.free)
-                total -= (pull + spring.damping * slid.speed)[:, None] * unit(line)
+                total -= (pull + spring.damping * slid.speed)[:, None] * directions(line)
         return total
 
     def torque(self, slider: Slider) -> Array:
@@ -109,11 +109,6 @@ class BlockLoads:
         return load.magnitude(x[load.over], slid.speed)
 
 
-def unit(angle_rad: Array) -> Array:
-    """Unit vectors (T, 2)."""
-    return np.stack([np.cos(angle_rad), np.sin(angle_rad)], axis=-1)
-
-
 def reactions(
     scene: Scene,
     made: PlaneSystem,
@@ -141,7 +136,7 @@ def reactions(
             sliders[slider.name] = SliderForces(normal, -moment)
             continue
         blocks = BlockLoads(scene, poses)
-        across = unit(blocks.theta(slider.on) + slider.direction_rad + 0.5 * math.pi)
+        across = directions(blocks.theta(slider.on) + slider.direction_rad + 0.5 * math.pi)
         force = normal[:, None] * across + blocks.force(slider)
         pins[slider.point][riding_body(slide)] += force
         pins[slider.point][block_name(slider)] -= force

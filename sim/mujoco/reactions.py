@@ -21,6 +21,7 @@ from models.spring_ends import line_ends
 from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from models.tree import Limb, Tree
 from sim.engine import Poses
+from sim.measure import arms, directions
 
 
 @dataclass(frozen=True)
@@ -288,7 +289,7 @@ class _Reactions:
         if load.point is None:
             return at.body, Wrench(np.zeros_like(place), size, place)
         angle = at.direction_rad + (self._theta(at.body) if at.turns else np.zeros_like(size))
-        force = size[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        force = size[:, None] * directions(angle)
         return at.body, Wrench(force, np.zeros_like(size), place)
 
     def _ends(self, spring: Spring, pull: Array) -> list[tuple[str, Wrench]]:
@@ -314,18 +315,14 @@ class _Reactions:
 
     def _along(self, slider: Slider) -> Array:
         """The direction of the line of a slider, (T, 2)."""
-        angle = self._theta(slider.on) + slider.direction_rad
-        return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        return directions(self._theta(slider.on) + slider.direction_rad)
 
     def _point(self, body: str, point: str) -> Array:
         return self._place(body, local_point(self._scene, body, point))
 
     def _place(self, body: str, local: Point) -> Array:
         """Where a body has a place of its frame, (T, 2)."""
-        theta = self._theta(body)
-        c, s = np.cos(theta), np.sin(theta)
-        x, y = local
-        arm = np.stack([c * x - s * y, s * x + c * y], axis=-1)
+        arm = arms(self._theta(body), local)
         return arm if body == GROUND else arm + self._poses.bodies[body].origin
 
     def _theta(self, body: str) -> Array:

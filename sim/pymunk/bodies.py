@@ -25,6 +25,7 @@ from models.joints import Prism, Slot, less, local_point, riding_body, turned
 from models.poses import FIXED, Frame
 from models.scene import GROUND, Point, Scene
 from sim.engine import BodyPose
+from sim.measure import across, arms
 from sim.pymunk.native import Pushes
 from sim.pymunk.space import SpaceModel
 
@@ -56,23 +57,15 @@ def rows_of(model: SpaceModel) -> dict[str, int]:
 def pose(row: Array, centre: Point, lag_s: float) -> BodyPose:
     """The frame whose point ``centre`` is the origin of the pymunk body; no accelerations."""
     theta, omega = row[:, 2], row[:, 5]
-    later = _arm(theta + lag_s * omega, centre)
-    across = np.stack([-later[:, 1], later[:, 0]], axis=-1)
     none = np.full(len(theta), np.nan)
     return BodyPose(
-        origin=row[:, 0:2] - _arm(theta, centre),
+        origin=row[:, 0:2] - arms(theta, centre),
         theta=theta,
-        velocity=row[:, 3:5] - omega[:, None] * across,
+        velocity=row[:, 3:5] - omega[:, None] * across(arms(theta + lag_s * omega, centre)),
         omega=omega,
         origin_acceleration=np.full((len(theta), 2), np.nan),
         alpha=none,
     )
-
-
-def _arm(theta: Array, local: Point) -> Array:
-    """A vector of a body's frame in the plane (T, 2)."""
-    c, s = np.cos(theta), np.sin(theta)
-    return np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1]], axis=-1)
 
 
 Frames = Mapping[str, Frame]
