@@ -102,7 +102,8 @@ class Course(Generic[Value]):
 
     def go_on(self, value: Value) -> None:
         """To the end of the next step."""
-        self._values = [*self._values[-2:], value]
+        self._values.append(value)
+        del self._values[:-3]
 
     @property
     def value(self) -> Value:
