@@ -211,7 +211,7 @@ REACTION = _force(
         "react.",
         TAKEN_UP,
         diagram="reactions in pins",
-        free=FREE_FORCE,
+        free_motion=FREE_FORCE,
     ),
 )
 NORMAL = _force(
@@ -229,7 +229,7 @@ NORMAL = _force(
         "normal",
         TAKEN_UP,
         diagram="normal forces of sliders",
-        free=FREE_FORCE,
+        free_motion=FREE_FORCE,
     ),
 )
 MOMENT = _force(
@@ -247,7 +247,7 @@ MOMENT = _force(
         "moment",
         TAKEN_UP,
         diagram="moments of sliders",
-        free=FREE_FORCE,
+        free_motion=FREE_FORCE,
     ),
 )
 TORQUE = _force(
@@ -269,6 +269,6 @@ TORQUE = _force(
             slope="torque",
         ),
         diagram="driving torque",
-        free=FREE_FORCE,
+        free_motion=FREE_FORCE,
     ),
 )

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 from models.errors import few
 from reports.judge.cell import Cell, Checked
 from reports.judge.rows import cell_row
-from reports.judge.tolerance import EVERY
 from reports.output.numbers import count
+from reports.quantities.limits import EVERY
 from reports.results.cost import apart
 
 COMPARED = EVERY

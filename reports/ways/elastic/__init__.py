@@ -2,36 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan.elastic import cut_scene, held_steps, logged_every, refuse_unelastic
+from reports.quantities.limits import ELASTIC
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
 from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
-if TYPE_CHECKING:
-    from reports.own_log.log_kind import LogKind
-    from reports.verify.cell_table import CellTable
-
 
 class Bending:
     """What is particular to links that bend, whatever drives them; before the way of rigid ones."""
 
-    @property
-    def log(self) -> LogKind:
-        from reports.ways.elastic.log import LOG  # for logs alone
-
-        return LOG
-
-    @property
-    def table(self) -> CellTable:
-        from reports.ways.elastic.table import TABLE  # what is shown is loaded when it is
-
-        return TABLE
+    placed: Sequence[str] = ("deflection",)
+    no_case = "no elastic link in it"
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
         return cut_scene(scene, given)
@@ -42,6 +30,8 @@ class ElasticWay(Bending, DrivenWay):
 
     name = "elastic"
     closed_form = False
+    limits = ELASTIC
+    roles = DrivenWay.roles | {"elastic"}
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return bool(scene.elastic)

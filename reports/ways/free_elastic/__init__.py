@@ -10,6 +10,7 @@ from reports.plan.elastic import (
     refuse_unelastic,
     shortened_note,
 )
+from reports.quantities.limits import FREE_ELASTIC
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
 from reports.ways.elastic import Bending
@@ -21,6 +22,8 @@ class FreeElasticWay(Bending, FreeWay):
     """As of `Way`."""
 
     name = "free_elastic"
+    limits = FREE_ELASTIC
+    roles = FreeWay.roles | {"elastic"}
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return super().takes(scene, drive) and bool(scene.elastic)

@@ -19,6 +19,8 @@ from reports.compare.tracks import Track, tracks
 from reports.quantities.free import GEOMETRY, PHASE
 from reports.stability.case import Trial
 from reports.stability.error_series import ErrorSeries, lacking, nearest, widest
+from reports.stability.toggle import at_toggle, thrown_motion, thrown_start
+from reports.stability.yardstick import Yardstick
 from sim.engine import Run
 
 LOOKS = 1001
@@ -123,3 +125,17 @@ def _energy(whole: FreeBeside) -> Array:
 
 def _pure(track: Track) -> Array:
     return np.asarray(length(track.error) / track.scale)
+
+
+SERIES = {
+    "let-go": Yardstick(
+        "what is let go, at the same time over the sensitivity, at the run's own angle, and of the "
+        "energy",
+        free_error_series,
+        free_motion,
+        free_start,
+    ),
+    "toggle": Yardstick(
+        "what a throw is short of being over, rad", at_toggle, thrown_motion, thrown_start
+    ),
+}

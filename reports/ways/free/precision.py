@@ -12,6 +12,7 @@ software, Multibody System Dynamics 16 (2006), 179-190.
 
 from __future__ import annotations
 
+from reports.compare.free.free_facts import FreeFacts
 from reports.judge.cell import Checked
 
 IFTOMM = {"1e-1": 1e-1, "1e-3": 1e-3}
@@ -24,12 +25,13 @@ a four-bar that swings, 5e-6 rad, 1e-6 rad and 1e-5 of the energy."""
 def precision(checked: Checked) -> str:
     """The classes that a cell reaches, such as ``fine, 1e-3``; "none" where it reaches none."""
     errors = checked.errors
-    if errors is None or errors.free is None or checked.status != "ok":
+    facts = FreeFacts.of(errors)
+    if facts is None or checked.status != "ok":
         return "none"
     own = []
     if checked.verdict == "within":
         own = ["fine" if is_fine(checked) else "common"]
-    reached = [name for name, size in IFTOMM.items() if errors.free.raw[-1] <= size]
+    reached = [name for name, size in IFTOMM.items() if facts.raw[-1] <= size]
     return ", ".join([*own, *reached[-1:]]) or "none"
 
 

@@ -10,6 +10,7 @@ from reports.compare.elastic.elastic_truth import ChainTruth, chain_truth
 from reports.compare.series import length
 from reports.stability.case import Trial
 from reports.stability.error_series import ErrorSeries, lacking, nearest, widest
+from reports.stability.yardstick import Yardstick
 from sim.engine import Run
 
 CHAIN = ("segments",)
@@ -66,3 +67,10 @@ def elastic_motion(trial: Trial, time_s: Array) -> Motion:
 
 def _truth(trial: Trial) -> ChainTruth:
     return chain_truth(trial.scene, trial.segments, trial.scene.driver.law.period_s)
+
+
+SERIES = {
+    "bend": Yardstick(
+        "the deflection, over the largest", elastic_error_series, elastic_motion, elastic_start
+    )
+}
