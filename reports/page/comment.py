@@ -20,7 +20,7 @@ from reports.results.table import noise_line, short_target
 from reports.store.reader import Stored
 from reports.way.clock import clock_of
 from sim.engine import Drive
-from sim.snippets import snippet_writer
+from sim.offers import snippet_writer
 
 ROOM = {
     "damage": 4_000,

@@ -19,9 +19,9 @@ from reports.results.result_kind import TARGETS
 from reports.store.reader import Stored, read_store
 from sim.engine import Drive
 from sim.mujoco.settings import writing
+from sim.offers import snippet
 from sim.registry import engine as adapter
 from sim.settings import profile_of, resolved
-from sim.snippets import snippet
 from tests.sim.test_snippets import other
 from tests.worlds import bare
 from tests.worlds.bare import BARE
