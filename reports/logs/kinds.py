@@ -17,7 +17,7 @@ from models.motion import (
     SliderMotion,
 )
 from reports.logs.units import Dimension
-from reports.quantities.moving import MovingKind
+from reports.quantities.quantity import MovingKind
 
 LoggedKind = MovingKind | Literal["elastic"]
 """What may be logged of: an elastic link is a link, and bends and stretches besides."""

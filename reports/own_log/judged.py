@@ -17,9 +17,9 @@ from reports.compare.errors import Errors, largest
 from reports.judge.cell import left_words
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.limits import LIMITS
+from reports.judge.rules.reference import LEAST
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import refuse_forces_unasked
-from reports.judge.too_good import LEAST
 from reports.logs.beside_truth import beside_truth, lacking
 from reports.logs.channel import OwnLog
 from reports.logs.log_beside import LogBeside

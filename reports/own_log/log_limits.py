@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.compare.errors import Error, Errors
+from reports.judge.rules.limits import start_limit
 from reports.judge.rules.rule import Evidence
-from reports.judge.rules.start import start_limit
 from reports.judge.tolerance import Limit, in_passage, limits
 from reports.logs.beside_truth import readings_of
 from reports.logs.channel import OwnLog

@@ -12,7 +12,7 @@ from models.array import Array
 from models.scene import Same
 from reports.compare.beside import Beside, truth_of
 from reports.compare.last_turn import Trace, trace
-from reports.compare.series import length
+from reports.compare.tracks import length
 from reports.judge.cell import Cell, Checked, examined
 from sim.engine import Engine, Run
 

@@ -15,7 +15,7 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from models.files.assemble import scene_text
-from reports.judge.frames import cell_frame, error_frame
+from reports.judge.rows import cell_frame, error_frame
 from reports.judge.tolerance import parse
 from reports.output.frame_file import csv, parquet
 from reports.output.junit import junit
@@ -34,7 +34,7 @@ from reports.requests.options import given
 from reports.requests.shown import Shown
 from reports.requests.told import told_at_the_call
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions
-from reports.verify.junit import suite
+from reports.verify.table import suite
 from reports.workers.isolated import LIMIT_S, MEMORY_GB, checked_limits
 from sim.own_models import reading_engine
 from sim.registry import engine

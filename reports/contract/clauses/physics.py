@@ -20,8 +20,8 @@ from reports.contract.clause import Clause
 from reports.contract.let_go import centres
 from reports.contract.subject import NotTriedError, Subject
 from reports.judge.halving import PLACES
+from reports.judge.rules.reference import too_good
 from reports.judge.three_steps import convergence
-from reports.judge.too_good import too_good
 from sim.engine import Poses
 
 DRIVE_RAD = 1e-9

@@ -12,7 +12,7 @@ from models.errors import CrankcheckError, few
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.free.kept_motion import LOOK, kept_motion
+from reports.compare.free.free_truth import LOOK, kept_motion
 from reports.describe.driver_at import angle_at, driver_at, time_at
 from reports.drawing.true_motion import true_motion
 
