@@ -22,12 +22,10 @@ from reports.output.junit import junit
 from reports.output.provenance import provenance
 from reports.output.write import check_file, check_outputs, write
 from reports.own_model.account import read
-from reports.own_model.document import document
-from reports.own_model.judged import JudgedModel
-from reports.own_model.request import ModelRequest
-from reports.own_model.running import run_lines
+from reports.own_model.assembly import ModelRequest
+from reports.own_model.judged import JudgedModel, run_lines
 from reports.own_model.sentences import is_diff, recommended_head
-from reports.own_model.table import show
+from reports.own_model.table import document, show
 from reports.plan.steps import TURNS, positive
 from reports.requests.arguments import is_true, kind_of, path_of, text_of, tolerances_of
 from reports.requests.options import given

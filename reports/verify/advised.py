@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 
 from reports.judge.cell import Cell, Checked, check, unfinished
 from reports.judge.rules import FORCES, PLACES, RATES, TUNABLE, judge
-from reports.workers.isolated import Limits, Lost
-from reports.workers.scheduler import run_all
+from reports.workers.isolated import Limits, Lost, run_all
 from sim.engine import Settings
 from sim.offers import remedies
 from sim.registry import ENGINES, engine

@@ -16,8 +16,7 @@ from models.joints import block_name, joined_at, local_point
 from models.motion import Forces, Motion
 from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
-from reports.contract.clause import Clause
-from reports.contract.subject import Subject, numbers
+from reports.contract.subject import Clause, Subject, numbers
 
 STEPS = 800
 """Of one turn."""

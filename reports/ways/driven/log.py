@@ -10,8 +10,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError, cut, harmless
 from models.scene import Scene
-from reports.causes.cause import Case, Cause
-from reports.causes.excerpt import Excerpt
+from reports.causes.cause import Case, Cause, Excerpt
 from reports.causes.find import causes
 from reports.compare.beside import Truth
 from reports.compare.errors import Error, Errors, largest

@@ -17,10 +17,9 @@ from reports.compare.beside import Truth
 from reports.compare.errors import Error, Errors
 from reports.compare.free.free_truth import BEYOND, FreeBeside, FreeTruth, free_truth_until
 from reports.compare.tracks import Track, tracks
-from reports.logs.channel import Channel, OwnLog, Reading
+from reports.logs.channel import Channel, OwnLog, Reading, logged_motion
 from reports.logs.kinds import KINDS
 from reports.logs.log_beside import LogBeside
-from reports.logs.logged_motion import logged_motion
 from reports.output.numbers import error_text, listed, short
 from reports.own_log.drives import DriveFit
 from reports.own_log.log_kind import HeldLog, LogRequest

@@ -28,7 +28,7 @@ from reports.judge.tolerance import FORCES
 from reports.plan.singular import refuse_singular
 from reports.quantities import DEFAULTS, named
 from reports.verify.advised import check_all
-from reports.workers.scheduler import FEW
+from reports.workers.isolated import FEW
 from sim.engine import Run
 from sim.run import run
 from tests.worlds.fake.engine import FakeEngine

@@ -136,7 +136,7 @@ class Watched(Isolated[Answer]):
 
 @pytest.mark.usefixtures("_bad_engine")
 def test_a_wider_limit_runs_what_was_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("reports.workers.scheduler.Isolated", Watched)
+    monkeypatch.setattr("reports.workers.isolated.Isolated", Watched)
     folder = tmp_path / "store"
 
     def ran(limit_s: float, *faults: str, again: bool = False) -> str:

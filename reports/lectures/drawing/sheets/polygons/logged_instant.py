@@ -24,9 +24,8 @@ from reports.compare.beside import Truth
 from reports.compare.tracks import rate, second_rate
 from reports.describe.driver_at import angle_at
 from reports.lectures.drawing.sheets.sheet_log import SheetLog
-from reports.logs.channel import OwnLog, Reading
+from reports.logs.channel import OwnLog, Reading, logged_motion
 from reports.logs.log_beside import EVEN
-from reports.logs.logged_motion import logged_motion
 from reports.logs.map_file import Map
 
 REPORTED, DIFFERENCED = "as the log reports them", "by central differences of logged positions"
