@@ -27,7 +27,7 @@ from reports.own_log.rows import row_table
 from reports.own_log.table import markdown, show
 from reports.plan.elastic import given_of
 from reports.plan.steps import positive
-from reports.quantities import DEFAULTS, FREE
+from reports.quantities.limits import DEFAULTS, FREE
 from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
 from reports.requests.arguments import SceneLike, is_true, one_of, scene_of, tolerances_of
 from reports.requests.check import CellVerdict, verdict_of_run

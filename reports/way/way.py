@@ -17,6 +17,7 @@ from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
+from reports.way.result_kind import ResultKind
 from sim.engine import Drive
 
 WAYS = ("free_elastic", "elastic", "free", "driven")
@@ -41,17 +42,17 @@ class Parts:
     ========== ===============================================================================
     columns    the columns of its cells, a `reports.judge.rows.ColumnsOf`
     table      the table of its cells, a `reports.verify.cell_table.CellTable`
-    footer     the lines under the table, `reports.verify.cell_table.Part` each
+    footer     the lines under the table, `reports.verify.cell_table.Part` each, also there
     faults     the faults that are planted in its runs, a `reports.selftest.fault_runs.FaultSet`
     cases      the hard cases of its scenes, by group (`reports.stability.case.Case`)
     series     what hard runs are compared with, by name (`reports.stability.yardstick.Yardstick`)
-    results    what is said of its stored cells, a `reports.results.result_kind.ResultKind`
     figures    its figures of a store, by name (`reports.figures.drawing.Drawing`)
     section    its section of the page (`reports.page.sections.section.WaySection`)
     log        how its logs are judged, a `reports.own_log.log_kind.LogKind`
     ========== ===============================================================================
 
-    The value of a module has its name, in capitals.
+    The value of a module has its name, in capitals; the footer is one more of the table's module.
+    A way without columns of its own has those of all cells alone.
     """
 
     def part(self, name: str) -> object:
@@ -66,13 +67,20 @@ class Parts:
 
 @cache
 def _part(classes: tuple[type, ...], name: str) -> object:
-    found = (_module(cls, name) for cls in classes if cls is not Parts)
-    return getattr(next(module for module in found if module), name.upper())
+    found = (getattr(_module(cls, name), name.upper(), None) for cls in classes)
+    return next(filter(None, found), None) or _OF_ALL[name]
+
+
+def _no_columns(checked: object) -> dict[str, object]:
+    return {}
+
+
+_OF_ALL = {"columns": _no_columns}
 
 
 def _module(cls: type, name: str) -> ModuleType | None:
-    """The module of that name in the folder of a class, None where there is none."""
-    whole = f"{cls.__module__}.{name}"
+    """The module of a part in the folder of a class, None where there is none."""
+    whole = f"{cls.__module__}.{'table' if name == 'footer' else name}"
     return import_module(whole) if find_spec(whole) else None
 
 
@@ -102,6 +110,8 @@ class Way(Protocol):
     """The units of the numbers of its cells, in words."""
     no_case: str
     """The sentence on a hard case that is none of such scenes."""
+    results: ResultKind
+    """What is said of its stored cells."""
     over_g: Sequence[str]
     """What of its errors is over the sensitivity of the motion, in words."""
 

@@ -12,9 +12,11 @@ from reports.plan.forces import refuse_forceless
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular
 from reports.plan.steps import TURNS, counted
-from reports.quantities import DEFAULTS, named
+from reports.quantities import named
+from reports.quantities.limits import DEFAULTS
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
+from reports.way.result_kind import ResultKind
 from reports.way.way import Parts, StudyLengths
 from sim.engine import Drive
 
@@ -34,6 +36,15 @@ class DrivenWay(Parts):
     no_case = "no driven case"
     units = DRIVEN.compared_with(" at the commanded time")
     over_g: Sequence[str] = ()
+    results = ResultKind(
+        error="An error is the largest of a whole run against the closed form: of a link angle in "
+        "radians, of a slider's displacement or a point's place in lengths of the longest link, "
+        "whichever is worst.",
+        stands=0,
+        leads=1,
+        axis="largest error: angle [rad], place / L [-]",
+        promise="place (rad, or of the longest link)",
+    )
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return True

@@ -11,9 +11,11 @@ from reports.compare.beside import Truth
 from reports.compare.free.free_facts import FreeFacts
 from reports.plan.free import refuse_unreleased
 from reports.plan.steps import counted_free
-from reports.quantities import FREE, named
+from reports.quantities import named
+from reports.quantities.limits import FREE
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
+from reports.way.result_kind import ResultKind
 from reports.way.way import StudyLengths
 from reports.ways.driven import DrivenWay
 from sim.engine import Drive
@@ -41,6 +43,14 @@ class FreeWay(DrivenWay):
     no_case = "no case of free motion"
     units = UNITS
     over_g: Sequence[str] = FreeFacts.over_g
+    results = ResultKind(
+        error="What was let go is held to the integrated motion at the same time, its errors over "
+        "the sensitivity G of that motion.",
+        stands=2,
+        leads=2,
+        axis="largest error / sensitivity: angle [rad], place / L [-]",
+        promise="place over the sensitivity (rad, or of the longest link)",
+    )
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return drive == "free"
