@@ -72,9 +72,10 @@ def _pull_points(
     """A spring between two points, on the bodies of both."""
     way, drift = _way(scene, chunk, spring)
     force = way * Bounded(spring.rate)
-    if spring.free or spring.damping:  # without, its direction does not count: it may have none
+    slack_m = spring.free
+    if slack_m or spring.damping:  # without, its direction does not count: it may have none
         length, speed = _line_stretch(way, drift)
-        slack = Bounded(spring.damping) * speed - Bounded(spring.rate) * Bounded(spring.free)
+        slack = Bounded(spring.damping) * speed - Bounded(spring.rate) * Bounded(slack_m)
         force = force + way * (slack * length.inverse())
     for point, push in zip(spring.points, (force, -force), strict=True):
         body = _holder(scene, point)

@@ -59,21 +59,21 @@ class FourBar:
         group = groups[0]
         links = {name: link.points for name, link in scene.links.items()}
         first, second = group.first, group.second
-        held, free = group.outer1, group.outer2
-        if held in scene.ground:
-            first, second, held, free = second, first, free, held
+        crank_pin, rocker_pivot = group.outer1, group.outer2
+        if crank_pin in scene.ground:
+            first, second, crank_pin, rocker_pivot = second, first, rocker_pivot, crank_pin
         pivot = scene.driver_pivot
         driver = links[scene.driver.link]
-        if held not in driver or free not in scene.ground:
+        if crank_pin not in driver or rocker_pivot not in scene.ground:
             raise StructureError(
                 f"{scene.name}: not a four-bar; {group.first} and {group.second} hang between "
                 "pins of one body"
             )
         lengths = (
-            math.dist(driver[pivot], driver[held]),
-            math.dist(links[first][held], links[first][group.inner]),
-            math.dist(links[second][free], links[second][group.inner]),
-            math.dist(scene.ground[pivot], scene.ground[free]),
+            math.dist(driver[pivot], driver[crank_pin]),
+            math.dist(links[first][crank_pin], links[first][group.inner]),
+            math.dist(links[second][rocker_pivot], links[second][group.inner]),
+            math.dist(scene.ground[pivot], scene.ground[rocker_pivot]),
         )
         try:
             return FourBar(*lengths)

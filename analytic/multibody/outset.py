@@ -220,10 +220,10 @@ class Outset:
         values = np.array([one.value for one in named])
         if not values.any():
             return np.zeros(assembly.size)
-        free = 3 * len(assembly.bodies) - self._rank(rows)
-        if free:
+        unnamed = 3 * len(assembly.bodies) - self._rank(rows)
+        if unnamed:
             raise CrankcheckError(
-                f"{scene.name}: the start moves, and {free} of its freedoms have no speed; give "
+                f"{scene.name}: the start moves, and {unnamed} of its freedoms have no speed; give "
                 "start.rates_rad_s of as many more links, 0 where they do not turn"
             )
         rates = self._least(rows, np.concatenate([np.zeros(assembly.joints.count), values]))

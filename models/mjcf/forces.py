@@ -194,7 +194,8 @@ def _tendon(spring: Spring, state: State, tree: Tree) -> SpringTendon:
         signs, shift = {_sliding(tree, spring.slider): 1}, 0.0
     if not signs:  # they never turn against each other; a tendon asks for a joint all the same
         signs = {next(freedom.name for limb in tree.limbs for freedom in limb.freedoms): 0}
-    sense = -1 if spring.free < shift else 1
+    slack = spring.free - shift
+    sense = -1 if slack < 0.0 else 1
     joints = tuple((name, sense * sign) for name, sign in signs.items())
     return SpringTendon(spring, joints, shift, sense)
 
