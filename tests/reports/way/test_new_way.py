@@ -1,4 +1,4 @@
-"""A kind of scene is a folder and a line: a bead on a wire (`tests.worlds.bead`) is compared, judged,
+"""A kind of scene is a folder and a line: the bead of `tests.worlds.bead` is compared, judged,
 stored and shown as all others are.
 
 The house is copied by links, with the folder's name in `WAYS`; all commands run in one process.
