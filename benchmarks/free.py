@@ -33,8 +33,7 @@ from models.files.reading import load_scene
 from models.scene import Scene
 from reports.output.provenance import processor
 from sim.registry import engine
-from sim.run import run
-from sim.timing import time_run
+from sim.run import run, time_run
 from tests.second_opinions.baumgarte_table import baumgarte_table
 
 SCENES = ("fourbar-swing", "fourbar-pulse", "slider-crank-spring", "press-motor")

@@ -1,4 +1,4 @@
-"""Measure what the models of `sim.tuning` need: ``python -m benchmarks.step_cost``.
+"""Measure what the models of `sim.offers` need: ``python -m benchmarks.step_cost``.
 
 Every shipped scene at constant speed is timed in all engines, with settings that differ in what
 they ask for; each is timed in several rounds, far apart, and the least time counts. Takes some

@@ -36,7 +36,7 @@ from reports.compare.free_chain import ChainErrors, hold
 from reports.output.provenance import processor
 from sim.engine import SettingValue
 from sim.registry import engine
-from sim.timing import time_run
+from sim.run import time_run
 
 COUNT, DURATION_S, LOGGED_S = 40, 20.0, 0.01
 SEEN_S = (1.0, 2.0, 5.0, 10.0, 20.0)

@@ -12,8 +12,8 @@ from reports.advise.prices import Price, Prices
 from reports.advise.search import SearchResult
 from reports.output.numbers import count, short
 from reports.results.cost import equal
+from sim.offers import Stepping, frame_snippet
 from sim.registry import engine, offering
-from sim.snippets import Stepping, frame_snippet
 
 
 @dataclass(frozen=True)

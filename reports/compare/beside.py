@@ -107,8 +107,8 @@ class Beside:
     share ``truth``. What is worked out raises CrankcheckError where there is no reference.
     """
 
-    bends: ClassVar[bool] = False
-    """Whether it is an `ElasticBeside`, which is loaded where links bend alone."""
+    compared_by: ClassVar[tuple[str, ...]] = (".driven_errors",)
+    """The modules that compare it, from `reports.compare` (`reports.compare.compare`)."""
     truth: Truth
     run: Run
     motion: Motion

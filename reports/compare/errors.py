@@ -1,16 +1,15 @@
-"""What a comparison found: one `Error` per quantity and body, and the reference's own facts."""
+"""What a comparison found: one `Error` per quantity and body, and facts of the run in groups."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
-from analytic.forces.late_impulses import ON_TIME, LateImpulses
-from reports.compare.elastic.elastic_facts import ElasticFacts
-from reports.compare.free.free_facts import FreeFacts
-from reports.quantities.quantity import BodyKind, Source, tolerance_name
+from reports.compare.facts import DRIVEN, RIGID, ForceFacts, LinkFacts, MotionFacts, SceneFacts
+from reports.quantities.quantity import BodyKind, Source, Tolerance, tolerance_name
 
 ErrorKind = Literal["total", "geometric", "start", "passage", "raw", "chain"]
 
@@ -76,75 +75,37 @@ class Departure:
 
 
 @dataclass(frozen=True)
-class Unbalanced:
-    """What the forces of a pin add up to at most, as a share of the largest reaction."""
-
-    point: str
-    share: float
-
-
-@dataclass(frozen=True)
 class Errors:
-    """All errors of one run.
+    """All errors of one run, and what is known of it beside them, in groups.
 
-    ``curvature`` is the largest pure acceleration of the reference (at least 1) and
-    ``conditioning`` its smallest sine of a transmission angle, away from the change points that it
-    goes through: both say how hard the scene is. ``step_rad`` is the driver's peak speed times the
-    time between two steps. ``missing`` names what the scene has and the log has not; ``incomplete``
-    says what the time stamps lack of those that were commanded, and is empty where they are whole.
-    ``uncertain`` is what the reference may be wrong by, per quantity and body over the whole run,
-    as a pure number: the same for every engine, whatever it reports. ``departure`` is None where
-    the run stayed on its branch. ``summed_rad`` is the most that rounding makes of the driver's
-    angle in an engine that adds it up step by step: it is what grows with the number of steps
-    (`reports.compare.drive_rounding`). ``jolt`` is how much an engine may make up for at its start,
-    over a step, as a pure number (`analytic.forces.late_impulses`), ``worst_jolt`` the most of it
-    over the run, and ``mass_ratio`` the mass of the heaviest body over that of the lightest.
-    ``drives_within`` says that the driver moves two moving bodies against each other, and
-    ``starts_in_passage`` says that one of the first samples is near a change point. ``uneven`` is
-    how far bodies depart from moving evenly with the driver, ``uneven_rates`` those of them whose
-    rates do too (`reports.compare.uneven`). ``contradictions`` is what the engine's own numbers say
-    against its forces, ``unbalanced`` the pin whose forces add up to most,
-    None where there are none; ``start_load`` the largest force at the start, as a share of the
-    largest of its kind, where the engine's forces are those of steps, which start with half a step.
-    ``loading`` is how loads would shake the bodies by themselves, ``load_slopes`` how much they
-    change over a displacement, in reactions and in the torque, and ``inertia_share`` what inertia
-    may have of the largest reaction (`reports.compare.loading`). ``travel_rad`` is the angle
-    that a driver which was let go turns through, weighed with the square of its speed over the
-    largest, ``drifted_rad`` the most that it has turned through over the sensitivity of then, and
-    ``late`` what impulses that come a step late may make of its energy, all 0 of one that is
-    driven; ``free`` is what else there is to know of a run that was let go, None
-    of one that was driven; ``elastic`` what there is to know where links bend, else None.
+    ``missing`` names what the scene has and the log has not; ``incomplete`` says what the time
+    stamps lack of those that were commanded, and is empty where they are whole. ``uncertain`` is
+    what the reference may be wrong by, per quantity and body over the whole run, as a pure number:
+    the same for every engine, whatever it reports. ``departure`` is None where the run stayed on
+    its branch.
     """
 
     rows: tuple[Error, ...]
     not_reported: tuple[str, ...]
     notes: tuple[str, ...]
-    curvature: float
-    conditioning: float
-    step_rad: float
+    of_scene: SceneFacts
+    of_forces: ForceFacts = field(default_factory=ForceFacts)
+    of_motion: MotionFacts = DRIVEN
+    of_links: LinkFacts = RIGID
     missing: tuple[str, ...] = ()
     incomplete: str = ""
     uncertain: Mapping[tuple[str, str], float] = field(default_factory=dict)
     departure: Departure | None = None
-    summed_rad: float = 0.0
-    jolt: float = 0.0
-    worst_jolt: float = 0.0
-    mass_ratio: float = 1.0
-    drives_within: bool = False
-    starts_in_passage: bool = False
-    uneven: Mapping[tuple[BodyKind, str], float] = field(default_factory=dict)
-    uneven_rates: Set[tuple[BodyKind, str]] = frozenset()
-    contradictions: tuple[str, ...] = ()
-    unbalanced: Unbalanced | None = None
-    start_load: float = 0.0
-    loading: float = 0.0
-    load_slopes: Mapping[str, float] = field(default_factory=dict)
-    inertia_share: float = 1.0
-    travel_rad: float = 0.0
-    drifted_rad: float = 0.0
-    late: LateImpulses = ON_TIME
-    free: FreeFacts | None = None
-    elastic: ElasticFacts | None = None
+
+    @cached_property
+    def limits(self) -> Mapping[str, Tolerance]:
+        """The tolerances of such a run, by name."""
+        return {**self.of_motion.limits, **self.of_links.limits}
+
+    def compared_with(self, moved: str = "") -> str:
+        """The reference of the errors, and the letters of their shares: it stands under every table
+        of them. ``moved`` says what moves a closed form."""
+        return self.of_links.compared_with(self.of_motion, moved)
 
     def worst(
         self, quantity: str, source: Source = "reported", kind: ErrorKind = "total"

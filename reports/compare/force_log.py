@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from models.motion import Forces
-from reports.compare.errors import Error, Unbalanced
+from reports.compare.errors import Error
+from reports.compare.facts import ForceFacts, Unbalanced
 from reports.output.numbers import count
 from reports.quantities.forces import acting
 from sim.engine import Run
@@ -24,11 +25,7 @@ class ForceErrors:
     rows: tuple[Error, ...] = ()
     not_reported: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-    contradictions: tuple[str, ...] = ()
-    unbalanced: Unbalanced | None = None
-    start_load: float = 0.0
-    load_slopes: Mapping[str, float] = field(default_factory=dict)
-    inertia_share: float = 1.0
+    facts: ForceFacts = field(default_factory=ForceFacts)
     incomplete: str = ""
     unsure: Mapping[tuple[str, str], float] = field(default_factory=dict)
     """What the reference is wrong by, as a pure number, of forces that it knows at no sample."""

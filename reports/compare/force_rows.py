@@ -10,6 +10,7 @@ from models.array import Mask
 from reports.compare.beside import Beside
 from reports.compare.error_rows import instants_of, rate_rows
 from reports.compare.errors import Error
+from reports.compare.facts import ForceFacts
 from reports.compare.force_log import ForceErrors, force_notes, off_stamps, unbalanced
 from reports.compare.jumps import near_jumps
 from reports.compare.loading import inertia_share, load_slopes
@@ -62,11 +63,13 @@ def force_rows(beside: Beside) -> ForceErrors:
         tuple(rows),
         tuple(missing),
         force_notes(run, reference.forces, int(np.sum(left)), int(np.sum(at[~left].passed))),
-        () if borne is None else borne.contradictions,
-        unbalanced(run, force),
-        start if run.forces_of == "steps" else 0.0,
-        load_slopes(scene, reference, force, torque),
-        inertia_share(scene, force),
+        ForceFacts(
+            contradictions=() if borne is None else borne.contradictions,
+            unbalanced=unbalanced(run, force),
+            start_load=start if run.forces_of == "steps" else 0.0,
+            load_slopes=load_slopes(scene, reference, force, torque),
+            inertia_share=inertia_share(scene, force),
+        ),
         off_stamps(run),
         unsure,
     )

@@ -42,7 +42,6 @@ within a step.
 from __future__ import annotations
 
 from reports.compare.errors import Errors
-from reports.judge.tolerance import numbers_for
 from sim.engine import Placing
 
 ROOM = 2.0
@@ -64,20 +63,16 @@ CAP = 0.1
 def allowance(tolerance: str, errors: Errors, placing: Placing = "integrated") -> float:
     """What the first samples of an engine that comes by places as ``placing`` says may be off by on
     top of the limit ``tolerance``, as a pure number."""
-    numbers = numbers_for(errors)[tolerance]
+    numbers = errors.limits[tolerance]
+    scene, pushed = errors.of_scene, ELEMENTS * errors.of_links.pushed
     if numbers.parts:
-        parting = errors.curvature * errors.mass_ratio / max(errors.conditioning, 1e-12)
-        changing = CHANGE * errors.step_rad * errors.curvature**1.5 if placing == "solved" else 0.0
+        parting = scene.curvature * scene.mass_ratio / max(scene.conditioning, 1e-12)
+        changing = CHANGE * scene.step_rad * scene.curvature**1.5 if placing == "solved" else 0.0
         if not numbers.makes_up:
-            return min(OPEN * parting + changing, CAP) + _pushed(errors)
-        own = min(ARM * (OPEN * parting + changing), CAP) + ROOM * 0.5 * errors.start_load
-        return own + ARM * _pushed(errors)
+            return min(OPEN * parting + changing, CAP) + pushed
+        own = min(ARM * (OPEN * parting + changing), CAP) + ROOM * 0.5 * errors.of_forces.start_load
+        return own + ARM * pushed
     if numbers.jump:
-        jump = min(ROOM * errors.jolt * errors.step_rad, CAP)
-        return numbers.jump * jump / errors.step_rad ** (numbers.rate - 1)
+        jump = min(ROOM * scene.jolt * scene.step_rad, CAP)
+        return numbers.jump * jump / scene.step_rad ** (numbers.rate - 1)
     return 0.0
-
-
-def _pushed(errors: Errors) -> float:
-    """What elements of a beam may set off by."""
-    return ELEMENTS * errors.elastic.pushed if errors.elastic is not None else 0.0

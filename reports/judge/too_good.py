@@ -33,9 +33,6 @@ WHOLE = ("total", "geometric")
 ROUNDING = sys.float_info.epsilon
 """A rate that is off by this share of its scale, at most, is the next number or the same."""
 
-ORDER_LET_GO = 4
-"""Of what is let go, where an engine's loops need not give way, and all of its errors may be those
-of its steps: of MuJoCo's RK4."""
 BENT = ("deflection", "segments")
 SAME_BEND = 1e-11
 """Of the largest deflection: rounding; the nearest engine was off by 5e-7."""
@@ -53,33 +50,30 @@ def too_good(errors: Errors, placing: Placing, order: int) -> list[Error]:
 
 def highest_order(errors: Errors, order: int) -> int:
     """Of the step, what an engine of some ``order`` may be off by."""
-    return order if errors.free is None else max(order, ORDER_LET_GO)
+    return max(order, errors.of_motion.least_order)
 
 
 def _nearer(errors: Errors, order: int) -> Iterator[Error]:
     """Errors that no step of that size leaves of what is integrated; of gaps the widest alone, as
     an engine may hold some of its joints exactly."""
-    least = LEAST * errors.step_rad ** highest_order(errors, order)
+    scene = errors.of_scene
+    least = LEAST * scene.step_rad ** highest_order(errors, order)
     for row in errors.rows:
         body = row.body_kind, row.body
         place = row.quantity in PLACES
-        rate = row.quantity in RATES and row.source == "reported" and body in errors.uneven_rates
-        if (
-            (place or rate)
-            and row.kind in WHOLE
-            and row.pure <= least * errors.uneven.get(body, -1)
-        ):
+        rate = row.quantity in RATES and row.source == "reported" and body in scene.uneven_rates
+        if (place or rate) and row.kind in WHOLE and row.pure <= least * scene.uneven.get(body, -1):
             yield row
     gap = largest(row for row in errors.rows if row.quantity in named("closure"))
     borne = largest(row for row in errors.rows if row.quantity in FORCES)
     for widest in (gap, borne):
-        if widest and widest.pure <= least * max(errors.uneven.values(), default=-1):
+        if widest and widest.pure <= least * max(scene.uneven.values(), default=-1):
             yield widest
 
 
 def _bent_the_same(errors: Errors) -> Iterator[Error]:
     """Deflections that are those of a theory to rounding: no engine's steps and joints are."""
-    if errors.elastic is None or errors.elastic.slender >= STRAIGHT:
+    if errors.of_links.slender >= STRAIGHT:
         return
     for row in errors.rows:
         if row.quantity in BENT and row.kind in WHOLE and row.pure <= SAME_BEND:
@@ -91,13 +85,13 @@ def _the_same(errors: Errors) -> Iterator[Error]:
     borne = largest(row for row in errors.rows if row.quantity in FORCES)
     moved = errors.worst("acceleration")
     off = moved.pure if moved and moved.pure > UNROUNDED else 0.0
-    least = max(ROUNDING, LEAST * off * errors.inertia_share)
-    if borne and errors.uneven and borne.pure <= least:
+    least = max(ROUNDING, LEAST * off * errors.of_forces.inertia_share)
+    if borne and errors.of_scene.uneven and borne.pure <= least:
         yield borne
     rates: dict[tuple[BodyKind, str], list[Error]] = {}
     for row in errors.rows:
         if row.quantity in RATES and row.source == "reported" and row.finite:
             rates.setdefault((row.body_kind, row.body), []).append(row)
     for body, own in rates.items():
-        if body in errors.uneven and all(row.pure <= ROUNDING for row in own):
+        if body in errors.of_scene.uneven and all(row.pure <= ROUNDING for row in own):
             yield max(own, key=lambda row: row.pure)

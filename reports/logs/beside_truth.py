@@ -33,6 +33,10 @@ class LogSide(Protocol):
         """The log beside the truth, and the run that it amounts to."""
         ...
 
+    def judged_as(self, scene: Scene, channel: Channel) -> tuple[str, ...]:
+        """The quantities that a column is judged as."""
+        ...
+
 
 def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside:
     """The log beside the truth, and the run that it amounts to. Raises CrankcheckError."""
@@ -66,7 +70,7 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
         forces_of="steps" if borne and borne.of_steps else "states",
     )
     assert run.motion is not None
-    return cast(LogSide, way.log).beside(log, truth, run)
+    return cast(LogSide, way.part("log")).beside(log, truth, run)
 
 
 def _instants(log: OwnLog, order: Order) -> Array:
@@ -95,9 +99,9 @@ def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
     """What of the scene's places, rates and, where they were asked for, forces the log does not
     hold, quantity by quantity."""
     held, there = list[tuple[str, str]](), list[tuple[str, str]]()
-    other_role = "drive" if beside.run.drive == "free" else "free"
+    way = way_of(log.scene)
     for name, entry in QUANTITIES.items():
-        if (entry.role == "force" and not beside.run.with_forces) or entry.role == other_role:
+        if entry.role not in way.roles_of(with_forces=beside.run.with_forces):
             continue
         if name == "segments":  # which the same column says as the deflection
             continue
@@ -109,29 +113,15 @@ def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
         held += [(name, track.body) for track in beside.tracks((name,), reference)]
         every = (measure.truth(beside.scene, whole) for measure in entry.measures)
         there += [(name, body) for bodies in every for body in bodies]
-    if beside.run.drive == "free":
-        there.append(("energy", beside.scene.name))  # which no column tells
+    there += [(name, beside.scene.name) for name in way.unlogged]
     return tuple(f"{name} of {body}" for name, body in there if (name, body) not in held)
 
 
 def readings_of(log: OwnLog, quantity: str, body: str) -> tuple[Reading, ...]:
     """The readings that a quantity of a body is judged by."""
+    side = cast(LogSide, way_of(log.scene).part("log"))
     return tuple(
         each
         for each in log.readings
-        if each.channel.of == body and quantity in _judged_as(log.scene, each.channel)
+        if each.channel.of == body and quantity in side.judged_as(log.scene, each.channel)
     )
-
-
-def _judged_as(scene: Scene, channel: Channel) -> tuple[str, ...]:
-    """The quantities that a column is judged as: of what is let go, places at the same time and at
-    its own angle."""
-    kind = channel.kind
-    if kind.quantity == "deflection":
-        return "deflection", "segments"
-    if kind.order or not scene.is_free:
-        driver = scene.driver
-        is_drive = driver.is_crank and (kind.name, channel.of) == ("angle", driver.link)
-        return ("drive",) if is_drive else (kind.quantity,)
-    is_phase = (kind.name, channel.of) == ("angle", scene.driver.link)
-    return ("phase" if is_phase else kind.quantity, "geometry")

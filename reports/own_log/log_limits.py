@@ -10,7 +10,7 @@ from models.scene import Scene
 from reports.compare.errors import Error, Errors
 from reports.judge.rules.rule import Evidence
 from reports.judge.rules.start import start_limit
-from reports.judge.tolerance import Limit, in_passage, limits, numbers_for
+from reports.judge.tolerance import Limit, in_passage, limits
 from reports.logs.beside_truth import readings_of
 from reports.logs.channel import OwnLog
 
@@ -23,7 +23,7 @@ def log_limits(
 ) -> dict[str, Limit]:
     """The limit of everything that is judged, by target or by a step [s], 0 for none; what is not
     judged has no end. Raises CrankcheckError for neither."""
-    target, numbers = dict(target), numbers_for(errors)
+    target, numbers = dict(target), errors.limits
     every = target.pop(EVERY, None)
     if every is not None:
         target = {name: target.get(name, every) for name in numbers}

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from models.errors import CrankcheckError, few, shown, suggestion
 from models.scene import Scene
 from reports.compare.errors import Errors
+from reports.own_log.log_kind import log_kind
 from reports.quantities import QUANTITIES
 
 
@@ -22,7 +23,7 @@ def required_name(scene: Scene, name: str) -> tuple[str, str, str]:
         return name, "", name
     body, dot, quantity = name.rpartition(".")
     if scene.driver.is_crank and (body, quantity) == (scene.driver.link, "angle"):
-        quantity = "phase" if scene.is_free else "drive"
+        quantity = log_kind(scene).driver_angle
     if dot and body in bodies and quantity in QUANTITIES:
         return name, quantity, body
     names = [*QUANTITIES, *sorted(bodies)]

@@ -12,11 +12,11 @@ from rich.text import Text
 
 from models.errors import cut, few, harmless
 from reports.causes.cause import Cause
-from reports.describe.held_to import held_to
 from reports.judge.rules import RULES
 from reports.output.columns import hanging, plain_table
 from reports.output.numbers import count, error_text, short
 from reports.own_log.judged import JudgedLog
+from reports.own_log.log_kind import log_kind
 from reports.own_log.rows import LogRow, column_text, log_rows, share_of
 
 WIDE = 90
@@ -104,9 +104,7 @@ def unexplained(judged: JudgedLog) -> list[str]:
 
 def no_cause_text(judged: JudgedLog, columns: Sequence[str]) -> str:
     """What is said of columns that are out of tolerance and have no cause."""
-    if judged.scene.is_free:
-        return f"of {few(columns, 6)}: see the notes; none is looked for in what was let go"
-    return f"none that is known explains {few(columns, 6)}"
+    return log_kind(judged.scene).no_cause.format(few(columns, 6))
 
 
 def _table(rows: Sequence[LogRow], width: int) -> Table:
@@ -224,13 +222,11 @@ def footer(judged: JudgedLog, facts: Mapping[str, str]) -> list[str]:
         "fitted": "a driver fitted to the log",
         "logged": "the logged angle of the driver (geometry alone)",
     }
-    elastic = judged.errors.elastic if judged.errors else None
+    assert judged.errors is not None
     time_s = judged.log.time_s
     step = f"step {judged.step_s:g} s" if judged.step_s else "no step known"
     return [
-        held_to(
-            free=judged.scene.is_free, elastic=elastic, moved=f" moved by {drives[judged.drive]}"
-        ),
+        judged.errors.compared_with(f" moved by {drives[judged.drive]}"),
         f"t = {time_s[0]:.6g} to {time_s[-1]:.6g} s, {step}; limits from "
         f"{', '.join(dict.fromkeys(row.limit.origin for row in log_rows(judged)))}.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),

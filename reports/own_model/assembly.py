@@ -70,12 +70,12 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
         raise CrankcheckError(
             f"--branch {unknown[0]}: it chooses between no two assemblies; {have}"
         )
-    free = [key for key in keys if key not in request.branch]
-    if len(free) > MOST_CHOICES:
+    left = [key for key in keys if key not in request.branch]
+    if len(left) > MOST_CHOICES:
         raise CrankcheckError(
-            f"{request.path}: {len(free)} choices between two assemblies, of which {MOST_CHOICES} "
-            f"are found by trying; choose {len(free) - MOST_CHOICES} or more with --branch NAME=1 "
-            f"or NAME=-1, of {', '.join(free)}"
+            f"{request.path}: {len(left)} choices between two assemblies, of which {MOST_CHOICES} "
+            f"are found by trying; choose {len(left) - MOST_CHOICES} or more with --branch NAME=1 "
+            f"or NAME=-1, of {', '.join(left)}"
         )
     ranked = sorted(_fits(own, bare, numbered, request.branch), key=lambda fit: fit[0])
     if not ranked:
@@ -128,10 +128,10 @@ def _fits(
     own: OwnModel, bare: Scene, choices: Mapping[str, Sequence[int]], chosen: Mapping[str, int]
 ) -> Iterator[tuple[float, Scene]]:
     """Every assembly, with how far the pose is from it."""
-    free = [key for key in choices if key not in chosen]
+    left = [key for key in choices if key not in chosen]
     drawn = own.drawn().bodies
-    for signs in itertools.product(*(choices[key] for key in free)):
-        branch = dict.fromkeys(choices, 1) | dict(chosen) | dict(zip(free, signs, strict=True))
+    for signs in itertools.product(*(choices[key] for key in left)):
+        branch = dict.fromkeys(choices, 1) | dict(chosen) | dict(zip(left, signs, strict=True))
         scene = replace(bare, branch=branch)
         try:
             state = solve(scene, np.zeros(1), bound=False).state()

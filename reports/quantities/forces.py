@@ -210,7 +210,7 @@ REACTION = _force(
         "react.",
         TAKEN_UP,
         diagram="reactions in pins",
-        free=FREE_FORCE,
+        free_motion=FREE_FORCE,
     ),
 )
 NORMAL = _force(
@@ -228,7 +228,7 @@ NORMAL = _force(
         "normal",
         TAKEN_UP,
         diagram="normal forces of sliders",
-        free=FREE_FORCE,
+        free_motion=FREE_FORCE,
     ),
 )
 MOMENT = _force(
@@ -246,7 +246,7 @@ MOMENT = _force(
         "moment",
         TAKEN_UP,
         diagram="moments of sliders",
-        free=FREE_FORCE,
+        free_motion=FREE_FORCE,
     ),
 )
 TORQUE = _force(
@@ -268,6 +268,6 @@ TORQUE = _force(
             slope="torque",
         ),
         diagram="driving torque",
-        free=FREE_FORCE,
+        free_motion=FREE_FORCE,
     ),
 )

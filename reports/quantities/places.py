@@ -92,7 +92,9 @@ def _place(
     name: str, measure: Measure, head: str, rule: str, short: str, explanation: str, cure: str
 ) -> Quantity:
     """A quantity of which one kind of bodies has its places; its rule has its name."""
-    criterion = Criterion(rule, name, explanation, cure, short, WITHIN_A_STEP, free=FREE_PLACE)
+    criterion = Criterion(
+        rule, name, explanation, cure, short, WITHIN_A_STEP, free_motion=FREE_PLACE
+    )
     return Quantity(name, "place", (measure,), (criterion,), head)
 
 
@@ -166,7 +168,7 @@ GAP = Quantity(
                 "or the jolt that closes it, where that is more.",
                 conditioned=False,
             ),
-            free=replace(WITHIN_A_STEP, conditioned=False),
+            free_motion=replace(WITHIN_A_STEP, conditioned=False),
         ),
     ),
 )

@@ -81,8 +81,8 @@ class Criterion:
     """What the errors of one source are held to: the words of a rule, and its tolerance.
 
     ``short`` is the rule in the verdict table, ``diagram`` the error in the page's list of
-    diagrams, which has none of it where that is empty. ``free`` is the tolerance of a mechanism
-    that was let go, None where the error is shown alone there.
+    diagrams, which has none of it where that is empty. ``free_motion`` is the tolerance of free
+    motion, None where the error is shown alone there.
     """
 
     id: str
@@ -92,7 +92,7 @@ class Criterion:
     short: str
     tolerance: Tolerance
     diagram: str = ""
-    free: Tolerance | None = None
+    free_motion: Tolerance | None = None
 
     @property
     def source(self) -> Source:

@@ -70,7 +70,7 @@ VELOCITY = Quantity(
             short="vel",
             diagram="velocity, as reported",
             tolerance=SECOND_ORDER,
-            free=FREE_RATE,
+            free_motion=FREE_RATE,
         ),
         Criterion(
             "CC107",

@@ -10,7 +10,6 @@ from rich.console import Console
 from models.driver import driver_unit
 from models.scene import Scene
 from reports.compare.errors import Error, ErrorKind, Errors, largest
-from reports.describe.held_to import held_to
 from reports.output.columns import plain_table
 from reports.output.numbers import short
 from reports.quantities import QUANTITIES
@@ -41,8 +40,7 @@ def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> 
             _driver(worst),
         )
     console.print(table, "")
-    said = held_to(free=errors.free is not None, elastic=errors.elastic)
-    console.print(said, style="dim", highlight=False)
+    console.print(errors.compared_with(), style="dim", highlight=False)
     for note in errors.notes:
         console.print(note, style="yellow", highlight=False, markup=False)
 

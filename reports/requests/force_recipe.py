@@ -15,7 +15,7 @@ from models.files.reading import find_scene, load_scene
 from reports.output.write import check_file, write
 from reports.plan.steps import MOST_STEPS
 from reports.requests.export import opened
-from sim.force_recipes import force_recipe
+from sim.offers import force_recipe
 from sim.registry import engine
 from sim.run import check_steps
 from sim.settings import profile_of, resolved

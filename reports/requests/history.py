@@ -28,7 +28,6 @@ from reports.requests.options import Duration, Jobs, StepS, StepsPerTurn
 from reports.requests.verify import VerifyRequest, plan
 from reports.requests.verify_files import IN_FOLDER
 from reports.results.changes.reading import scene_digests
-from reports.verify.footer import DRIVEN, FREE
 from reports.workers.programs import run_child
 from sim.registry import ENGINES, engine
 
@@ -214,7 +213,7 @@ def _footer(
     names = " ".join(result.version for result in measured) or "none"
     facts = provenance({request.engine: names})
     lines = [
-        FREE if first.drive == "free" else DRIVEN,
+        first.way.units,
         f"{step}, {long}; settings are those of this crankcheck's profiles in every version.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),
     ]

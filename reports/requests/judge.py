@@ -15,7 +15,7 @@ from models.errors import CrankcheckError, harmless
 from models.files.inputs import names_in
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
-from reports.judge.tolerance import DEFAULTS, FREE, check_names, parse, refuse_of_other_motion
+from reports.judge.tolerance import check_names, parse, refuse_of_other_kinds
 from reports.logs.map_file import Map, read_map
 from reports.output.provenance import provenance
 from reports.output.write import check_file, check_outputs
@@ -28,6 +28,7 @@ from reports.own_log.rows import row_table
 from reports.own_log.table import show
 from reports.plan.elastic import given_of
 from reports.plan.steps import positive
+from reports.quantities.limits import DEFAULTS, FREE
 from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
 from reports.requests.arguments import SceneLike, is_true, one_of, scene_of, tolerances_of
 from reports.requests.check import CellVerdict, verdict_of_run
@@ -43,6 +44,7 @@ from reports.requests.shown import Shown
 from reports.requests.solution import drawn
 from reports.requests.told import in_python, parts_in_python, told_at_the_call
 from reports.way.length import LEAST_STEPS
+from reports.way.way import way_of
 from sim.engine import Run
 
 if TYPE_CHECKING:
@@ -214,7 +216,7 @@ def judged(
 def _refuse_other_targets(scene: Scene, target: Mapping[str, float]) -> None:
     """Refuse targets of what the scene has not. Raises CrankcheckError."""
     of_some = [*target.keys() - {EVERY}]
-    refuse_of_other_motion("--target", of_some, [scene.is_free], bends=bool(scene.elastic))
+    refuse_of_other_kinds("--target", of_some, [way_of(scene).limits])
 
 
 def _refuse_few_steps(scene: Scene, run: Run) -> None:

@@ -35,10 +35,9 @@ from reports.workers.isolated import Limits
 from reports.workers.progress import progress_bar
 from reports.workers.signals import Stopped
 from sim.engine import Settings
+from sim.offers import SearchSpace, search_space, snippet
 from sim.registry import engine, offering
 from sim.settings import profile_of, resolved
-from sim.snippets import snippet
-from sim.tuning import SearchSpace, search_space
 
 PROFILE = "tuned"
 """The profile that is searched around, and compared with."""

@@ -18,7 +18,7 @@ from reports.judge.tolerance import (
     check_names,
     parse,
     refuse_forces_unasked,
-    refuse_of_other_motion,
+    refuse_of_other_kinds,
 )
 from reports.output.console import tell
 from reports.output.provenance import provenance
@@ -43,7 +43,7 @@ from reports.requests.verify_options import PRESCRIBED, VerifyOptions, refuse_of
 from reports.verify.all_cells import check_all
 from reports.verify.table import show
 from reports.way.length import Length
-from reports.way.way import laid_out
+from reports.way.way import laid_out, way_of
 from sim.engine import Drive
 from sim.registry import engine
 
@@ -116,9 +116,7 @@ def plan(request: VerifyOptions) -> list[Cell]:
         refuse_forces_unasked("--tol", tolerance)
     scenes = _scenes(request)
     _refuse_options(request, scenes)
-    bends = any(scene.elastic for scene in scenes)
-    free = [scene.is_free for scene in scenes]
-    refuse_of_other_motion("--tol", tolerance, free, bends=bends)
+    refuse_of_other_kinds("--tol", tolerance, (way_of(scene).limits for scene in scenes))
     engines = chosen_engines(request.engines)
     profiles = chosen_profiles(request.profiles, engines)
     given = given_of(scenes, request.segments, request.springs)

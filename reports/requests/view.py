@@ -16,7 +16,7 @@ from models.files.reading import find_scene, load_scene
 from reports.output.write import check_file, write
 from reports.requests.export import opened
 from reports.requests.options import SceneName
-from sim.viewing import viewer
+from sim.offers import viewer
 
 ENDINGS = (".gif", ".png")
 

@@ -19,7 +19,7 @@ from reports.judge.rows import cell_row, error_rows
 from reports.output.provenance import crankcheck_version
 from reports.workers.isolated import Isolated, Lost
 from sim.engine import Run
-from sim.timing import time_run
+from sim.run import time_run
 
 REPEATS = 2
 """Timed repeats of a cell in one round."""

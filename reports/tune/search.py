@@ -21,7 +21,7 @@ from optuna.trial import Trial, TrialState
 from reports.plan.coarsest import RESOLUTION
 from reports.tune.attempt import Attempt
 from sim.engine import Settings, SettingValue
-from sim.tuning import Knob, SearchSpace, Values
+from sim.offers import Knob, SearchSpace, Values
 
 FOUND = "found"
 """Where a trial keeps its attempt."""

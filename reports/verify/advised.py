@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from reports.judge.cell import Cell, Checked, check
 from reports.judge.rules import FORCES, PLACES, RATES, TUNABLE, judge
 from sim.engine import Settings
+from sim.offers import remedies
 from sim.registry import engine
-from sim.remedies import remedies
 from sim.settings import profile_of, resolved
 
 HELPS = 3.0

@@ -14,6 +14,8 @@ from reports.output.columns import plain_table
 from reports.verify.row_cells import mark, row_cells
 
 Texts = Callable[[Checked], Sequence[str]]
+Part = tuple[int, Callable[[Sequence[Checked]], Sequence[str]]]
+"""A part of what stands under the tables, its place among the others, and its lines for cells."""
 
 
 def _none(one: Checked) -> Sequence[str]:

@@ -35,7 +35,7 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
     for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
         chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
         for table in _tables(chosen):
-            own = [one for one in chosen if one.cell.way.table is table]
+            own = [one for one in chosen if one.cell.way.part("table") is table]
             console.print(table.shown(profile, gated, own, console.width), "")
         loaded = [one for one in chosen if one.cell.with_forces and one.errors]
         if loaded:
@@ -67,7 +67,9 @@ def _tables(checked: Sequence[Checked]) -> list[CellTable]:
     """Those of the cells, the most general first."""
     ways = {one.cell.way.name: one.cell.way for one in checked}
     return list(
-        dict.fromkeys(cast(CellTable, ways[name].table) for name in reversed(WAYS) if name in ways)
+        dict.fromkeys(
+            cast(CellTable, ways[name].part("table")) for name in reversed(WAYS) if name in ways
+        )
     )
 
 

@@ -22,7 +22,7 @@ from models.poses import centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene
 from sim.engine import Settings
 from sim.exudyn.settings import BY_NEED
-from sim.force_recipes import ForceRecipe
+from sim.offers import ForceRecipe
 
 PROGRAM = '''"""{title}"""
 

@@ -12,8 +12,8 @@ from models.motion import State
 from models.scene import Scene
 from models.tree import Tree, driven_freedom
 from sim.engine import Settings
-from sim.force_recipes import ForceRecipe
 from sim.mujoco.settings import writing
+from sim.offers import ForceRecipe
 
 PROGRAM = '''"""Reactions and driving torque of {scene} in MuJoCo, over one turn of {driver}."""
 

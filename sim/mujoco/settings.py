@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 from models.loads import SegmentSpring
 from models.mjcf import document, options
@@ -40,9 +41,13 @@ RANGES = {
 MORE_ITERATIONS = {"friction": 20, "springs": 20, "free_weight_share": 4}
 """What causes need more iterations than pins as stiff as the compiled weights make them."""
 OF_DRIVES = ("flywheel_ratio", "servo_gain", "servo_integrator")
-"""What a free crank does not have."""
 OF_FREE = ("free_timeconst_steps", "free_inverse_weight_share")
-"""What is given to a free crank alone."""
+NOT_USED: Mapping[Drive, tuple[str, ...]] = {
+    "prescribed": OF_FREE,
+    "servo": OF_FREE,
+    "free": OF_DRIVES,
+}
+"""The settings that a drive has no use for."""
 
 FREE_STEPS, FREE_WEIGHT_SHARE = 32.0, 1e-7
 """Time constant of the loop closures in steps, and the share of the bodies' inverse weights, where
@@ -181,24 +186,27 @@ def _iterating(scene: Scene, settings: Settings, drive: Drive) -> str:
         return "friction"
     if scene.springs and integrator(settings, drive) == "discrete":
         return "springs"
-    return "free_weight_share" if drive == "free" and weight_share(scene, settings) != 1 else ""
+    return "free_weight_share" if weight_share(scene, settings, drive) != 1 else ""
 
 
-def weight_share(scene: Scene, settings: Settings) -> float:
+def weight_share(scene: Scene, settings: Settings, drive: Drive) -> float:
     """Of the inverse weights as compiled, those that the bodies of what is let go are given.
 
     Rounding goes up as the weights go down, and makes chains of elastic segments ring, which
     nothing damps: theirs go down less.
     """
-    asked = float(settings["free_inverse_weight_share"])
+    asked = float(used(settings, drive).get("free_inverse_weight_share", 1.0))
     ringing = any(isinstance(spring, SegmentSpring) for spring in scene.springs.values())
     return max(asked, SEGMENTS_SHARE) if ringing and asked < 1.0 else asked
 
 
-def held_share(scene: Scene, settings: Settings, found: float) -> dict[str, SettingValue]:
+def held_share(
+    scene: Scene, settings: Settings, drive: Drive, found: float
+) -> dict[str, SettingValue]:
     """The share that a model was ``found`` with, as settings: that asked for, and beside it that of
     segments."""
-    asked, given = float(settings["free_inverse_weight_share"]), weight_share(scene, settings)
+    asked = float(settings["free_inverse_weight_share"])
+    given = weight_share(scene, settings, drive)
     if given != asked and found == given:
         return {"free_inverse_weight_share": asked, "free_inverse_weight_share_of_segments": found}
     return {"free_inverse_weight_share": found}
@@ -220,8 +228,7 @@ def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
     pins that close the loops, which depend on the scene."""
     ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
     steps = closing_steps(settings, drive)
-    unused = ("close", *not_used(drive))
-    return {name: value for name, value in settings.items() if name not in unused} | {
+    return {name: value for name, value in used(settings, drive).items() if name != "close"} | {
         "integrator": integrator(settings, drive),
         "tolerance": tolerance / ratio if drive == "prescribed" else tolerance,
         "solref_timeconst_steps": steps,
@@ -229,14 +236,14 @@ def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
     }
 
 
-def not_used(drive: Drive) -> tuple[str, ...]:
-    """The settings that a drive has no use for."""
-    return OF_DRIVES if drive == "free" else OF_FREE
+def used(settings: Settings, drive: Drive) -> Settings:
+    """The settings that a drive has a use for."""
+    return {name: value for name, value in settings.items() if name not in NOT_USED[drive]}
 
 
 def closing_steps(settings: Settings, drive: Drive) -> float:
     """Time constant of the loops in steps; 0 where it is told in seconds."""
-    own = float(settings["free_timeconst_steps"]) if drive == "free" else 0.0
+    own = float(used(settings, drive).get("free_timeconst_steps", 0.0))
     return own or float(settings["solref_timeconst_steps"])
 
 

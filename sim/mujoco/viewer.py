@@ -16,7 +16,7 @@ from models.motion import State
 from models.scene import Scene
 from sim.engine import Drive
 from sim.mujoco.loading import Loading
-from sim.viewing import Viewer
+from sim.offers import Viewer
 
 
 def show(scene: Scene, start: State) -> None:

@@ -17,11 +17,10 @@ from sim import drive as drives
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
 from sim.pymunk.acting import Acting
 from sim.pymunk.arcs import Arcs
-from sim.pymunk.body_rows import FIELDS, WIDTH, finite, pose, rows_of
-from sim.pymunk.chain_springs import chain_springs
+from sim.pymunk.bodies import FIELDS, WIDTH, finite, pose, rows_of
 from sim.pymunk.convergence import iterations
 from sim.pymunk.driven_joint import DrivenJoint, driven_joint
-from sim.pymunk.pushes import moves_freely
+from sim.pymunk.native import moves_freely
 from sim.pymunk.reactions import BEFORE, Reactions
 from sim.pymunk.settings import (
     AS_SHIPPED,
@@ -34,6 +33,7 @@ from sim.pymunk.settings import (
     springs_as_forces,
 )
 from sim.pymunk.space import SpaceModel, build
+from sim.pymunk.spring_steps import chain_springs
 
 ROOM = 64
 """Numbers of memory to spare: the buffer may not grow memory that is not its own."""
@@ -54,8 +54,7 @@ class PymunkSession:
         self._model: SpaceModel = build(
             scene,
             state,
-            servo=drive == "servo",
-            free=drive == "free",
+            drive=drive,
             exact_lines=exact_lines(settings),
             with_springs=not springs_as_forces(settings),
             delay_s=VELOCITY_SHIFT * dt_s,

@@ -18,7 +18,7 @@ from models.files.reading import load_scene
 from models.hard import double_parallelogram
 from models.loads import ConstantFriction, Load
 from models.scene import Scene
-from sim.force_recipes import force_recipe
+from sim.offers import force_recipe
 from sim.registry import offering
 from tests.worlds.runs import acted_on, start_of, tuned
 from tests.worlds.tiers import few

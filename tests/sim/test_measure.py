@@ -23,11 +23,9 @@ from models.mjcf.document import build
 from models.scene import GROUND, Scene
 from models.tree import plan
 from sim.check import refuse_other_model
-from sim.energy import energy
 from sim.engine import Poses
-from sim.measure import gaps, motion
+from sim.measure import energy, gaps, motion, spring_lengths
 from sim.registry import ENGINES
-from sim.spring_lengths import spring_lengths
 from sim.tree_poses import body_poses
 from tests.worlds.runs import acted_on, ran, start_of
 

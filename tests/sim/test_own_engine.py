@@ -17,8 +17,7 @@ from sim.engine import Run
 from sim.own_engine import known, spelling
 from sim.own_engine.watched import BrokenContractError
 from sim.registry import brought, capability, declaration, engine
-from sim.run import run
-from sim.timing import time_run
+from sim.run import run, time_run
 from tests.worlds.own_engines import CODE, fresh, installed, with_faults
 
 FOURBAR = load_scene("fourbar-lecture-1")

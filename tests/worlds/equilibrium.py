@@ -10,7 +10,7 @@ from models.loads import LineSpring, PinSpring, SlideSpring
 from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
 from sim.engine import BodyPose, Log
-from sim.spring_lengths import spring_lengths
+from sim.measure import spring_lengths
 
 
 def turned(pose: BodyPose, local: tuple[float, float]) -> Array:

@@ -45,10 +45,10 @@ def every_joint_moves(chain: Chain) -> bool:
     still[:, :3] = np.eye(3)  # the first link is the ground
     _, values, ways = np.linalg.svd(np.vstack([still, held]))
     rank = int((values > RANK * values[0]).sum())
-    free = ways[rank:]
-    if len(free) != chain.mobility:
+    motions = ways[rank:]
+    if len(motions) != chain.mobility:
         return False
-    return all(float(np.abs(free @ freedom).max()) > RANK for _, freedom in rows)
+    return all(float(np.abs(motions @ freedom).max()) > RANK for _, freedom in rows)
 
 
 def _rows(chain: Chain, joint: Joint, draw: np.random.Generator) -> tuple[Array, Array]:

@@ -23,12 +23,12 @@ from reports.logs.units import UNITS
 
 @dataclass(frozen=True)
 class OtherMeaning:
-    """What a column may be instead; ``free`` where its zero is anywhere."""
+    """What a column may be instead; ``any_zero`` where its zero is anywhere."""
 
     name: str
     cost: float
     channel: Channel
-    free: bool = False
+    any_zero: bool = False
 
 
 def misnamed(inquiry: Inquiry) -> Iterator[Account]:
@@ -94,7 +94,7 @@ def _relative(channel: Channel, links: tuple[str, ...]) -> Iterator[OtherMeaning
             cost = CAUSE + CHOICE * (1 if sign == channel.sign else 2)
             yield OtherMeaning("relative", cost, other)
             if channel.kind.turns:
-                yield OtherMeaning("relative", cost + NUMBER, other, free=True)
+                yield OtherMeaning("relative", cost + NUMBER, other, any_zero=True)
 
 
 def _told(
@@ -110,7 +110,7 @@ def _told(
     values = excerpt.values * (own.sign * channel.sign)
     error = channel.error(values, expected)
     zero = 0.0
-    if other.free:
+    if other.any_zero:
         zero, error = levelled(error, channel)
     if Size.of(error).largest > EXPLAINED * excerpt.size_beside(expected).largest:
         return None
@@ -140,5 +140,5 @@ def _phrase(own: Channel, other: OtherMeaning, zero: float) -> str:
         return f"{{who}} {{has}} the readings of {channel.name}"
     against = f"relative to {channel.relative_to}" if channel.relative_to else "absolute"
     sign = " and {has} the other sign" if channel.sign != own.sign else ""
-    off = f" and {{is}} off by {math.degrees(zero):+.4g} deg all along" if other.free else ""
+    off = f" and {{is}} off by {math.degrees(zero):+.4g} deg all along" if other.any_zero else ""
     return f"{{who}} {{is}} {against}{sign}{off}"

@@ -9,8 +9,10 @@ beam neglects.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -47,8 +49,17 @@ class BeamTheory:
     """The links of a scene as beams with foreshortening, from time 0 to ``until_s`` [s]; what is
     periodic goes on for ever."""
 
+    others: ClassVar[Polynomials] = FEWER
+    """Another description of the beam."""
+    looked_by: ClassVar[Polynomials] = REFERENCE
+    """Of the linear theory."""
     scene: Scene
     until_s: float
+
+    @property
+    def doubted(self) -> Sequence[tuple[Motion, Motion]]:
+        """Motions whose difference is a doubt of all that is compared, but of deflections."""
+        return ()
 
     @property
     def shape(self) -> Shape:
@@ -69,8 +80,8 @@ class BeamTheory:
 
     @cached_property
     def other(self) -> ElasticHistory:
-        """By fewer polynomials; of what is let go by more, as small differences grow there."""
-        return self._moved(REFERENCE.finer if self.scene.is_free else FEWER)
+        """By other polynomials."""
+        return self._moved(self.others)
 
     @cached_property
     def lowest_rad_s(self) -> float:
@@ -100,8 +111,7 @@ class BeamTheory:
     @cached_property
     def linear_m(self) -> float:
         """What the linear theory, without foreshortening, is off by."""
-        by = FEWER if self.scene.is_free else REFERENCE  # a look, at half the time
-        linear = self._moved(by, stiffened=False).at(self.looks_s)
+        linear = self._moved(self.looked_by, stiffened=False).at(self.looks_s)
         return deflections_apart(linear, self.looked)
 
     @cached_property
@@ -130,6 +140,18 @@ class BeamTheory:
     def cycles_per_s(self) -> float:
         """How often the links swing, 0 where their motion is periodic."""
         return 0.0 if self.is_periodic else self.lowest_rad_s / math.tau
+
+
+class FreeBeamTheory(BeamTheory):
+    """As `BeamTheory`, of free motion: small differences grow there, and the beam's own doubt of
+    all of it with them."""
+
+    others: ClassVar[Polynomials] = REFERENCE.finer
+    looked_by: ClassVar[Polynomials] = FEWER  # at half the time
+
+    @property
+    def doubted(self) -> Sequence[tuple[Motion, Motion]]:
+        return ((self.looked_other, self.looked),)
 
 
 def deflections_apart(one: Motion, other: Motion) -> float:

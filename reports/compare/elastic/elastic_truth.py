@@ -76,10 +76,10 @@ def cut_scene(scene: Scene, count: int, springs: str) -> CutScene:
 
 
 @lru_cache(maxsize=2)
-def kept_theory(pickled: bytes, until_s: float) -> BeamTheory:
+def kept_theory(pickled: bytes, until_s: float, kind: type[BeamTheory] = BeamTheory) -> BeamTheory:
     """The beam of a scene, which may come from another process: one for every number of
     segments."""
-    return BeamTheory(pickle.loads(pickled), until_s)
+    return kind(pickle.loads(pickled), until_s)
 
 
 @dataclass(frozen=True)
@@ -253,7 +253,7 @@ class ElasticBeside(Beside):
     """As `Beside`. Where links bend the angle of the driver says nothing of the others: there are
     no errors at the logged angle."""
 
-    bends: ClassVar[bool] = True
+    compared_by: ClassVar[tuple[str, ...]] = (*Beside.compared_by, ".elastic.elastic_errors")
     elastic: ElasticTruth = field(kw_only=True)
 
     @cached_property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from reports.compare.elastic.elastic_truth import ElasticBeside
 from reports.compare.free.free_beside import FreeBeside
@@ -11,6 +12,11 @@ from reports.compare.free.free_beside import FreeBeside
 @dataclass(frozen=True)
 class ReleasedElasticBeside(ElasticBeside, FreeBeside):
     """As `FreeBeside`, without a geometry at the driver's own angle."""
+
+    compared_by: ClassVar[tuple[str, ...]] = (
+        *FreeBeside.compared_by,
+        ".elastic.elastic_errors",
+    )
 
     @property
     def no_geometry(self) -> str:

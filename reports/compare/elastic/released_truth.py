@@ -26,6 +26,7 @@ from models.errors import EngineError, ReachError
 from models.motion import Motion
 from models.scene import Scene, as_bytes
 from reports.compare.beside import Beside
+from reports.compare.elastic.beam_theory import FreeBeamTheory
 from reports.compare.elastic.elastic_truth import (
     STEADY,
     ChainTruth,
@@ -66,7 +67,7 @@ def _truth(
     pickled: bytes, count: int, springs: str, steps: int, dt_s: float, known_rad: float
 ) -> ReleasedElasticTruth:
     scene: Scene = pickle.loads(pickled)
-    theory = kept_theory(pickled, long_enough_s(scene, dt_s * steps))
+    theory = kept_theory(pickled, long_enough_s(scene, dt_s * steps), FreeBeamTheory)
     chain = cut_scene(scene, count, springs)
     if not isinstance(chain, SegmentedScene):
         raise EngineError(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy as np
 
@@ -53,6 +53,7 @@ class FreeBeside(Beside):
     the mechanism.
     """
 
+    compared_by: ClassVar[tuple[str, ...]] = (".free.free_errors",)
     whole_run: Run = field(kw_only=True)
     free: FreeReference = field(kw_only=True)
 

@@ -37,8 +37,7 @@ from reports.contract.oscillators import (
 )
 from reports.contract.subject import NotTriedError, Subject
 from sim.check import refuse_other_model
-from sim.energy import energy
-from sim.measure import motion
+from sim.measure import energy, motion
 
 PACE_OFF, DECAY_OFF, REST_OFF = 0.02, 0.2, 0.02
 """How far the pace of an oscillation may be from that of its spring, over it; its decay, over it;

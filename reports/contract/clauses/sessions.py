@@ -14,7 +14,7 @@ import numpy as np
 
 from reports.contract.clause import Clause
 from reports.contract.subject import ROUNDING, Subject, apart, numbers
-from sim.recording import stretch
+from sim.run import stretch
 
 TURNS = 2.2
 """Of the driver, to see angles over whole turns."""

@@ -101,7 +101,7 @@ def free_runs(report: Report, name: str) -> FreeRuns | None:
     """The runs of a scene; None where the store has no scene, or no run of it with its course."""
     scene = report.scenes[name]
     mark_of = marks(report.lines)
-    lines = [line for line in report.free_lines if line.scene == name]
+    lines = [line for line in report.of_kind("let go") if line.scene == name]
     runs = []
     for line in lines:
         done = line.cells[line.cells["status"] == "ok"]

@@ -60,8 +60,8 @@ def _cure(finding: Finding, evidence: Evidence) -> str:
     if evidence.status != "ok" and finding.rule != "CC101":
         return ""
     cure = RULES[finding.rule].cure
-    if evidence.errors is not None and evidence.errors.free is not None:
-        cure = cure.replace("(--steps-per-turn)", "(--dt)")
+    if evidence.errors is not None:
+        cure = cure.replace("--steps-per-turn)", f"{evidence.errors.of_motion.step_option})")
     if evidence.remedy and finding.level == "fail" and finding.rule in (*TUNABLE, *RATES, *FORCES):
         return evidence.remedy
     if finding.rule not in TUNABLE or evidence.status in ("unsupported", "branch-changed"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from reports.compare.elastic.elastic_facts import ElasticFacts
 from reports.compare.errors import Errors
 from reports.judge.rules.rule import Evidence, Finding, Level
 
@@ -25,27 +26,27 @@ class TruthEnds:
 
     def check(self, evidence: Evidence) -> Finding | None:
         errors = evidence.errors
-        if errors is None or errors.elastic is None or evidence.status != "ok":
+        links = ElasticFacts.of(errors)
+        if errors is None or links is None or evidence.status != "ok":
             return None
-        elastic, own = errors.elastic, engine_share(errors)
+        own = engine_share(errors, links)
         parts = (
-            f"of the largest deflection the engine leaves {own:.1e}, {elastic.pieces} "
-            f"{elastic.chain:.1e}{' (estimated)' if elastic.estimated else ''}, the beam's own "
-            f"doubt is {elastic.doubt:.1e}, and the linear theory is off by {elastic.linear:.1e}"
+            f"of the largest deflection the engine leaves {own:.1e}, {links.pieces} "
+            f"{links.chain:.1e}{' (estimated)' if links.estimated else ''}, the beam's own "
+            f"doubt is {links.doubt:.1e}, and the linear theory is off by {links.linear:.1e}"
         )
-        if own > max(elastic.chain, elastic.doubt):
+        if own > max(links.chain, links.doubt):
             return Finding(self.id, "pass", f"the engine is what is off: {parts}", own)
-        ends = f"the {elastic.pieces.split()[1]} end"
-        ends = ends if elastic.chain > elastic.doubt else "the truth ends"
-        level: Level = "advice" if elastic.doubt > UNSURE else "pass"
+        ends = f"the {links.pieces.split()[1]} end"
+        ends = ends if links.chain > links.doubt else "the truth ends"
+        level: Level = "advice" if links.doubt > UNSURE else "pass"
         return Finding(self.id, level, f"{ends} before the engine does: {parts}", own)
 
 
-def engine_share(errors: Errors) -> float:
+def engine_share(errors: Errors, links: ElasticFacts) -> float:
     """What the engine itself is off by, of the largest deflection: beside the exact chain, or what
     is left of its error beside the beam."""
     exact, beam = errors.worst("segments"), errors.worst("deflection")
     if exact is not None:
         return exact.pure
-    assert errors.elastic is not None
-    return max((beam.pure if beam else 0.0) - errors.elastic.chain, 0.0)
+    return max((beam.pure if beam else 0.0) - links.chain, 0.0)

@@ -18,7 +18,7 @@ class NothingContradicts:
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
-        against = evidence.errors.contradictions if evidence.errors else ()
+        against = evidence.errors.of_forces.contradictions if evidence.errors else ()
         if not against:
             return None
         more = f" (and {len(against) - 1} more)" if len(against) > 1 else ""

@@ -21,7 +21,7 @@ class PinsBalance:
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
-        found = evidence.errors.unbalanced if evidence.errors else None
+        found = evidence.errors.of_forces.unbalanced if evidence.errors else None
         if found is None:
             return None
         level: Level = "pass" if found.share <= ROUNDING else "fail"

@@ -32,7 +32,7 @@ class ErrorSmooth:
 
     def check(self, evidence: Evidence) -> Finding | None:
         errors = evidence.errors
-        if errors is None or evidence.status != "ok" or errors.step_rad > DENSE_RAD:
+        if errors is None or evidence.status != "ok" or errors.of_scene.step_rad > DENSE_RAD:
             return None
         found = _roughest(errors)
         if found is None:
@@ -47,7 +47,7 @@ class ErrorSmooth:
 def _roughest(errors: Errors) -> tuple[float, str] | None:
     """The largest second difference over the error that it is of, and that error in words."""
     bent = {
-        (row.body_kind, row.body): row.pure * errors.step_rad**2
+        (row.body_kind, row.body): row.pure * errors.of_scene.step_rad**2
         for row in errors.rows
         if (row.quantity, row.source, row.kind) == ("acceleration", "differenced", "total")
         and row.finite

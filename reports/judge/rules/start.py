@@ -50,4 +50,6 @@ def start_limit(tolerance: str, evidence: Evidence, errors: Errors) -> float:
 def _settled(tolerance: str, evidence: Evidence, errors: Errors) -> float:
     """The limit that later samples are held to, near a change point if the start is."""
     limit = evidence.limits[tolerance]
-    return (in_passage(tolerance, limit, errors) if errors.starts_in_passage else limit).number
+    return (
+        in_passage(tolerance, limit, errors) if errors.of_scene.starts_in_passage else limit
+    ).number

@@ -17,6 +17,7 @@ from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.lectures.drawing.sheets.polygons.logged_instant import LoggedInstant, LogInstants
+from reports.lectures.drawing.sheets.polygons.polygon_course import PolygonCourse
 from reports.lectures.drawing.sheets.polygons.polygon_files import (
     ANIMATED,
     ENDINGS,
@@ -170,9 +171,8 @@ def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
     name = sheet.drawn.placement.scene.name
     ending = request.output.suffix.lower() if request.output is not None else ""
     if request.turn or ending == PAGE:
-        is_free = sheet.drawn.placement.scene.is_free and request.omega is None
-        course = "its motion" if is_free else "a turn"
-        return f"velocities and accelerations of {name} over {course}"
+        course = PolygonCourse.kind(sheet.drawn.placement.scene, steady=request.omega is not None)
+        return f"velocities and accelerations of {name} over {course.words}"
     at_deg = AT_DEG if request.at_deg is None else request.at_deg
     of = f"at {at_deg:g} deg" if request.at_s is None else f"at {request.at_s:g} s"
     beside = f", {request.log} beside" if request.log is not None else ""

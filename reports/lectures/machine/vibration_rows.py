@@ -116,7 +116,8 @@ def notes(vibration: SteadyVibration) -> list[str]:
             f"{', '.join(thick)} bends by more than a tenth of its length: the beam of this theory "
             "bends less than that."
         )
-    if any(own.damping_s == 0.0 for own in vibration.scene.elastic.values()):
+    dampings = [own.damping_s for own in vibration.scene.elastic.values()]
+    if 0.0 in dampings:
         told.append(
             "Without damping_s the motion from any other start keeps ringing beside this one."
         )

@@ -2,29 +2,39 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence, Set
+from typing import Any
 
 from models.scene import Same, Scene
 from reports.compare.beside import Truth, truth_of
+from reports.compare.facts import DRIVEN
 from reports.plan.forces import refuse_forceless
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular
 from reports.plan.steps import TURNS, counted
+from reports.quantities import named
+from reports.quantities.limits import DEFAULTS
+from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
-from reports.way.way import StudyLengths
+from reports.way.way import Parts, StudyLengths
 from sim.engine import Drive
 
-if TYPE_CHECKING:
-    from reports.own_log.log_kind import LogKind
-    from reports.verify.cell_table import CellTable
 
-
-class DrivenWay:
+class DrivenWay(Parts):
     """As of `Way`."""
 
     name = "driven"
     drive: Drive = "prescribed"
+    kinds: Sequence[str] = ("driven",)
     closed_form = True
+    limits: Mapping[str, Tolerance] = DEFAULTS
+    roles: Set[Role] = frozenset(("drive", "place", "closure", "derived"))
+    placed: Sequence[str] = named("place")
+    unlogged: Sequence[str] = ()
+    noted = False
+    no_case = "no driven case"
+    units = DRIVEN.compared_with(" at the commanded time")
+    over_g: Sequence[str] = ()
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return True
@@ -43,17 +53,11 @@ class DrivenWay:
             refuse_forceless(run.scene, run.duration_s)
         refuse_short_tables(run.scene, run.duration_s)
 
-    @property
-    def log(self) -> LogKind:
-        from reports.ways.driven.log import LOG  # for logs alone
+    def roles_of(self, *, with_forces: bool) -> Set[Role]:
+        return {*self.roles, *(("force",) if with_forces else ())}
 
-        return LOG
-
-    @property
-    def table(self) -> CellTable:
-        from reports.ways.driven.table import TABLE  # what is shown is loaded when it is
-
-        return TABLE
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        return True
 
     def turn_s(self, scene: Scene) -> float:
         return scene.driver.law.period_s
@@ -62,6 +66,9 @@ class DrivenWay:
         return 1
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
+        return scene
+
+    def moved(self, scene: Scene) -> Scene:
         return scene
 
     def note(self, scene: Scene, duration_s: float) -> str:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from models.scene import Scene
 from reports.causes.cause import Case, Cause
 from reports.causes.find import causes
 from reports.compare.beside import Truth
-from reports.logs.channel import OwnLog
+from reports.logs.channel import Channel, OwnLog
 from reports.logs.log_beside import AtCrank, LogBeside
 from reports.own_log.drives import DriveFit, truth_of_log
 from reports.own_log.log_kind import HeldLog, LogRequest
@@ -25,6 +26,8 @@ class DrivenLog:
     """As of `LogKind`."""
 
     truth_name = "closed form"
+    no_cause = "none that is known explains {}"
+    driver_angle = "drive"
 
     def truth(self, log: OwnLog, request: LogRequest) -> tuple[OwnLog, Truth, DriveFit | None]:
         return log, *truth_of_log(log, request.drive)
@@ -33,6 +36,10 @@ class DrivenLog:
         assert run.motion is not None
         alone = isinstance(truth, AtCrank)
         return LogBeside(truth, run, run.motion, step_s=run.dt_s, geometry_alone=alone)
+
+    def judged_as(self, scene: Scene, channel: Channel) -> tuple[str, ...]:
+        of_driver = (channel.kind.name, channel.of) == ("angle", scene.driver.link)
+        return ("drive",) if scene.driver.is_crank and of_driver else (channel.kind.quantity,)
 
     def explained(self, held: HeldLog) -> tuple[Sequence[Cause], Sequence[str]]:
         if held.fit is not None and not held.fit.explains:

@@ -2,36 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import Any
 
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan.elastic import cut_scene, held_steps, logged_every, refuse_unelastic
+from reports.quantities.limits import ELASTIC
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
 from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
-if TYPE_CHECKING:
-    from reports.own_log.log_kind import LogKind
-    from reports.verify.cell_table import CellTable
-
 
 class Bending:
     """What is particular to links that bend, whatever drives them; before the way of rigid ones."""
 
-    @property
-    def log(self) -> LogKind:
-        from reports.ways.elastic.log import LOG  # for logs alone
+    kinds: Sequence[str] = ("elastic",)
+    placed: Sequence[str] = ("deflection",)
+    no_case = "no elastic link in it"
 
-        return LOG
-
-    @property
-    def table(self) -> CellTable:
-        from reports.ways.elastic.table import TABLE  # what is shown is loaded when it is
-
-        return TABLE
+    def bends(self, row: Mapping[Any, Any]) -> bool:
+        """Whether links of a stored cell bend."""
+        segments = row.get("segments")  # a number, or none: NaN is not itself
+        return segments is not None and bool(segments == segments)
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
         return cut_scene(scene, given)
@@ -42,6 +37,11 @@ class ElasticWay(Bending, DrivenWay):
 
     name = "elastic"
     closed_form = False
+    limits = ELASTIC
+    roles = DrivenWay.roles | {"elastic"}
+
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        return self.bends(row)
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return bool(scene.elastic)

@@ -2,27 +2,46 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence, Set
+from typing import Any
 
+from analytic.free.loosened import loosened
 from models.scene import Scene
 from reports.compare.beside import Truth
+from reports.compare.free.free_facts import FreeFacts
 from reports.plan.free import refuse_unreleased
 from reports.plan.steps import counted_free
+from reports.quantities import named
+from reports.quantities.limits import FREE
+from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
+from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
-if TYPE_CHECKING:
-    from reports.own_log.log_kind import LogKind
-    from reports.verify.cell_table import CellTable
+UNITS = (
+    "Let go: errors at the same time over G, by how much a small change of the start has grown; "
+    "geometry at the run's own angle; drift of energy over the largest kinetic energy T. Classes: "
+    "fine is a thousandth of the limit of the phase; 1e-1 and 1e-3 of the error as it is, and to "
+    "when 1e-3 holds."
+)
 
 
-class FreeWay:
+class FreeWay(DrivenWay):
     """As of `Way`."""
 
     name = "free"
     drive: Drive = "free"
+    kinds: Sequence[str] = ("let go",)
     closed_form = False
+    limits: Mapping[str, Tolerance] = FREE
+    roles: Set[Role] = frozenset(("free", "place", "closure", "derived"))
+    placed: Sequence[str] = ("phase", *named("place"))
+    unlogged: Sequence[str] = ("energy",)
+    noted = True
+    no_case = "no case of free motion"
+    units = UNITS
+    over_g: Sequence[str] = FreeFacts.over_g
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return drive == "free"
@@ -38,26 +57,14 @@ class FreeWay:
     def refuse(self, run: Planned) -> None:
         refuse_unreleased(run.scene, run.duration_s)
 
-    @property
-    def log(self) -> LogKind:
-        from reports.ways.free.log import LOG  # for logs alone
-
-        return LOG
-
-    @property
-    def table(self) -> CellTable:
-        from reports.ways.free.table import TABLE  # what is shown is loaded when it is
-
-        return TABLE
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        return str(row["drive"]) == "free"
 
     def turn_s(self, scene: Scene) -> float:
         return 1.0
 
-    def every(self, steps: int, steps_per_turn: float) -> int:
-        return 1
-
-    def given(self, scene: Scene, given: GivenAs) -> Scene:
-        return scene
+    def moved(self, scene: Scene) -> Scene:
+        return loosened(scene)
 
     def note(self, scene: Scene, duration_s: float) -> str:
         return ""

@@ -7,13 +7,13 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from models.errors import CrankcheckError, few
+from models.scene import Scene
 from reports.causes.cause import Cause
 from reports.compare.beside import Truth
 from reports.compare.errors import Error, Errors
 from reports.compare.free.free_truth import FreeTruth, free_truth_until
 from reports.compare.free.kept_motion import BEYOND
-from reports.judge.tolerance import FREE
-from reports.logs.channel import OwnLog, Reading
+from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.log_beside import LogBeside
 from reports.output.numbers import error_text, listed, short
 from reports.own_log.drives import DriveFit
@@ -133,7 +133,7 @@ def _off_at_start(reading: Reading, truth: FreeTruth) -> tuple[float, str, float
 def told_of_no_limit(errors: Errors) -> Iterator[str]:
     """What the log has, and what is held to no limit in free motion, of an engine neither."""
     own = (row for row in errors.rows if row.source == "reported" and row.kind == "total")
-    names = dict.fromkeys(row.quantity for row in own if row.tolerance not in FREE)
+    names = dict.fromkeys(row.quantity for row in own if row.tolerance not in errors.limits)
     if names:
         yield f"held to no limit in free motion: {listed([f'{name} of bodies' for name in names])}"
 
@@ -143,7 +143,6 @@ def told_apart(errors: Errors) -> Iterator[str]:
     phase, geometry = errors.worst("phase", kind="raw"), errors.worst("geometry")
     if phase is None or geometry is None or not (phase.finite and geometry.finite):
         return
-    assert errors.free is not None
     left = geometry.pure / phase.pure if phase.pure > 0.0 else np.inf
     what = (
         "it is the geometry that is off"
@@ -154,7 +153,7 @@ def told_apart(errors: Errors) -> Iterator[str]:
     )
     yield (
         f"at the same time {phase.body} is off by {_size(phase)} at most, with a sensitivity of "
-        f"{short(errors.free.sensitivity)}; at its own angle {geometry.body} is off by "
+        f"{short(errors.of_motion.sensitivity)}; at its own angle {geometry.body} is off by "
         f"{_size(geometry)}: {what}; causes are not looked for in what was let go"
     )
 
@@ -167,6 +166,8 @@ class FreeLog:
     """As of `LogKind`."""
 
     truth_name = "free motion"
+    no_cause = "of {}: see the notes; none is looked for in what was let go"
+    driver_angle = "phase"
 
     def truth(self, log: OwnLog, request: LogRequest) -> tuple[OwnLog, Truth, DriveFit | None]:
         refuse_drives(log.scene.name, request.drive)
@@ -175,6 +176,14 @@ class FreeLog:
     def beside(self, log: OwnLog, truth: Truth, run: Run) -> LogBeside:
         assert isinstance(truth, FreeTruth)
         return FreeLogBeside.of_log(log, truth, run)
+
+    def judged_as(self, scene: Scene, channel: Channel) -> tuple[str, ...]:
+        """Places at the same time and at the log's own angle."""
+        kind = channel.kind
+        if kind.order:
+            return (kind.quantity,)
+        is_phase = (kind.name, channel.of) == ("angle", scene.driver.link)
+        return ("phase" if is_phase else kind.quantity, "geometry")
 
     def explained(self, held: HeldLog) -> tuple[Sequence[Cause], Sequence[str]]:
         assert isinstance(held.truth, FreeTruth)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan.elastic import (
@@ -10,6 +13,7 @@ from reports.plan.elastic import (
     refuse_unelastic,
     shortened_note,
 )
+from reports.quantities.limits import FREE_ELASTIC
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
 from reports.ways.elastic import Bending
@@ -21,6 +25,12 @@ class FreeElasticWay(Bending, FreeWay):
     """As of `Way`."""
 
     name = "free_elastic"
+    limits = FREE_ELASTIC
+    kinds = (*Bending.kinds, *FreeWay.kinds)
+    roles = FreeWay.roles | {"elastic"}
+
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        return super().stored(row) and self.bends(row)
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return super().takes(scene, drive) and bool(scene.elastic)

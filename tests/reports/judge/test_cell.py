@@ -24,9 +24,11 @@ from models.scene import Scene
 from reports.judge import cell as cells
 from reports.judge.cell import Cell, check, unfinished
 from reports.judge.frames import cell_frame, error_frame
-from reports.judge.rows import ELASTIC_COLUMNS, ERROR_COLUMNS, FORCE_COLUMNS, FREE_COLUMNS
-from reports.judge.tolerance import DEFAULTS, FORCES
+from reports.judge.rows import ERROR_COLUMNS
+from reports.judge.tolerance import FORCES
 from reports.plan.singular import refuse_singular
+from reports.quantities import named
+from reports.quantities.limits import DEFAULTS
 from reports.verify.all_cells import check_all
 from reports.workers.scheduler import FEW
 from sim.engine import Run
@@ -242,8 +244,9 @@ def test_a_failure_is_a_row_with_its_reason_and_the_same_columns(frame: pd.DataF
 def test_error_columns_carry_units_and_nothing_that_is_not_reported(frame: pd.DataFrame) -> None:
     units = ("_rad", "_m", "_rad_s", "_m_s", "_rad_s2", "_m_s2", "_n", "_n_m", "_j", "_kg_m2_s")
     names = {name for name, *_ in ERROR_COLUMNS}
+    other = {name for name, of, *_ in ERROR_COLUMNS if of in named("force", "free", "elastic")}
     assert all(name.endswith(units) for name in names)
-    assert names - FORCE_COLUMNS - FREE_COLUMNS - ELASTIC_COLUMNS == names & set(frame.columns)
+    assert names - other == names & set(frame.columns)
     pure = {f"{name.replace('-', '_')}_pure" for name in DEFAULTS if name not in FORCES}
     assert pure <= set(frame.columns)
     assert pd.isna(frame["angular_acceleration_error_rad_s2"][0])

@@ -72,7 +72,7 @@ def test_a_log_of_a_loaded_mechanism_has_the_budget_of_its_loads() -> None:
     step_s = press.driver.law.period_s / 360
     verdict = crankcheck.judge(press, ran("mujoco", press), step_s=step_s, forces=True)
     assert verdict.verdict == "within", verdict.failures
-    assert verdict.errors.loading > 1.0
+    assert verdict.errors.of_forces.loading > 1.0
 
 
 @pytest.mark.parametrize(

@@ -24,9 +24,9 @@ from models.scene import Driver, Scene
 from reports.judge.cell import Cell, check
 from reports.own_model.assembly import assembled
 from reports.own_model.request import ModelRequest
-from sim.mujoco.own_model.fault import ModelError
-from sim.mujoco.own_model.patch import advice, patched
-from sim.mujoco.own_model.read import read_model
+from sim.mujoco.own_model.closures import ModelError
+from sim.mujoco.own_model.variants import advice, patched
+from sim.mujoco.reader import read_model
 from sim.own_models import Advised
 from tests.worlds.drawn_model import HALF, UPRIGHT, Drawing, drawn, rotation
 from tests.worlds.own_four_bar import planted

@@ -21,7 +21,7 @@ from models.loads import PinSpring
 from models.poses import mass_of
 from reports.compare.free.free_truth import free_truth
 from reports.judge.cell import CellRunner, check, examined
-from reports.selftest.all_faults import FAULTS, chosen_faults
+from reports.selftest.all_faults import FAULTS, RUNS, chosen_faults
 from reports.selftest.elastic_runs import (
     BEAM_RUNS,
     BENT,
@@ -51,7 +51,7 @@ from reports.selftest.segment_changes import (
     segments,
     springs,
 )
-from reports.selftest.trial import _cell, _passed, passes
+from reports.selftest.trial import _passed, passes
 from reports.selftest.unseen_elastic import UNSEEN_ELASTIC
 from reports.selftest.unseen_free import UNSEEN_FREE
 from sim.engine import Run
@@ -333,7 +333,7 @@ def test_masses_with_one_factor_move_alike_under_weight_alone(engine_name: str) 
 
 
 def test_a_free_run_without_its_energy_is_not_whole() -> None:
-    cell = _cell(load_scene(SWING), "mujoco", 360, converge=False, kind="free")
+    cell = RUNS["free"].cell(load_scene(SWING), "mujoco", 360, False)
     failed = examined(cell, FAULTS["energy-missing"].plant(1.0))[0].failures
     assert [(one.rule, one.text) for one in failed] == [("CC109", "missing from the log: energy")]
 

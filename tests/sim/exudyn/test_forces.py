@@ -23,7 +23,7 @@ from models.tabulated import Tabulated
 from reports.contract.clauses.reactions import named
 from sim.engine import Settings
 from sim.exudyn.engine import ENGINE
-from sim.force_recipes import force_recipe
+from sim.offers import force_recipe
 from tests.sim.test_force_recipes import printed
 from tests.worlds import runs
 from tests.worlds.loading import loaded_mechanism

@@ -28,9 +28,9 @@ from models.loads import LineSpring, Load, Over, PinSpring, SlideSpring, Spring
 from models.motion import Motion
 from models.scene import GROUND, Driver, Scene
 from sim.engine import Run, Settings
-from sim.exudyn import session
+from sim.exudyn import engine
 from sim.exudyn.engine import ENGINE
-from sim.exudyn.jumps import StepMeans
+from sim.exudyn.loads import StepMeans
 from sim.run import run
 from tests.worlds import runs
 from tests.worlds.let_go import released
@@ -312,9 +312,9 @@ def test_a_beam_that_is_not_that_of_the_scene_is_refused(
     key: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     own = BeamedScene(load_scene("fourbar-elastic"), 2)
-    held = session.held_beams
+    held = engine.held_beams
     monkeypatch.setattr(
-        session,
+        engine,
         "held_beams",
         lambda *args: {
             name: tuple(replace(one, **{key: getattr(one, key) * 1.001 + 1e-9}) for one in beam)

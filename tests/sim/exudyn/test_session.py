@@ -16,9 +16,8 @@ from models.hard import double_parallelogram
 from models.laws import FromRest, Oscillating, SpeedChange
 from models.scene import Scene
 from sim.engine import Run, Settings
-from sim.exudyn.crank import CrankCourse, speeds
-from sim.exudyn.engine import ENGINE
-from sim.exudyn.session import ExudynSession
+from sim.exudyn.crank_drive import CrankCourse, speeds
+from sim.exudyn.engine import ENGINE, ExudynSession
 from tests.worlds import runs
 from tests.worlds.runs import driven_by
 

@@ -27,7 +27,7 @@ from models.mjcf.document import build
 from models.motion import Forces
 from models.scene import Scene
 from models.tabulated import Tabulated
-from sim.mujoco import session
+from sim.mujoco import engine
 from sim.run import run
 from tests.worlds import runs
 from tests.worlds.equilibrium import left_over
@@ -278,7 +278,7 @@ def test_the_tree_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
         plans.append(args)
         return tree.plan(*args, **options)
 
-    for module in (forces, session):
+    for module in (forces, engine):
         monkeypatch.setattr(module, "plan", counted)
     opened(FOURBAR, settings={"close": "B"})
     assert len(plans) == 1

@@ -18,9 +18,8 @@ from models.files.reading import load_scene, parse_scene
 from models.hard import Chain
 from models.loads import Load
 from models.tabulated import Tabulated
-from sim.mujoco.load_stages import LoadStages, stage_sizes
-from sim.mujoco.session import MujocoSession
-from sim.mujoco.stroke_shares import forward_parts
+from sim.mujoco.engine import MujocoSession
+from sim.mujoco.loading import LoadStages, forward_parts, stage_sizes
 from sim.run import run
 from tests.worlds.runs import acted_on, opened
 from tests.worlds.tiers import slowly

@@ -25,7 +25,7 @@ from models.mjcf.document import build
 from models.motion import State
 from models.scene import GROUND, Driver, Link, Point, Scene
 from sim.check import refuse_other_model
-from sim.mujoco.session import MujocoSession
+from sim.mujoco.engine import MujocoSession
 from sim.run import run
 from tests.worlds import runs
 from tests.worlds.equilibrium import left_over

@@ -23,12 +23,12 @@ from models.loads import LineSpring, Load, PinSpring, SlideSpring, Spring
 from models.scene import GROUND, Driver, Scene
 from models.tabulated import Tabulated
 from sim.engine import Run
+from sim.offers import Stepping
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.force_recipe import FORCE_RECIPE
 from sim.pymunk.snippet import SNIPPET
 from sim.run import run
 from sim.settings import resolved
-from sim.snippets import Stepping
 from tests.worlds.let_go import released
 from tests.worlds.runs import acted_on, opened, ran
 from tests.worlds.tiers import slowly

@@ -79,34 +79,36 @@ class Generator(ABC):
         plus, minus = (np.abs(self.error(turns, ways, sign)) for sign in (1.0, -1.0))
         return np.where(np.nan_to_num(plus, nan=np.inf) <= minus, 1.0, -1.0)
 
-    def gradient(self, turns: Array, sign: float | Array, free: Sequence[str]) -> Array:
-        """The derivatives of the error by k1, k2, k3 and the free starts (T, 3 + free)."""
+    def gradient(self, turns: Array, sign: float | Array, varied: Sequence[str]) -> Array:
+        """The derivatives of the error by k1, k2, k3 and the free starts (T, 3 + varied)."""
         phi = self.input_start + turns
         slopes = self.slopes(phi, self.output(phi, sign))
         columns = [-slopes[0], -slopes[1], -slopes[2]]
-        columns += [-slopes[3]] * ("input" in free) + [np.ones_like(turns)] * ("output" in free)
+        columns += [-slopes[3]] * ("input" in varied) + [np.ones_like(turns)] * ("output" in varied)
         return np.stack(columns, axis=1)
 
-    def moved(self, step: Array, free: Sequence[str]) -> Self:
+    def moved(self, step: Array, varied: Sequence[str]) -> Self:
         """That with its numbers and its free starts moved, in the order of `gradient`."""
         starts = {
             f"{name}_start": getattr(self, f"{name}_start") + float(by)
-            for name, by in zip([n for n in STARTS if n in free], step[3:], strict=True)
+            for name, by in zip([n for n in STARTS if n in varied], step[3:], strict=True)
         }
         k1, k2, k3 = (old + float(by) for old, by in zip(self.k, step, strict=False))
         return replace(self, k=(k1, k2, k3), **starts)
 
-    def polished(self, turns: Array, ways: Array, free: Sequence[str]) -> Self:
+    def polished(self, turns: Array, ways: Array, varied: Sequence[str]) -> Self:
         """That of which the errors in precision points (n,) are rounding: Newton's method, as long
         as it helps."""
         best, signs = self, self.signs(turns, ways)
         error = best.error(turns, ways, signs)
         for _ in range(POLISHES):
             try:
-                step = np.asarray(np.linalg.solve(best.gradient(turns, signs, free), -error), float)
+                step = np.asarray(
+                    np.linalg.solve(best.gradient(turns, signs, varied), -error), float
+                )
             except np.linalg.LinAlgError:
                 break
-            nearer = best.moved(step, free)
+            nearer = best.moved(step, varied)
             left = nearer.error(turns, ways, signs)
             if not np.max(np.abs(left)) < np.max(np.abs(error)):
                 break

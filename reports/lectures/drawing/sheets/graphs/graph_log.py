@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,7 +14,7 @@ from models.array import Array
 from models.errors import CrankcheckError, cut
 from models.motion import Order
 from reports.compare.beside import Truth
-from reports.lectures.drawing.sheets.graphs.graph_span import GraphSpan
+from reports.lectures.drawing.sheets.graphs.graph_span import ON_END, GraphSpan
 from reports.lectures.drawing.sheets.sheet_log import SheetLog
 from reports.logs.channel import OwnLog, Reading
 from reports.logs.map_file import Map, read_map
@@ -24,8 +23,6 @@ BESIDE = 4
 """Rows on both sides of the period that the spline goes through as well."""
 ON_ROW = 1e-6
 """How near a place is to a row to be on it, in steps between rows."""
-ON_END = 1e-6
-"""How near a row is to an end of the period to be on it, in periods."""
 DOUBTED = 0.1
 """The share of its range that half of all readings are off by where it is told."""
 NAMES: Mapping[Order, str] = {0: "places", 1: "rates", 2: "accelerations"}
@@ -68,17 +65,6 @@ class GraphLog:
         slack = ON_ROW * float(np.median(np.diff(rows)))
         x = x[(x >= rows[0] - slack) & (x <= rows[-1] + slack)]
         return Plotted(x, self.at(order, x))
-
-    @property
-    def taken(self) -> str:
-        """Which period of the log it is."""
-        span = self.span
-        if span.scene.is_free:
-            return "from its release on"
-        turns = span.start / (span.end - span.start)
-        if abs(turns - round(turns)) <= ON_END:
-            return f"in period {round(turns) + 1} of the driver, the first whole one in it"
-        return "from its first row on, as it has no whole period of the driver"
 
     def doubt(self, order: Order, x: Array) -> str:
         """That readings are mostly far from the scene's, in words; empty where they are not."""
@@ -137,7 +123,7 @@ def graph_log(path: Path, map_path: Path | None, whole: GraphSpan) -> GraphLog:
             f"{path}: no column is of {whole.quantity.name}; it has readings of {cut(names, 200)}"
         )
     first = held[min(held)]
-    moved = _first_period(first, whole)
+    moved = whole.within(*(float(first.instants[at]) for at in (0, -1)))
     _refuse_short(path, first, moved)
     rows = {
         order: some
@@ -175,16 +161,6 @@ def _reading(log: OwnLog, whole: GraphSpan, order: Order) -> Reading | None:
     kind, body = whole.quantity.kinds[order], whole.quantity.body
     of_it = [r for r in log.readings if (r.channel.kind, r.channel.of) == (kind, body)]
     return min(of_it, key=lambda each: bool(each.channel.relative_to), default=None)
-
-
-def _first_period(reading: Reading, whole: GraphSpan) -> GraphSpan:
-    """The first period of those of the driver within the rows, or that from the first row on."""
-    first, last = (float(reading.instants[at]) for at in (0, -1))
-    lasts = whole.end - whole.start
-    if first <= whole.start or whole.scene.is_free:
-        return whole
-    start = math.ceil(first / lasts - ON_END) * lasts
-    return whole.moved(start if start + lasts <= last + ON_END * lasts else first)
 
 
 def _refuse_short(path: Path, reading: Reading, moved: GraphSpan) -> None:

@@ -27,6 +27,7 @@ from reports.lectures.drawing.sheets.graphs.graph_words import own_rates_off, sh
 from reports.lectures.drawing.sheets.paper import MM_PER_IN, Paper
 from reports.lectures.drawing.sheets.sheet_frame import write_head
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
+from reports.lectures.drawing.sheets.sheet_note import of_elastic
 from reports.output.numbers import readable
 
 NAME_IN = 1.3
@@ -61,12 +62,9 @@ def draw_graphs(sheet: GraphSheet, note: str) -> Canvas:
 
 def _title(drawn: DrawnGraphs) -> str:
     of = drawn.span
-    span = "a period" if not of.scene.is_free else f"{of.end - of.start:g} s"
-    if of.analogues:
-        span = f"the angle of {of.scene.driver.joint}"
-    title = f"{of.scene.name}: {of.quantity.name} over {span}, {drawn.parts} parts, by {drawn.by}"
-    if of.scene.elastic:
-        title += ", links taken as rigid"
+    over = f"{of.words}, {drawn.parts} parts, by {drawn.by}"
+    title = f"{of.scene.name}: {of.quantity.name} over {over}"
+    title += of_elastic(of.scene, ", links taken as rigid")
     return f"{title}; log: {cut(drawn.log.name, NAME_IN, LARGE)}" if drawn.log else title
 
 

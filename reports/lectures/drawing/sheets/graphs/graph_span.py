@@ -29,6 +29,8 @@ OVERS: tuple[Over, ...] = get_args(Over)
 DENSE = 721
 TRIFLE = 1e-3
 """What is a smaller share of what its integral asks for is none: errors are over sizes above 0."""
+ON_END = 1e-6
+"""How near a row is to an end of the period to be on it, in periods."""
 STILL = 1e-9
 """What moves by less [rad, longest links] stands still."""
 
@@ -89,14 +91,47 @@ class GraphSpan:
         """Where the driver is at places [deg or m]."""
         if self.analogues:
             return np.degrees(x)
-        if self.scene.is_free:
-            return driver_shown(self.scene, self.motion_at(x))
         place = self.scene.driver.law.at(x)[0]
         return place if self.scene.driver.slider is not None else np.degrees(place)
 
-    def moved(self, start: float) -> GraphSpan:
-        """One as long that starts elsewhere."""
+    @property
+    def words(self) -> str:
+        """How long it is."""
+        return f"the angle of {self.scene.driver.joint}" if self.analogues else "a period"
+
+    @property
+    def taken(self) -> str:
+        """Which period of a log it is."""
+        turns = self.start / (self.end - self.start)
+        if abs(turns - round(turns)) <= ON_END:
+            return f"in period {round(turns) + 1} of the driver, the first whole one in it"
+        return "from its first row on, as it has no whole period of the driver"
+
+    def within(self, first: float, last: float) -> GraphSpan:
+        """The first period of those of the driver within the rows of a log, from ``first`` to
+        ``last`` [s], or that from the first row on."""
+        if first <= self.start:
+            return self
+        lasts = self.end - self.start
+        start = math.ceil(first / lasts - ON_END) * lasts
+        start = start if start + lasts <= last + ON_END * lasts else first
         return replace(self, start=start, end=start + self.end - self.start)
+
+
+class FreeSpan(GraphSpan):
+    """The first seconds of a free motion."""
+
+    taken = "from its release on"
+
+    def driver_at(self, x: Array) -> Array:
+        return driver_shown(self.scene, self.motion_at(x))
+
+    @property
+    def words(self) -> str:
+        return f"{self.end - self.start:g} s"
+
+    def within(self, first: float, last: float) -> GraphSpan:
+        return self
 
 
 def over_period(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
@@ -173,4 +208,4 @@ def _let_go(scene: Scene, name: str, over: Over, duration_s: float | None) -> Gr
 
     truth = free_truth_until(scene, duration_s, 0.0)
     quantity = quantity_of(truth.at(np.zeros(1)), name)
-    return GraphSpan(scene, quantity, 0.0, duration_s, over, 1.0, truth.at, truth)
+    return FreeSpan(scene, quantity, 0.0, duration_s, over, 1.0, truth.at, truth)

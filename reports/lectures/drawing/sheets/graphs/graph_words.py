@@ -57,7 +57,7 @@ def told_log(drawn: DrawnGraphs) -> list[str]:
     lines = [
         f"{drawn.log.name}: {told_errors(drawn, drawn.logged)}; of that its own error, beside the "
         f"drawing of the reference: {parts}",
-        f"{symbols[order]} is read {drawn.log.taken}, {how}; it is off by up to {read_off}",
+        f"{symbols[order]} is read {drawn.log.span.taken}, {how}; it is off by up to {read_off}",
     ]
     if doubt := drawn.log.doubt(order, drawn.logged.graphs[order].x):
         lines.append(doubt)

@@ -79,12 +79,7 @@ class LogInstants:
 
     @staticmethod
     def _of(beside: SheetLog) -> LogInstants:
-        log, driver = beside.log, beside.log.scene.driver
-        if log.scene.is_free:
-            angle = beside.truth.at(log.time_s).links[driver.link].theta
-        else:
-            angle = driver.law.at(log.time_s)[0]
-        return LogInstants(log, beside.truth, angle)
+        return LogInstants(beside.log, beside.truth, beside.driver_rad(beside.log.time_s))
 
     def at_angle(self, at_deg: float) -> LoggedInstant:
         """At the sample that is nearest to an angle of the driver [deg], when it passes it for the

@@ -49,10 +49,9 @@ def turning_file(sheet: PolygonSheet, *, steady: bool = False) -> bytes:
     driver goes through no turn."""
     placement = sheet.drawn.placement
     course = PolygonCourse.of(placement, FRAMES + 1, MOST_FRAMES, steady=steady)
-    drawn = course.drawn if course.scene.is_free else course.drawn[:-1]  # the first comes again
     frames = [
         _picture(draw_sheet(each, sheet_note(course.scene)).figure)
-        for each in over_positions(drawn, sheet.paper)
+        for each in over_positions(course.frames, sheet.paper)
     ]
     return _animated(frames, [FRAME_S] * len(frames))
 

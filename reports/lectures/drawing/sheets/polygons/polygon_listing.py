@@ -21,6 +21,7 @@ from reports.lectures.drawing.sheets.polygons.polygon_words import (
     drawn_links,
     image_words,
 )
+from reports.lectures.drawing.sheets.sheet_note import of_elastic
 from reports.output.columns import plain_table
 from reports.output.numbers import readable
 
@@ -50,7 +51,7 @@ def _heading(sheet: PolygonSheet) -> str:
     at_time = f", t = {sheet.time_s:.9g} s" if sheet.time_s is not None else ""
     at_time += f" in {log.source}{log.taken}" if log is not None else ""
     alpha = f", {driver.alpha:g} rad/s^2" if driver.alpha else ""
-    rigid = "; its elastic links are taken as rigid" if scene.elastic else ""
+    rigid = of_elastic(scene, "; its elastic links are taken as rigid")
     return (
         f"{scene.name}: {scene.driver.link} at {round(math.degrees(driver.theta), 9) % 360.0:g} deg"
         f"{at_time}, {driver.omega:g} rad/s{alpha}{rigid}"

@@ -48,6 +48,7 @@ from reports.lectures.drawing.sheets.polygons.polygon_words import at_rest, doub
 from reports.lectures.drawing.sheets.scheme import draw_scheme, extent_of, point_letters
 from reports.lectures.drawing.sheets.sheet_frame import draw_border, inner_box, write_head
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
+from reports.lectures.drawing.sheets.sheet_note import of_elastic
 from reports.output.numbers import readable
 
 GAP = 4.0
@@ -192,7 +193,7 @@ def heading(sheet: PolygonSheet) -> str:
     angle = round(math.degrees(driver.theta), 9) % 360.0
     at_time = f" (t = {sheet.time_s:.6g} s)" if sheet.time_s is not None else ""
     alpha = f", alpha {readable(driver.alpha)} rad/s²" if driver.alpha else ""
-    rigid = "; its elastic links taken as rigid" if scene.elastic else ""
+    rigid = of_elastic(scene, "; its elastic links taken as rigid")
     return (
         f"{scene.name}: {scene.driver.link} at {angle:.6g}°{at_time}, omega "
         f"{readable(driver.omega)} rad/s{alpha}{rigid}"
