@@ -16,8 +16,7 @@ from analytic.multibody.bodies import Configuration, EnergyBalance
 from analytic.multibody.dynamics import Dynamics, joint_forces
 from analytic.multibody.generalised_forces import edges
 from analytic.multibody.outset import Outset
-from analytic.multibody.singular_passage import SingularPassage
-from analytic.multibody.steps import FixedSteps, StateHistory
+from analytic.multibody.steps import FixedSteps, SingularPassage, StateHistory
 from models.array import Array, Mask, from_end, samples
 from models.driver import check_within
 from models.errors import CrankcheckError

@@ -19,9 +19,8 @@ from analytic.multibody.bodies import Configuration
 from analytic.multibody.generalised_forces import GeneralisedForces
 from models.array import Array
 from models.errors import CrankcheckError, few
-from models.joints import local_point, sliding_angle, sliding_body, turned
+from models.joints import frames, local_point, sliding_angle, sliding_body, turned
 from models.motion import State
-from models.poses import frames
 from models.scene import GROUND, Point
 
 ROUGH_RAD, ROUGH = math.radians(1.0), 0.01

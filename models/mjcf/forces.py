@@ -10,6 +10,7 @@ from models.errors import EngineError
 from models.joints import (
     Slot,
     block_name,
+    centre_of,
     joints,
     line_ends,
     local_point,
@@ -20,7 +21,6 @@ from models.joints import (
 from models.loads import ConstantFriction, LineSpring, Load, PinSpring, Spring
 from models.mjcf.options import AttributeRow, Writing, attributes, commentable
 from models.motion import State
-from models.poses import centre_of
 from models.scene import GROUND, Point, Scene
 from models.tree import Freedom, Limb, Tree, closings, plan
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.forces.late_impulses import jolts
-from models.poses import mass_ratio
+from models.joints import mass_ratio
 from reports.compare.beside import Beside
 from reports.compare.curvature import curvature
 from reports.compare.error_rows import Instants

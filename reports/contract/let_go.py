@@ -14,9 +14,8 @@ import numpy as np
 
 from analytic.multibody.multibody_motion import Baumgarte
 from analytic.multibody.release_multibody import release_multibody
-from models.joints import bodies
+from models.joints import bodies, centre_of, frames
 from models.motion import State
-from models.poses import centre_of, frames
 from models.scene import Point, Scene
 
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from analytic.forces.springs import spring_lengths
+from analytic.forces.force_elements import spring_lengths
 from analytic.kinematics import reach, repeats_after, unit_chunk
 from analytic.structure.mobility import refuse_other_than_cranked
 from models.characteristics import Constant

@@ -14,8 +14,7 @@ import numpy as np
 
 from analytic.dyads.chunk import Chunk
 from analytic.forces.bounded import Bounded
-from analytic.forces.rubbing import put_constant_friction, rubbing_joints
-from analytic.forces.springs import apply_springs
+from analytic.forces.force_elements import apply_springs, put_constant_friction, rubbing_joints
 from analytic.forces.virtual_power import inertia_and_slope, loaded_bodies, torque_by_power
 from analytic.kinematics import driven_chunk, unit_chunk
 from analytic.lectures.regulation.cycle_angle import cycle_angle

@@ -25,7 +25,7 @@ from analytic.kinematics import solve_driven
 from analytic.lectures.synthesis.asked import PrecisionPosition
 from analytic.lectures.synthesis.asked_motion import asked_motion
 from analytic.lectures.synthesis.design import Proposal
-from analytic.mechanism.grashof import grashof_of
+from analytic.mechanism.fourbar import grashof_of
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.files.assemble import Table

@@ -9,9 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from models.array import Array
-from models.joints import bodies
+from models.joints import bodies, centre_of
 from models.laws import ConstantSpeed, Oscillating
-from models.poses import centre_of
 from models.scene import Same, Scene
 from reports.compare.beside import Beside, truth_of
 from reports.compare.compare import places
