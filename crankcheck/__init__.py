@@ -133,7 +133,7 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
             case "CrankcheckError" | "EngineError" | "ReachError" | "SceneError" | "StructureError":
                 from models import errors as home
             case "load_scene":
-                from reports.own_model.sentences import reading as home
+                from models.files import reading as home
             case "Forces":
                 from models import motion as home
             case "Motion" | "State":
