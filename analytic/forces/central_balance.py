@@ -334,15 +334,12 @@ def balance_central(on: Balance, part: Triad | Group) -> None:
         holds.append(PinHold(central, joint) if joint[0] == "R" else SliderHold(central, joint))
     given = central.given().three
     for hold in holds:
-        given = _sum(given, hold.known().three)
+        known = hold.known().three
+        given = given[0] + known[0], given[1] + known[1], given[2] + known[2]
     columns = [wrench.three for hold in holds for wrench in hold.unknown()]
     found = iter(solved_three((columns[0], columns[1], columns[2]), given))
     for hold in holds:
         hold.settle(found)
-
-
-def _sum(a: Three, b: Three) -> Three:
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
 def _axes() -> tuple[BoundedVec, BoundedVec]:

@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
-from analytic.dyads.plane import EPS, PointKinematics, Real, Vec
+from analytic.dyads.plane import EPS, Real, Vec
 from analytic.forces.bounded import Bounded, BoundedVec
 from analytic.forces.free_body import Balance, Displaced, FreeBody, PrismaticPair
 from analytic.kinematics import counted_angle, unit_chunk
@@ -95,7 +95,7 @@ def _pull(spring: Spring, q: Bounded, rate: Bounded) -> Bounded:
 
 def _way(scene: Scene, chunk: Chunk, spring: LineSpring) -> tuple[BoundedVec, BoundedVec]:
     """From the first point to the second [m], and the velocity of that."""
-    a, b = (_point(scene, chunk, name) for name in spring.points)
+    a, b = (chunk.point(_holder(scene, name), name) for name in spring.points)
     p, v = b.p - a.p, b.v - a.v
     if a.error is None or b.error is None:
         return BoundedVec(p, 0.0, None), BoundedVec(v, 0.0, None)
@@ -168,11 +168,6 @@ def _holder(scene: Scene, point: str) -> str:
     return next(  # the point of blocks alone
         block_name(s) for s in scene.sliders.values() if s.link is None and s.point == point
     )
-
-
-def _point(scene: Scene, chunk: Chunk, name: str) -> PointKinematics:
-    """A named point, by the body that a spring's end is fixed to."""
-    return chunk.point(_holder(scene, name), name)
 
 
 STILL = 1e-12
