@@ -18,8 +18,8 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from analytic.lectures.regulation.flywheel import WantedFlywheel, wanted_flywheel
 from analytic.lectures.regulation.turning_machine import TurningMachine
-from analytic.lectures.vibration.over_inertia import over_inertia as inertia_map
 from analytic.lectures.vibration.over_speeds import OverSpeeds, over_speeds
+from analytic.lectures.vibration.over_speeds import over_inertia as inertia_map
 from analytic.lectures.vibration.steady_vibration import SteadyVibration, steady_vibration
 from models.files.reading import load_scene
 from models.loads import ConstantFriction, CoulombFriction, Load
@@ -30,13 +30,15 @@ from reports.figures.elastic.control import draw
 from reports.figures.forces.all_figures import FORCE_FIGURES
 from reports.figures.forces.force_turn import force_turn
 from reports.figures.forces.torque import mean_torque
-from reports.lectures.drawing.workbook.family_curves import FamilyCurves, family_curves
-from reports.lectures.drawing.workbook.family_figure import draw_family
-from reports.lectures.drawing.workbook.family_report import family_drawing, family_page_of
+from reports.lectures.drawing.workbook.family import FamilyCurves, family_curves
+from reports.lectures.drawing.workbook.family_report import (
+    draw_family,
+    family_drawing,
+    family_page_of,
+)
 from reports.lectures.drawing.workbook.live_workbook import formulas_of
-from reports.lectures.machine.figures import over_inertia, over_speed, over_turn
-from reports.lectures.machine.figures.all_figures import REGULATION_FIGURES
-from reports.lectures.machine.figures.regulated import Regulated
+from reports.lectures.machine.figures import vibration as figures
+from reports.lectures.machine.figures.regulation import REGULATION_FIGURES, Regulated
 from tests.reports.figures.test_files import texts
 from tests.reports.figures.test_looks import has_room
 from tests.worlds.tiers import few, slowly
@@ -173,23 +175,23 @@ def speeds(request: pytest.FixtureRequest) -> OverSpeeds:
 
 def mapped(vibration: SteadyVibration) -> Figure:
     factors, few = np.array([1.0, 30.0]), np.linspace(17.0, 19.0, 3)
-    return over_inertia.draw(inertia_map(vibration.scene, ONE, few, "rocker", factors))
+    return figures.draw_over_inertia(inertia_map(vibration.scene, ONE, few, "rocker", factors))
 
 
-@pytest.mark.parametrize("draw", [over_turn.draw, over_turn.draw_spectrum, mapped])
+@pytest.mark.parametrize("draw", [figures.draw_over_turn, figures.draw_spectrum, mapped])
 def test_words_of_vibration_have_room(
     vibration: SteadyVibration, draw: Callable[..., Figure]
 ) -> None:
     has_room(draw, vibration)
 
 
-@pytest.mark.parametrize("draw", [over_speed.draw, over_speed.draw_waterfall])
+@pytest.mark.parametrize("draw", [figures.draw_over_speed, figures.draw_waterfall])
 def test_words_over_speeds_have_room(speeds: OverSpeeds, draw: Callable[..., Figure]) -> None:
     has_room(draw, speeds)
 
 
 def test_the_curve_is_the_deflection(vibration: SteadyVibration) -> None:
-    (axes,) = over_turn.draw(vibration).axes
+    (axes,) = figures.draw_over_turn(vibration).axes
     curve = np.asarray(axes.lines[0].get_ydata(), dtype=float)
     swing = vibration.swings["coupler"]
     assert np.abs(curve).max() == pytest.approx(1e3 * swing.largest_m, rel=2e-3)
