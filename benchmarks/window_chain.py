@@ -32,7 +32,7 @@ from concurrent.futures import ProcessPoolExecutor
 from analytic.free.window_chain import ChainMotion
 from models.errors import EngineError
 from models.hard import Chain
-from reports.compare.free_chain import ChainErrors, hold
+from reports.compare.free.hard_runs import ChainErrors, hold
 from reports.output.provenance import processor
 from sim.engine import SettingValue
 from sim.registry import engine

@@ -101,7 +101,7 @@ def jolts(scene: Scene, motion: Motion) -> Array:
     difference of two bodies.
 
     Source: Gauss's principle of least constraint (J. reine angew. Math. 4, 1829), for the step of
-    an impulse solver; measured against two engines in `reports.judge.start_allowance`.
+    an impulse solver; measured against two engines in `reports.judge.rules.limits`.
     """
     largest = reduce(np.maximum, _pushes(scene, motion))
     half = 0.5 * largest / scene.driver.law.peak_speed_rad_s**2

@@ -14,8 +14,7 @@ from reports.advise.demand import Demand
 from reports.advise.evidence import MeasuredStudy
 from reports.advise.look import LONGER, TriedRun, look
 from reports.plan.coarsest import coarsest
-from reports.workers.isolated import Isolated, Limits, Lost
-from reports.workers.scheduler import as_they_end
+from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
 
 LIMITS = Limits(time_s=30.0)
 """Of a run; the longest has `plan.steps.MOST_STEPS`, and takes a few seconds."""

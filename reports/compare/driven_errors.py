@@ -10,16 +10,11 @@ import numpy as np
 from models.errors import ReachError
 from reports.compare.beside import Beside
 from reports.compare.branch import departure
-from reports.compare.change_points import conditioning
-from reports.compare.drive_rounding import summed
-from reports.compare.error_rows import Instants, instants_of, whole_row
-from reports.compare.errors import Error, Errors
-from reports.compare.facts import DRIVEN
+from reports.compare.error_rows import Instants, instants_of, whole_row, whole_rows
+from reports.compare.errors import DRIVEN, Error, Errors
 from reports.compare.force_rows import force_rows
-from reports.compare.loading import loading
-from reports.compare.role_rows import whole_rows
-from reports.compare.uneven import uneven
-from reports.compare.whole_errors import Parts, whole_errors
+from reports.compare.hardness import conditioning, loading, uneven
+from reports.compare.whole_errors import Parts, summed, whole_errors
 from reports.quantities import named
 from reports.quantities.quantity import Role
 

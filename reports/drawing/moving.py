@@ -19,7 +19,7 @@ from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene
 from reports.compare.last_turn import Trace
-from reports.compare.series import angle_error
+from reports.compare.tracks import angle_error
 from reports.drawing.packed import packed
 from reports.drawing.true_motion import true_motion
 

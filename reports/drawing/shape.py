@@ -14,7 +14,7 @@ from models.errors import CrankcheckError
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
-from reports.compare.free.kept_motion import kept_motion
+from reports.compare.free.free_truth import kept_motion
 from reports.drawing.beside_locking import clear_of_locking
 
 PATH_SAMPLES = 361

@@ -8,7 +8,7 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.free.kept_motion import kept_motion
+from reports.compare.free.free_truth import kept_motion
 
 
 def true_motion(scene: Scene, time_s: Array) -> Motion:

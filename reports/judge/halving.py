@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.compare.beside import Truth
+from reports.compare.beside import Truth, incomplete
 from reports.compare.compare import places
-from reports.compare.completeness import incomplete
 from reports.compare.errors import Error, Errors, largest
 from reports.compare.force_rows import force_rows
+from reports.judge.rules.reference import too_good
 from reports.judge.three_steps import AT_ROUNDING, Convergence, convergence
 from reports.judge.tolerance import beyond_engine, limits
-from reports.judge.too_good import too_good
 from reports.quantities import named
 from sim.engine import Placing, Run
 
@@ -24,7 +23,7 @@ PLACES, FORCES = ("phase", *named("place")), named("force")
 HALVINGS = 2
 EXACT_DRIVE = 1e-9
 """A drive error [rad] up to which the crank is where it should be, but for rounding; long runs add
-to it what their sums may be off by (`reports.compare.drive_rounding`)."""
+to it what their sums may be off by (`reports.compare.whole_errors`)."""
 BEHIND_DRIVE = 5.0
 """How far behind the rounding of the crank that of the other links may be."""
 

@@ -1,17 +1,21 @@
-"""Results as flat rows: one per cell, and one per error of a cell."""
+"""Results as flat rows, one per cell and one per error of a cell, and as pandas frames of them."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
-from typing import cast
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, cast
 
 from reports.compare.errors import Error, ErrorKind, largest
 from reports.judge.cell import Checked
 from reports.judge.tolerance import FORCES, Limit
 from reports.quantities import QUANTITIES, named
 from reports.quantities.quantity import BodyKind, Source
+
+if TYPE_CHECKING:
+    import pandas as pd
+
 
 ColumnsOf = Callable[[Checked], dict[str, object]]
 """What cells of a kind have besides (part `columns` of a way)."""
@@ -133,3 +137,17 @@ def identity(checked: Checked) -> dict[str, object]:
         "steps_per_turn": cell.steps_per_turn,
         "turns": cell.turns,
     }
+
+
+def error_frame(checked: Iterable[Checked]) -> pd.DataFrame:
+    """One row per scene, engine, profile, step, quantity, body, source and kind."""
+    import pandas as pd
+
+    return pd.DataFrame([row for one in checked for row in error_rows(one)])
+
+
+def cell_frame(checked: Sequence[Checked]) -> pd.DataFrame:
+    """One row per cell, failures included with their status and reason."""
+    import pandas as pd
+
+    return pd.DataFrame([cell_row(one) for one in checked])

@@ -11,16 +11,16 @@ says::
 the reference (at least 1), ``conditioning`` its smallest sine of a transmission angle, and
 ``share`` what a soft constraint may leave open of an acceleration (s = 0), and so of a velocity (s
 = 1), at every step; k is how often the quantity was differenced. ``summed`` is what rounding may
-make of the driver's angle by the end of the run [rad] (`reports.compare.drive_rounding`), which the
+make of the driver's angle by the end of the run [rad] (`reports.compare.whole_errors`), which the
 mechanism passes on as it does the driver's motion: the one part that grows with the number of
 steps.
 
 For places and gaps ``curvature / conditioning`` is at least twice the largest ``jolt``, half of
 a + omega^2 r at a distance r from the centre of a body: that much, times step^2, an engine that
-solves for impulses sets bodies off to close its joints (`reports.judge.start_allowance`).
+solves for impulses sets bodies off to close its joints (`reports.judge.rules.limits`).
 
 A change point that the motion goes through is left out of ``conditioning``, with half a radian of
-the driver on both sides (`reports.compare.change_points`). Rates there are held to limits of their
+the driver on both sides (`reports.compare.hardness`). Rates there are held to limits of their
 own (`in_passage`): what it takes to make good an error of place, within its limit, in one step.
 
 What was let go is ever further off the longer it lasts, by ``lasting * travel * step^3 *
@@ -46,9 +46,9 @@ engine's own has no joints within: its deflection is off by that share of itself
 it is. Of exudyn it is a quarter of all that on the shipped scenes.
 
 Forces are shares of the largest of the reference, in which the masses cancel: no ratio of these is
-in their budget, but in that of the start (`reports.judge.start_allowance`).
+in their budget, but in that of the start (`reports.judge.rules.limits`).
 
-Loads add two parts, and none where there are none (`reports.compare.loading`). A soft constraint
+Loads add two parts, and none where there are none (`reports.compare.hardness`). A soft constraint
 gives way by ``share`` of the acceleration that a load would give its body, times the square of its
 time constant, some steps; where that bends, by ``loading`` from step to step, accelerations are
 off. And a load that rises over a displacement by ``slope`` is another where its slider is off by
@@ -75,8 +75,7 @@ from models.errors import CrankcheckError, suggestion
 from models.scene import Scene
 from reports.compare.errors import Errors
 from reports.judge.three_steps import AT_ROUNDING
-from reports.quantities import named
-from reports.quantities.limits import BENDING, EVERY, FREE
+from reports.quantities import BENDING, EVERY, FREE, named
 from reports.quantities.places import WITHIN_A_STEP
 from reports.quantities.quantity import Tolerance
 

@@ -12,10 +12,9 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.logs.channel import OwnLog
 from reports.logs.columns import Columns
-from reports.logs.kinds import KINDS, Kind
+from reports.logs.kinds import KINDS, OWN, Kind
 from reports.logs.map_file import ChannelTable, Map, TimeTable
 from reports.logs.meanings import understood
-from reports.logs.own_columns import OWN
 from reports.logs.units import si
 
 TIME = "time_s"

@@ -17,16 +17,14 @@ from reports.compare.errors import Errors, largest
 from reports.judge.cell import left_words
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.limits import LIMITS
+from reports.judge.rules.reference import LEAST
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import refuse_forces_unasked
-from reports.judge.too_good import LEAST
-from reports.logs.beside_truth import beside_truth, lacking
 from reports.logs.channel import OwnLog
-from reports.logs.log_beside import LogBeside
+from reports.logs.log_beside import LogBeside, beside_truth, lacking
 from reports.own_log.drives import DriveFit, LogDrive
 from reports.own_log.log_kind import HeldLog, LogRequest, log_kind
-from reports.own_log.log_limits import log_limits
-from reports.own_log.required import absent_names, required_name
+from reports.own_log.log_limits import absent_names, log_limits, required_name
 from sim.engine import Placing
 
 ITSELF = (

@@ -107,7 +107,7 @@ def segmented(scene: Scene) -> tuple[Scene, State]:
 
 def cut_scene(scene: Scene, given: GivenAs) -> Scene:
     """What an engine is given of a scene with elastic links. Raises CrankcheckError."""
-    from reports.compare.elastic.cut import cut  # where links bend alone
+    from reports.compare.elastic.elastic_truth import cut  # where links bend alone
 
     return cut(scene, given.segments, given.springs).given
 

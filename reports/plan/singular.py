@@ -16,7 +16,7 @@ from models.driver import driver_course, driver_unit, place_in_words
 from models.errors import CrankcheckError, few
 from models.motion import Crossing, Motion
 from models.scene import Scene
-from reports.compare.change_points import near
+from reports.compare.hardness import near
 
 SINGULAR = 1e-6
 """A sine of a transmission angle below which velocities are lost: rounding is over its square."""

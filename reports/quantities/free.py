@@ -7,8 +7,7 @@ import numpy as np
 from models.driver import driver_place
 from models.motion import Motion
 from models.scene import GROUND, Scene
-from reports.quantities.moving import every_place
-from reports.quantities.quantity import Criterion, Measure, Quantity, Series, Tolerance
+from reports.quantities.quantity import Criterion, Measure, Quantity, Series, Tolerance, every_place
 from sim.engine import Run
 
 

@@ -118,7 +118,7 @@ def compare(
                 f"{what.reason}"
             )
         return Comparison(scene, f"{what.engine} {what.version}, profile {what.profile}", errors)
-    from reports.logs.beside_truth import beside_truth
+    from reports.logs.log_beside import beside_truth
     from reports.own_log.drives import chosen_drive, refuse_geometry_alone
     from reports.own_log.log_kind import LogRequest, log_kind
 

@@ -18,7 +18,7 @@ from models.mjcf.document import build
 from models.mjcf.options import exact
 from models.motion import State
 from models.scene import Scene
-from reports.compare.free.kept_motion import released_state
+from reports.compare.free.free_truth import released_state
 from reports.output.write import check_file, write
 from reports.plan.elastic import SPRINGS, held_steps, segmented
 from reports.plan.free import under_control

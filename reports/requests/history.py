@@ -28,7 +28,7 @@ from reports.requests.options import Duration, Jobs, StepS, StepsPerTurn
 from reports.requests.verify import VerifyRequest, plan
 from reports.requests.verify_files import IN_FOLDER
 from reports.results.changes.reading import scene_digests
-from reports.workers.programs import run_child
+from reports.workers.signals import run_child
 from sim.registry import ENGINES, engine
 
 FILES = ("history.csv", "history.md")

@@ -23,12 +23,11 @@ from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, judge_log
 from reports.own_log.log_kind import LogRequest
 from reports.own_log.log_limits import EVERY
-from reports.own_log.markdown import markdown
 from reports.own_log.rows import row_table
-from reports.own_log.table import show
+from reports.own_log.table import markdown, show
 from reports.plan.elastic import given_of
 from reports.plan.steps import positive
-from reports.quantities.limits import DEFAULTS, FREE
+from reports.quantities import DEFAULTS, FREE
 from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
 from reports.requests.arguments import SceneLike, is_true, one_of, scene_of, tolerances_of
 from reports.requests.check import CellVerdict, verdict_of_run

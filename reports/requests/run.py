@@ -16,7 +16,7 @@ from models.errors import CrankcheckError, harmless
 from models.files.reading import find_scene
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.compare.free.kept_motion import released_state
+from reports.compare.free.free_truth import released_state
 from reports.output.frame_file import ENDINGS, write_frame
 from reports.output.write import check_file
 from reports.plan.elastic import given_of

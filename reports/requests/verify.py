@@ -40,7 +40,7 @@ from reports.plan.free import (
 )
 from reports.requests.verify_files import IN_FOLDER, Results, write_results
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions, refuse_of_models
-from reports.verify.all_cells import check_all
+from reports.verify.advised import check_all
 from reports.verify.table import show
 from reports.way.length import Length
 from reports.way.way import laid_out, way_of

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from reports.judge.cell import Checked
-from reports.judge.frames import cell_frame, error_frame
-from reports.judge.rows import cell_row
+from reports.judge.rows import cell_frame, cell_row, error_frame
 from reports.output.frame_file import csv, parquet
 from reports.output.junit import junit
 from reports.output.numbers import finite
 from reports.output.write import write
 from reports.requests.verify_options import VerifyOptions
-from reports.verify.junit import suite
+from reports.verify.table import suite
 
 if TYPE_CHECKING:  # half a second to import: where there is a run to compare with
     from reports.results.changes.changes import Diff

@@ -21,8 +21,7 @@ from reports.selftest.all_faults import FAULTS, RUNS
 from reports.selftest.fault import PROFILE, Fault, RunKind
 from reports.selftest.fault_runs import STEPS
 from reports.selftest.unseen import Unseen
-from reports.workers.isolated import Limits, Lost
-from reports.workers.scheduler import run_all
+from reports.workers.isolated import Limits, Lost, run_all
 from sim.registry import ENGINES, engine
 from sim.settings import profile_of, resolved
 

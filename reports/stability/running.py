@@ -12,8 +12,7 @@ from reports.stability.case import Case
 from reports.stability.critical import critical, line
 from reports.stability.grading import GradedPicture, graded
 from reports.stability.matrix import Critical, Graded, Picture, label
-from reports.workers.isolated import Isolated, Limits, Lost
-from reports.workers.scheduler import as_they_end
+from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
 
 LIMIT_S = 120.0
 MEMORY_GB = 4.0

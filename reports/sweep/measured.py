@@ -12,7 +12,7 @@ import numpy as np
 from analytic.kinematics import solve
 from models.array import Array
 from models.motion import State
-from reports.compare.free.kept_motion import released_state
+from reports.compare.free.free_truth import released_state
 from reports.compare.last_turn import trace
 from reports.judge.cell import Cell, examined
 from reports.judge.rows import cell_row, error_rows

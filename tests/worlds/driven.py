@@ -40,8 +40,8 @@ from models.motion import State
 from models.moved_scene import moved, scaled
 from models.scene import GROUND, Link, Point, Scene, Slider, span
 from models.tree import plan
-from reports.compare.curvature import curvature
-from reports.quantities.limits import DEFAULTS
+from reports.compare.hardness import curvature
+from reports.quantities import DEFAULTS
 from sim.pymunk.settings import TUNED
 from sim.pymunk.space import build
 from tests.worlds.strategies import (

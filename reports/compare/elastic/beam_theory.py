@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -19,6 +19,7 @@ import numpy as np
 from analytic.elastic.control import elastic_history
 from analytic.elastic.discretisation import REFERENCE, Polynomials
 from analytic.elastic.elastic_motion import ElasticHistory
+from analytic.elastic.engine_start import chain_motion
 from analytic.elastic.natural import lowest_rad_s
 from analytic.elastic.released import ROUGH
 from models.array import Array
@@ -26,7 +27,6 @@ from models.cut_scenes import SegmentedScene
 from models.elastic import Shape
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.elastic.exact_chain import ExactChain
 from reports.quantities.elastic import largest_deflection
 
 FEWER = Polynomials(REFERENCE.across - 2, REFERENCE.along - 1)
@@ -160,3 +160,24 @@ def deflections_apart(one: Motion, other: Motion) -> float:
         float(np.abs(one.elastic[name].middle - other.elastic[name].middle).max())
         for name in other.elastic
     )
+
+
+@dataclass(frozen=True)
+class ExactChain:
+    """A chain of segments as a multibody of our own, and its motion as one of the scene."""
+
+    chain: SegmentedScene
+    until_s: float
+    shape: Shape
+
+    @cached_property
+    def motion(self) -> ElasticHistory:
+        return chain_motion(self.chain, self.shape, self.until_s)
+
+    def at(self, time_s: Array) -> Motion:
+        """At times [s] (T,), with the links and points of the scene."""
+        motion = self.motion.at(time_s)
+        first = {
+            self.chain.segments(name)[0]: motion.links[name] for name in self.chain.scene.elastic
+        }
+        return self.chain.folded(replace(motion, links={**motion.links, **first}))

@@ -14,7 +14,7 @@ from reports.compare.elastic.elastic_facts import ElasticFacts
 from reports.compare.elastic.elastic_truth import ElasticBeside
 from reports.compare.error_rows import instants_of, whole_row
 from reports.compare.errors import Error, ErrorKind, Errors
-from reports.compare.series import length
+from reports.compare.tracks import length
 from reports.quantities import QUANTITIES, named
 
 BEAM, CHAIN = ("deflection", "extension"), ("segments",)

@@ -7,10 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from reports.compare.errors import Errors
-from reports.compare.facts import LinkFacts, MotionFacts
-from reports.quantities import named
-from reports.quantities.limits import BENDING
+from reports.compare.errors import Errors, LinkFacts, MotionFacts
+from reports.quantities import BENDING, named
 from reports.quantities.quantity import Tolerance
 
 BENT = (

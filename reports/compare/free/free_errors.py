@@ -14,20 +14,16 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.joints import has_loops
 from reports.compare.beside import Beside
-from reports.compare.change_points import conditioning
-from reports.compare.error_rows import Instants, instants_of, whole_row
+from reports.compare.branch import free_departure
+from reports.compare.error_rows import Instants, instants_of, whole_row, whole_rows
 from reports.compare.errors import Error, Errors
 from reports.compare.force_rows import force_rows
-from reports.compare.free.energy_drift import energy_rows, window_s
-from reports.compare.free.free_beside import FreeBeside
-from reports.compare.free.free_branch import free_departure
+from reports.compare.free.drift import energy_rows, momentum_rows, window_s
 from reports.compare.free.free_facts import FreeFacts
-from reports.compare.free.momentum_drift import momentum_rows
-from reports.compare.role_rows import whole_rows
-from reports.compare.series import length
-from reports.compare.tracks import Track
-from reports.compare.uneven import uneven
-from reports.compare.whole_errors import Parts, whole_errors
+from reports.compare.free.free_truth import FreeBeside
+from reports.compare.hardness import conditioning, uneven
+from reports.compare.tracks import Track, length
+from reports.compare.whole_errors import TWICE, Parts, whole_errors
 from reports.quantities.free import GEOMETRY, PHASE
 
 COURSE = 400
@@ -37,8 +33,6 @@ LEAST_SINE = 0.3
 of another coordinate, which is not singular there."""
 STILL = 1e-12
 """Over the largest speed of the driver: what does not move."""
-TWICE = 4.0
-"""Roundings of a sum in a sum, see `reports.compare.drive_rounding`."""
 
 
 def compared(beside: Beside, errors: Errors | None) -> Errors:

@@ -9,10 +9,8 @@ from typing import ClassVar
 import numpy as np
 
 from models.array import Array
-from reports.compare.errors import Errors
-from reports.compare.facts import MotionFacts
-from reports.quantities import named
-from reports.quantities.limits import FREE
+from reports.compare.errors import Errors, MotionFacts
+from reports.quantities import FREE, named
 from reports.quantities.quantity import Tolerance
 
 MOST_GROWTH = 1e3

@@ -16,7 +16,6 @@ from models.errors import EngineError
 from models.loads import Load
 from models.motion import Motion, State
 from models.scene import Driver, Scene
-from reports.contract.clause import Clause
 from reports.contract.clauses.reactions import pulled
 from reports.contract.oscillators import (
     BASE_RAD,
@@ -35,7 +34,7 @@ from reports.contract.oscillators import (
     rod_scene,
     rod_state,
 )
-from reports.contract.subject import NotTriedError, Subject
+from reports.contract.subject import Clause, NotTriedError, Subject
 from sim.check import refuse_other_model
 from sim.measure import energy, motion
 

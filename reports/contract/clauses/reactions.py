@@ -15,8 +15,7 @@ from models.array import Array
 from models.joints import block_name, centre_of, joined_at, local_point, mass_of
 from models.motion import Forces, Motion
 from models.scene import GROUND, Scene
-from reports.contract.clause import Clause
-from reports.contract.subject import Subject, numbers
+from reports.contract.subject import Clause, Subject, numbers
 
 STEPS = 800
 """Of one turn."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from models.array import Array
 from models.scene import Scene
-from reports.compare.free.energy_drift import window_means
+from reports.compare.free.drift import window_means
 from reports.compare.last_turn import Trace
 from reports.describe.law import describe_law
 from reports.drawing.true_motion import true_motion

@@ -12,7 +12,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.free.energy_drift import window_means
+from reports.compare.free.drift import window_means
 from reports.drawing.moving import displacements, drawing, drawn_links, moving_points
 from reports.drawing.packed import packed, size_of
 from reports.drawing.true_motion import true_motion

@@ -7,13 +7,12 @@ from typing import Any
 
 from models.scene import Same, Scene
 from reports.compare.beside import Truth, truth_of
-from reports.compare.facts import DRIVEN
+from reports.compare.errors import DRIVEN
 from reports.plan.forces import refuse_forceless
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular
 from reports.plan.steps import TURNS, counted
-from reports.quantities import named
-from reports.quantities.limits import DEFAULTS
+from reports.quantities import DEFAULTS, named
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import Parts, StudyLengths

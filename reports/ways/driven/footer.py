@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from reports.compare.errors import largest
 from reports.judge.cell import Checked
-from reports.verify.footer import STEPS, UNITS, span
+from reports.verify.cell_table import STEPS, UNITS, span
 
 
 def words(checked: Sequence[Checked]) -> Sequence[str]:

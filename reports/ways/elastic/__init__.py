@@ -9,7 +9,7 @@ from typing import Any
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan.elastic import cut_scene, held_steps, logged_every, refuse_unelastic
-from reports.quantities.limits import ELASTIC
+from reports.quantities import ELASTIC
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
 from reports.ways.driven import DrivenWay

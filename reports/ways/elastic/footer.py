@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 from reports.compare.elastic.elastic_facts import BENT
 from reports.judge.cell import Checked
-from reports.judge.rules.elastic import TruthEnds
-from reports.verify.footer import LINK_UNITS
+from reports.judge.rules.reference import TruthEnds
+from reports.verify.cell_table import LINK_UNITS
 from reports.ways.driven.footer import STEPPED
 
 CHAINS = "engine: against the exact chain of as many segments instead; chain: that against the beam"

@@ -11,8 +11,7 @@ from reports.compare.beside import Truth
 from reports.compare.free.free_facts import FreeFacts
 from reports.plan.free import refuse_unreleased
 from reports.plan.steps import counted_free
-from reports.quantities import named
-from reports.quantities.limits import FREE
+from reports.quantities import FREE, named
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from reports.compare.free.free_facts import FreeFacts
 from reports.judge.cell import Checked
-from reports.verify.footer import MORE_STEPS, MORE_UNITS, span
+from reports.verify.cell_table import MORE_STEPS, MORE_UNITS, span
 
 
 def words(checked: Sequence[Checked]) -> Sequence[str]:

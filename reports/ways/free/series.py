@@ -9,13 +9,11 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion, State
-from reports.compare.free.energy_drift import window_means
-from reports.compare.free.free_beside import FreeBeside
-from reports.compare.free.free_branch import free_departure
-from reports.compare.free.free_truth import FreeTruth, free_truth
-from reports.compare.free.some_samples import first_samples
-from reports.compare.series import length
-from reports.compare.tracks import Track, tracks
+from reports.compare.beside import first_samples
+from reports.compare.branch import free_departure
+from reports.compare.free.drift import window_means
+from reports.compare.free.free_truth import FreeBeside, FreeTruth, free_truth
+from reports.compare.tracks import Track, length, tracks
 from reports.quantities.free import GEOMETRY, PHASE
 from reports.stability.case import Trial
 from reports.stability.error_series import ErrorSeries, lacking, nearest, widest

@@ -6,7 +6,7 @@ from reports.compare.free.free_facts import FreeFacts
 from reports.judge.cell import Checked
 from reports.quantities import QUANTITIES, named
 from reports.verify.cell_table import CellTable
-from reports.ways.free.precision import precision
+from reports.ways.free.columns import precision
 
 FREE_NUMBERS = {
     QUANTITIES["phase"].head: ["phase"],

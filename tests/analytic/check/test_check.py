@@ -22,7 +22,7 @@ from models.joints import centre_of, frames
 from models.motion import Motion
 from models.scene import Same, Scene
 from reports.compare.beside import truth_of
-from reports.contract.let_go import centres
+from reports.contract.oscillators import centres
 from tests.analytic.chain import coordinates
 from tests.analytic.imported import reached
 from tests.analytic.test_bounds import SIX

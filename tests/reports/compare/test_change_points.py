@@ -20,9 +20,8 @@ from models.motion import Crossing
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.branch import departure
-from reports.compare.change_points import WINDOW_RAD, conditioning, near
-from reports.compare.errors import Errors
-from reports.compare.facts import SceneFacts
+from reports.compare.errors import Errors, SceneFacts
+from reports.compare.hardness import WINDOW_RAD, conditioning, near
 from reports.judge.cell import Checked, check
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Finding

@@ -18,9 +18,8 @@ from models.files.reading import load_scene
 from models.motion import LinkMotion
 from models.moved_scene import mirrored, moved, rotated, scaled
 from models.scene import Scene
-from reports.compare.beside import SETTLING, Beside, Truth
+from reports.compare.beside import SETTLING, Beside, Truth, incomplete
 from reports.compare.compare import compare
-from reports.compare.completeness import incomplete
 from reports.compare.errors import ErrorKind, Errors
 from reports.judge.cell import check
 from reports.judge.tolerance import limits

@@ -10,7 +10,7 @@ import pytest
 from models.files.reading import load_scene
 from models.scene import Scene
 from reports.compare.elastic.released_truth import ReleasedElasticTruth
-from reports.compare.facts import DRIVEN, RIGID
+from reports.compare.errors import DRIVEN, RIGID
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
 from reports.judge.tolerance import limits
@@ -20,7 +20,7 @@ from reports.requests.compare import compare
 from reports.requests.judge import judge
 from reports.requests.run import run as simulated
 from reports.selftest.segment_changes import in_chain, springs, stiffer
-from reports.verify.footer import footer
+from reports.verify.cell_table import footer
 from tests.worlds.facts import with_facts
 from tests.worlds.tiers import slowly
 

@@ -247,7 +247,7 @@ def verdict(model: Path) -> crankcheck.ModelVerdict:
     """Read and run in this process."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("reports.own_model.account.Isolated", Here)
-        patch.setattr("reports.own_model.running.Isolated", Here)
+        patch.setattr("reports.own_model.judged.Isolated", Here)
         return checked(model)
 
 

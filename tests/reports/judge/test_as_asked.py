@@ -16,12 +16,12 @@ from models.files.reading import load_scene, shipped
 from models.laws import ConstantSpeed
 from models.loads import ConstantFriction
 from models.scene import Scene
-from reports.compare.asked import not_asked_for
+from reports.compare.compare import not_asked_for
 from reports.compare.errors import Error
-from reports.compare.uneven import uneven, unevenly_turned
+from reports.compare.hardness import uneven, unevenly_turned
 from reports.judge.cell import Cell, CellRunner, examined
 from reports.judge.rules import RULES
-from reports.judge.too_good import LEAST, too_good
+from reports.judge.rules.reference import LEAST, too_good
 from reports.selftest.fault import integrates
 from sim.engine import Run
 from sim.registry import ENGINES, engine

@@ -23,14 +23,12 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.judge import cell as cells
 from reports.judge.cell import Cell, check, unfinished
-from reports.judge.frames import cell_frame, error_frame
-from reports.judge.rows import ERROR_COLUMNS
+from reports.judge.rows import ERROR_COLUMNS, cell_frame, error_frame
 from reports.judge.tolerance import FORCES
 from reports.plan.singular import refuse_singular
-from reports.quantities import named
-from reports.quantities.limits import DEFAULTS
-from reports.verify.all_cells import check_all
-from reports.workers.scheduler import FEW
+from reports.quantities import DEFAULTS, named
+from reports.verify.advised import check_all
+from reports.workers.isolated import FEW
 from sim.engine import Run
 from sim.run import run
 from tests.worlds.fake.engine import FakeEngine
@@ -177,7 +175,7 @@ def test_a_cell_that_kills_its_process_costs_only_itself(monkeypatch: pytest.Mon
     cells = [of_turns(scene, engine) for scene in scenes for engine in ("mujoco", "pymunk")]
     assert len(cells) >= FEW + 2
     cells[2] = replace(cells[2], profile="deadly")
-    monkeypatch.setattr("reports.verify.all_cells.advised", deadly_check)
+    monkeypatch.setattr("reports.verify.advised.advised", deadly_check)
     heard: list[str] = []
     found = check_all(cells, 2, lambda one: heard.append(one.cell.label))
     assert [one.status for one in found] == ["ok", "ok", "crashed", "ok", "ok", "ok"]
@@ -188,7 +186,7 @@ def test_a_cell_that_kills_its_process_costs_only_itself(monkeypatch: pytest.Mon
 
 
 def test_a_cell_of_no_engine_of_ours_is_apart_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("reports.verify.all_cells.advised", deadly_check)
+    monkeypatch.setattr("reports.verify.advised.advised", deadly_check)
     (found,) = check_all([of_turns("fourbar-lecture-1", "penalty", profile="deadly")], 2)
     assert found.reason == "the engine ended its process (exit code 1)"
 

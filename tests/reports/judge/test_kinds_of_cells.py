@@ -16,18 +16,16 @@ from models.driver import let_go
 from models.files.reading import load_scene, parse_scene
 from models.loads import ConstantFriction
 from models.scene import Scene
-from reports.compare.errors import Errors
-from reports.compare.facts import DRIVEN
+from reports.compare.errors import DRIVEN, Errors
 from reports.compare.free import free_facts
 from reports.judge.cell import Cell, CellRunner, Checked, check, examined
 from reports.judge.rows import ERROR_COLUMNS, cell_row
 from reports.judge.rules import FORCES
+from reports.judge.rules.reference import too_good
 from reports.judge.tolerance import default, in_passage
-from reports.judge.too_good import too_good
-from reports.quantities import named
-from reports.quantities.limits import DEFAULTS, FREE
+from reports.quantities import DEFAULTS, FREE, named
 from reports.quantities.places import WITHIN_A_STEP
-from reports.ways.free.precision import precision
+from reports.ways.free.columns import precision
 from sim.engine import Run
 from sim.run import run
 from tests.worlds.facts import with_facts

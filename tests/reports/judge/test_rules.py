@@ -9,13 +9,12 @@ from dataclasses import replace
 import pytest
 
 from models.scene import Scene
-from reports.compare.errors import Error, Errors, largest
-from reports.compare.facts import SceneFacts
+from reports.compare.errors import Error, Errors, SceneFacts, largest
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.three_steps import Convergence, convergence
 from reports.judge.tolerance import Limit, limits
-from reports.quantities.limits import DEFAULTS
+from reports.quantities import DEFAULTS
 from tests.worlds.facts import with_facts
 
 KINDS = {

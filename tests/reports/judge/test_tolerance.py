@@ -17,14 +17,13 @@ from models.laws import ConstantSpeed, Oscillating
 from models.scene import Scene
 from reports.compare.beside import SETTLING, Beside, Truth
 from reports.compare.compare import compare
-from reports.compare.drive_rounding import summed
-from reports.compare.errors import Errors
-from reports.compare.facts import SceneFacts
+from reports.compare.errors import Errors, SceneFacts
 from reports.compare.force_rows import OF_STEPS
+from reports.compare.whole_errors import summed
 from reports.judge.cell import check
-from reports.judge.start_allowance import allowance
+from reports.judge.rules.limits import allowance
 from reports.judge.tolerance import check_names, limits, parse
-from reports.quantities.limits import DEFAULTS
+from reports.quantities import DEFAULTS
 from sim.run import run
 from tests.worlds.facts import with_facts
 from tests.worlds.fake.engine import turned_link

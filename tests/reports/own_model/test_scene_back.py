@@ -22,8 +22,7 @@ from models.mjcf.document import build
 from models.motion import State
 from models.scene import Driver, Scene
 from reports.judge.cell import Cell, check
-from reports.own_model.assembly import assembled
-from reports.own_model.request import ModelRequest
+from reports.own_model.assembly import ModelRequest, assembled
 from sim.mujoco.own_model.closures import ModelError
 from sim.mujoco.own_model.variants import advice, patched
 from sim.mujoco.reader import read_model

@@ -19,8 +19,7 @@ from analytic.kinematics import solve
 from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene
-from reports.own_model.assembly import assembled
-from reports.own_model.request import ModelRequest
+from reports.own_model.assembly import ModelRequest, assembled
 from sim.mujoco.own_model import session
 from sim.mujoco.own_model.closures import ModelError
 from sim.mujoco.own_model.session import OwnModelSession

@@ -11,8 +11,7 @@ import numpy as np
 
 from reports.compare.beside import Beside
 from reports.compare.error_rows import instants_of, whole_row
-from reports.compare.errors import Error, Errors
-from reports.compare.facts import MotionFacts
+from reports.compare.errors import Error, Errors, MotionFacts
 from reports.compare.force_rows import force_rows
 from reports.compare.whole_errors import Parts, whole_errors
 from reports.quantities import named

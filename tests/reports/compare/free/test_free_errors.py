@@ -19,10 +19,8 @@ from models.scene import Scene
 from models.tabulated import Tabulated
 from reports.compare.compare import compare, places
 from reports.compare.errors import Errors
-from reports.compare.free.energy_drift import drift, window_means, window_s
-from reports.compare.free.free_truth import FreeTruth, free_truth
-from reports.compare.free.kept_motion import kept_motion
-from reports.compare.free.momentum_drift import kept_about, momentum
+from reports.compare.free.drift import drift, kept_about, momentum, window_means, window_s
+from reports.compare.free.free_truth import FreeTruth, free_truth, kept_motion
 from reports.drawing.true_motion import true_motion
 from reports.store.reader import read_store
 from sim.engine import Run

@@ -16,7 +16,7 @@ from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
 from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.free.kept_motion import kept_motion
+from reports.compare.free.free_truth import kept_motion
 from reports.drawing.free_instants import instants
 from reports.drawing.shape import turn_of
 from reports.lectures.drawing.sheets.paper import sheet_note

@@ -22,14 +22,13 @@ from models.laws import Oscillating
 from models.motion import Motion, Order
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.compare.free.kept_motion import LOOK, kept_motion
-from reports.compare.series import rate, second_rate
+from reports.compare.free.free_truth import LOOK, kept_motion
+from reports.compare.tracks import rate, second_rate
 from reports.describe.driver_at import angle_at, driver_at, time_at
 from reports.drawing.true_motion import true_motion
 from reports.lectures.drawing.sheets.sheet_log import SheetLog
-from reports.logs.channel import OwnLog, Reading
+from reports.logs.channel import OwnLog, Reading, logged_motion
 from reports.logs.log_beside import EVEN
-from reports.logs.logged_motion import logged_motion
 from reports.logs.map_file import Map
 
 AT_DEG = 90.0

@@ -1,21 +1,152 @@
-"""A log that has the whole plane another way: seen from behind, turned, moved, or scaled."""
+"""A log of another assembly or driver, or that has the whole plane in another way."""
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 
+from analytic.kinematics import choices, chosen_groups
+from analytic.structure.groups import Group, Triad
+from analytic.structure.mobility import analyse
 from models.array import Array
-from reports.causes.account import CAUSE, NUMBER, Account
+from models.errors import CrankcheckError
+from models.laws import ConstantSpeed, Law
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, number
 from reports.causes.fit import fitted
 from reports.causes.inquiry import Inquiry
-from reports.causes.words import change, number
-from reports.causes.world import LogFrame
+from reports.causes.world import LogFrame, World
 from reports.logs.channel import Channel
 from reports.logs.units import UNITS
+from reports.output.numbers import listed
+
+MOST_CHOICES = 6
+"""Assemblies are looked at one by one up to so many choices: two to the power of it."""
+
+
+def assembly(inquiry: Inquiry) -> Iterator[Account]:
+    """Each other assembly that the log may be of."""
+    scene = inquiry.world.scene
+    groups = chosen_groups(analyse(scene))[:MOST_CHOICES]
+    for count in range(1, len(groups) + 1):
+        for chosen in itertools.combinations(groups, count):
+            for numbers in itertools.product(*(choices(scene, group)[1:] for group in chosen)):
+                keys = (group.branch_key for group in chosen)
+                branch = dict(zip(keys, numbers, strict=True))
+                other = replace(scene, branch={**scene.branch, **branch})
+                yield from _told(inquiry, replace(inquiry.world, scene=other), chosen, branch)
+
+
+def _told(
+    inquiry: Inquiry, world: World, groups: Sequence[Group | Triad], branch: Mapping[str, int]
+) -> Iterator[Account]:
+    """The accounts of an assembly: of the whole log, or of all that comes after an instant."""
+    links = inquiry.world.scene.links
+    names = listed([name for group in groups for name in group.bodies if name in links])
+    which = "another" if any(isinstance(group, Triad) for group in groups) else "the other"
+    entries = listed([f"{key} = {sign:+d}" for key, sign in branch.items()])
+    phrase = (
+        f"the log is of {which} assembly at {listed(list(branch))} ({names}): "
+        f"{entries.replace('+', '')} under [branch] of the scene"
+    )
+    cost = CAUSE + CHOICE * (len(groups) - 1)
+    told = inquiry.account_of_world("branch", cost, world, phrase)
+    if told is not None:
+        yield told
+    else:
+        yield from _later(inquiry, world, cost + NUMBER, phrase)
+
+
+def _later(inquiry: Inquiry, world: World, cost: float, phrase: str) -> Iterator[Account]:
+    """The account of a log that goes over to an assembly on the way, from its best sample on."""
+    try:
+        others = inquiry.errors(world)
+    except CrankcheckError:
+        return
+    gains = np.zeros(inquiry.rows)
+    for column, excerpt in inquiry.excerpts.items():
+        if excerpt.channel.kind.turns:
+            others[column] = np.remainder(others[column] + math.pi, math.tau) - math.pi
+        if column in inquiry.open:
+            size = excerpt.size.rms
+            gains += (excerpt.error / size) ** 2 - (others[column] / size) ** 2
+    after = np.cumsum(gains[::-1])[::-1]  # what is gained where all from a sample on is of another
+    first = int(np.argmax(after))
+    if first == 0 or after[first] <= 0.0:
+        return
+    place = np.arange(inquiry.rows)
+    errors = {
+        column: np.where(place < first, excerpt.error, others[column])
+        for column, excerpt in inquiry.excerpts.items()
+    }
+    instant = next(iter(inquiry.excerpts.values())).instants[first]
+    told = inquiry.account("branch", cost, errors, f"from t = {instant:.4g} s on {phrase}")
+    if told is not None and not inquiry.spoilt(errors):
+        yield told
+
+
+SIGNED = (
+    "speed_rad_s",
+    "acceleration_rad_s2",
+    "amplitude_rad",
+    "before_rad_s",
+    "after_rad_s",
+)
+"""What of a law changes its sign where the driver turns the other way."""
+STARTS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
+
+
+def backwards(inquiry: Inquiry) -> Iterator[Account]:
+    """The driver turning the other way from the same start, and rates that show it or, as from a
+    sensor of the speed alone, do not."""
+    if inquiry.world.drive is not None:
+        return
+    law = inquiry.world.scene.driver.law
+    names = {each.name for each in fields(law)}  # type: ignore[arg-type]
+    signs = {name: -getattr(law, name) for name in SIGNED if name in names}
+    world = _driven(inquiry.world, replace(law, **signs))  # type: ignore[type-var]
+    told = inquiry.account_of_world("reversed", CAUSE, world, "the driver turns the other way")
+    if told is not None:
+        yield told
+    elsewhere = inquiry.world.stamped(lambda stamps: -stamps)
+    phrase = "the driver turns the other way, and the rates have the signs that they have forwards"
+    told = inquiry.account_of_world("reversed", CAUSE + CHOICE, elsewhere, phrase)
+    if told is not None:
+        yield told
+
+
+def start_angle(inquiry: Inquiry) -> Iterator[Account]:
+    """The driver starting at another angle; at constant speed that is a clock that does."""
+    law = inquiry.world.scene.driver.law
+    another = isinstance(law, ConstantSpeed) or inquiry.world.drive is not None
+    if another or not inquiry.unexplained:
+        return
+    thin, columns = inquiry.thin, inquiry.unclaimed
+
+    def residual(angle: Array) -> Array:
+        errors = thin.errors(_driven(thin.world, law.turned(float(angle[0]))), columns)
+        return np.concatenate([errors[c] / thin.excerpts[c].size.rms for c in columns])
+
+    tried = (fitted(residual, [start], [1e-6]) for start in STARTS)
+    found = [each for each in tried if each is not None]
+    if not found:
+        return
+    angle = float(min(found, key=lambda each: float(np.sum(residual(each) ** 2)))[0])
+    phrase = f"the driver starts {math.degrees(angle):+.4g} deg from where it starts in the scene"
+    world = _driven(inquiry.world, law.turned(angle))
+    told = inquiry.account_of_world("start", CAUSE + NUMBER, world, phrase)
+    if told is not None:
+        yield told
+
+
+def _driven(world: World, law: Law) -> World:
+    """The world with another law of its driver."""
+    scene = world.scene
+    return replace(world, scene=replace(scene, driver=replace(scene.driver, law=law)))
+
 
 QUARTERS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
 """Turns of the plane that a fit starts from."""
