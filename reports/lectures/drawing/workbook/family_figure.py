@@ -12,10 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from reports.figures.free.free_course import mark_zero, shorten
 from reports.figures.marks import COLOURS, DASHES
 from reports.figures.sheet import Panels, sheet
-from reports.figures.style import COLUMN_IN, PAGE_IN, styled
+from reports.figures.style import COLUMN_IN, PAGE_IN, mark_zero, shorten, styled
 from reports.lectures.drawing.workbook.family_curves import KINDS, FamilyCurves
 
 TICKS_DEG = [1, 1.5, 3, 4.5, 6, 9, 10]
