@@ -15,11 +15,10 @@ from matplotlib.ticker import MaxNLocator
 
 from models.scene import Scene
 from reports.describe.law import describe_law
-from reports.figures.free.free_course import mark_zero, shorten
 from reports.figures.marks import COLOURS, DASHES
 from reports.figures.saving import saved
 from reports.figures.sheet import Panels, sheet
-from reports.figures.style import COLUMN_IN, PAGE_IN, styled
+from reports.figures.style import COLUMN_IN, PAGE_IN, mark_zero, shorten, styled
 from reports.lectures.drawing.workbook.family import KINDS, FamilyCurves, extremes
 from reports.output.numbers import count
 from reports.output.provenance import crankcheck_version

@@ -1,9 +1,9 @@
-"""Polar diagrams: the way of the tip of each pin's reaction over a turn, drawn from one point."""
+"""Forces of a turn as vectors: polar diagrams of the reactions of pins, and the mechanism with the
+largest of them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,14 +13,17 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
-from models.driver import driver_shown
+from models.driver import driver_shown, driver_stands
 from reports.describe.force_frame import acted_on
+from reports.drawing.force_arrows import force_arrows
 from reports.drawing.lettering import Label, place
 from reports.drawing.moving import goes_round
-from reports.drawing.shape import colours_of
-from reports.figures.forces.force_turn import ForceTurn
+from reports.drawing.shape import PATH_SAMPLES, colours_of, turn_of
+from reports.figures.force_turn import ForceTurn
+from reports.figures.mechanism import mechanism_at
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import INK, PAGE_IN, POINTS, QUIET, SMALL, TINY, cut, width_in
+from reports.output.numbers import readable
 
 COLUMNS = 3
 EVERY_DEG, NAMED_DEG = 30, 90
@@ -29,8 +32,9 @@ ROOM = 0.12
 """Room around a curve, over its size."""
 
 
-def draw(turn: ForceTurn) -> Figure | None:
-    """A panel per pin, with equal axes each; None where there are no reactions."""
+def hodographs(turn: ForceTurn) -> Figure | None:
+    """Polar diagrams, the way of the tip of each pin's reaction over a turn, drawn from one point,
+    a panel per pin, with equal axes each; None where there are no reactions."""
     pins = list(acted_on(turn.acting))
     if not (pins and turn.has_forces):
         return None
@@ -83,7 +87,9 @@ def _numbers(
     axes: Axes, dots: dict[int, int], force: Array, low: Array, per_n: float, side: float
 ) -> None:
     """The driver's angle beside some dots, clear of the curve and of one another."""
-    named = [(k, deg) for k, deg in dots.items() if deg % NAMED_DEG == 0 and _whole(force[k])]
+    named = [
+        (k, deg) for k, deg in dots.items() if deg % NAMED_DEG == 0 and np.isfinite(force[k]).all()
+    ]
     curve = (force[np.isfinite(force).all(axis=1)] - low) * per_n
     height = 0.8 * TINY / POINTS
     labels = [
@@ -114,5 +120,20 @@ def _dots(turn: ForceTurn) -> dict[int, int]:
     return found
 
 
-def _whole(vector: Sequence[float] | Array) -> bool:
-    return bool(np.isfinite(vector).all())
+def loaded(turn: ForceTurn) -> Figure | None:
+    """The mechanism where its reactions are largest, with the forces as arrows to one scale; None
+    without reactions."""
+    if not turn.has_forces or not (turn.acting.pins or turn.acting.sliders):
+        return None
+    scene = turn.scene
+    path = turn_of(scene, PATH_SAMPLES, with_forces=True)
+    arrows = force_arrows(scene, path)
+    at = arrows.largest_at(path)
+    assert path.forces is not None
+    drive, torque = scene.driver, readable(float(path.forces.torque[at]))
+    title = f"{scene.name}, {driver_stands(scene, path, at)}"
+    words = (
+        f"Where the reactions are largest; driving {drive.effort} {torque} {drive.effort_unit}. An "
+        "arrow is the force on the body of its colour, a black one that on a block."
+    )
+    return mechanism_at(scene, path, at, arrows.box(path), title, [words, *turn.notes], arrows)

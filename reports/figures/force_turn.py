@@ -18,15 +18,11 @@ from models.driver import driver_axis, driver_shown
 from models.laws import ConstantSpeed
 from models.motion import Forces, Motion
 from models.scene import Scene
-from reports.describe.law import describe_law
 from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_forces
 from reports.drawing.beside_locking import clear_of_locking
 from reports.drawing.moving import goes_round
-from reports.figures.style import SMALL
-from reports.output.provenance import crankcheck_version
-
-SIDES = (0.58, 0.1)
-"""Room on the left and on the right of a panel over the axis [inch]."""
+from reports.figures.figure_set import loads_told, note
+from reports.figures.style import shorten
 
 
 @dataclass(frozen=True)
@@ -53,8 +49,7 @@ class ForceTurn:
     def mark_axis(self, axes: Axes) -> None:
         """Limits and ticks of the horizontal axis; short numbers on the other."""
         axes.set_xlim(*self.ends)
-        axes.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=False)
-        axes.yaxis.get_offset_text().set_fontsize(SMALL)
+        shorten(axes)
         if self.label.endswith("[deg]"):
             axes.xaxis.set_major_locator(MultipleLocator(60.0))
 
@@ -67,13 +62,8 @@ class ForceTurn:
     def notes(self) -> list[str]:
         """What stands under each figure."""
         scene = self.scene
-        gravity = np.hypot(*scene.gravity_m_s2)
-        parts = [
-            f"crankcheck {crankcheck_version()}, closed form; driver {describe_law(scene)}",
-            f"gravity {gravity:g} m/s²" if gravity else "no gravity",
-            f"loads: {', '.join(scene.loads)}" if scene.loads else "no loads",
-        ]
-        notes = [f"{'; '.join(parts)}.", *force_notes(scene, self.motion)]
+        notes = [note(scene, "closed form", "driver", loads_told(scene))]
+        notes += force_notes(scene, self.motion)
         if self.acting.has_equilibria(0).any():
             left = "" if self.has_forces else ", which is all of the turn"
             notes.append(f"Forces within 5 deg of it are not drawn{left}.")
