@@ -39,7 +39,7 @@ from analytic.elastic.periodic import (
     periodic_motion,
 )
 from analytic.elastic.reduced import ReducedForm
-from analytic.lectures.vibration.any_speed import at_speed
+from analytic.lectures.vibration.steady_vibration import at_speed
 from models.array import Array
 from models.cut_scenes import BeamedScene
 from models.files.reading import load_scene

@@ -133,10 +133,8 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
             case "CrankcheckError" | "EngineError" | "ReachError" | "SceneError" | "StructureError":
                 from models import errors as home
             case "load_scene":
-                from reports.own_model.sentences import reading as home
-            case "Forces":
-                from models import motion as home
-            case "Motion" | "State":
+                from models.files import reading as home
+            case "Forces" | "Motion" | "State":
                 from models import motion as home
             case "Scene":
                 from models import scene as home

@@ -19,6 +19,7 @@ from models import tree
 from models.elastic import Beam
 from models.errors import EngineError
 from models.joints import (
+    Frame,
     Joints,
     Pin,
     Prism,
@@ -27,16 +28,18 @@ from models.joints import (
     blocks,
     bodies,
     carriers,
+    centre_of,
+    frames,
     joined_at,
     joints,
     line_ends,
     local_point,
+    mass_of,
     sliding_angle,
     whole_turns,
 )
 from models.loads import ConstantFriction, LineSpring, Load, PinSpring, SlideSpring, Spring
 from models.motion import Forces, SliderForces, State
-from models.poses import Frame, centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene, Slider
 from sim import drive, load_magnitudes
 from sim.engine import (

@@ -97,33 +97,29 @@ class CutScene(ABC):
             start=Start(),
         )
 
-    def _carrier(self, link: str, point: str) -> str:
-        """The body that carries a named point of an elastic link."""
-        place = self.scene.links[link].points[point]
-        return self.bodies(link)[self._carried(line_of(self.scene, link), place)[0]]
+    def _carrier(self, body: str, point: str) -> tuple[str, float]:
+        """The body that carries a named point of a body, and by how much it is turned against the
+        frame of that [rad]."""
+        if body not in self.scene.elastic:
+            return body, 0.0
+        line = line_of(self.scene, body)
+        piece, _ = self._carried(line, self.scene.links[body].points[point])
+        return self.bodies(body)[piece], line.lean_rad
 
     def _put(self, load: Load) -> Load:
         """A load on the body that has its point."""
-        if load.body not in self.scene.elastic or load.point is None:
+        if load.point is None:
             return load
-        lean = line_of(self.scene, load.body).lean_rad if load.frame == "body" else 0.0
-        return replace(
-            load,
-            body=self._carrier(load.body, load.point),
-            direction_rad=load.direction_rad - lean,
-        )
+        body, lean = self._carrier(load.body, load.point)
+        turned = load.direction_rad - lean if load.frame == "body" else load.direction_rad
+        return replace(load, body=body, direction_rad=turned)
 
     def _held(self, spring: Spring) -> Spring:
         """A spring in a pin between the bodies that meet there."""
         if not isinstance(spring, PinSpring):
             return spring
-        bodies, ahead = [], []
-        for body in spring.bodies:
-            elastic = body in self.scene.elastic
-            bodies.append(self._carrier(body, spring.point) if elastic else body)
-            ahead.append(line_of(self.scene, body).lean_rad if elastic else 0.0)
-        free = spring.free + ahead[1] - ahead[0]
-        return replace(spring, bodies=(bodies[0], bodies[1]), free=free)
+        (first, lean), (second, other) = (self._carrier(b, spring.point) for b in spring.bodies)
+        return replace(spring, bodies=(first, second), free=spring.free + other - lean)
 
     def folded(self, motion: Motion) -> Motion:
         """A motion of the bodies as one of the scene with its elastic links."""

@@ -29,6 +29,15 @@ def check_duration(name: str, until_s: float) -> None:
         )
 
 
+def check_within(scene: Scene, time_s: Array, until_s: float) -> None:
+    """Raises CrankcheckError for times [s] at which a motion that was let go is not known."""
+    if time_s.min() < 0.0 or time_s.max() > until_s * (1.0 + 1e-12):
+        raise CrankcheckError(
+            f"{scene.name}: times from {time_s.min():g} to {time_s.max():g} s; it was let go at 0, "
+            f"and integrated up to {until_s:g} s"
+        )
+
+
 @dataclass(frozen=True)
 class Released(Law):
     """A driver that is let go at time 0 at an angle, with a speed, which may be 0.

@@ -17,9 +17,20 @@ from typing import Literal
 
 from models.errors import EngineError
 from models.files.inputs import names_in
-from models.joints import Prism, Slot, bodies, joints, local_point, turned
+from models.joints import (
+    Frame,
+    Prism,
+    Slot,
+    along,
+    bodies,
+    frames,
+    joints,
+    local_point,
+    mass_of,
+    mass_ratio,
+    turned,
+)
 from models.motion import State
-from models.poses import Frame, along, frames, mass_of, mass_ratio
 from models.scene import GROUND, Point, Scene, Slider
 
 UNEQUAL = 25.0
@@ -121,7 +132,7 @@ def plan(
 ) -> Tree:
     """The tree of a scene at an assembled state, with the loops closed at pins.
 
-    The rates of the coordinates are those of ``delay_s`` later (see `models.poses.frames`).
+    The rates of the coordinates are those of ``delay_s`` later (see `models.joints.frames`).
 
     Raises
     ------

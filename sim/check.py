@@ -9,10 +9,9 @@ import numpy as np
 
 from models.driver import Controlled
 from models.errors import EngineError
-from models.joints import bodies
+from models.joints import bodies, centre_of, frames, mass_of
 from models.loads import PinSpring
 from models.motion import State
-from models.poses import centre_of, frames, mass_of
 from models.scene import Scene
 from sim.drive import pace, start_speed
 from sim.engine import Drive, Engine, Facts

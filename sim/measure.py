@@ -14,14 +14,15 @@ from models.joints import (
     blocks,
     bodies,
     carriers,
+    centre_of,
     line_ends,
     local_point,
+    mass_of,
     sliding_angle,
     whole_turns,
 )
 from models.loads import LineSpring, PinSpring
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
-from models.poses import centre_of, mass_of
 from models.scene import GROUND, KEPT, Point, Same, Scene, Slider
 from sim.engine import BodyPose, Energy, Poses
 

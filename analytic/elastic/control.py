@@ -21,7 +21,7 @@ from analytic.multibody.generalised_forces import GeneralisedForces, Strokes
 from models.array import Array
 from models.characteristics import FourierSum
 from models.cut_links import with_rigid_links
-from models.driver import Controlled, check_duration, let_go
+from models.driver import Controlled, Released, check_duration, let_go
 from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.scene import Same, Scene
@@ -41,11 +41,14 @@ def elastic_history(
     ``tolerance`` is that of `release_elastic`, for what gives way. Raises CrankcheckError as that,
     and as `DrivenElasticMotion` where it is asked for anything.
     """
-    controlled = isinstance(scene.driver.law, Controlled)
-    if not (scene.is_free or controlled):
-        return DrivenElasticMotion(scene, until_s, by, start, stiffened)
+    match scene.driver.law:
+        case Controlled():
+            follow = control_elastic
+        case Released():
+            follow = release_elastic
+        case _:
+            return DrivenElasticMotion(scene, until_s, by, start, stiffened)
     begun = replace(scene, start=replace(scene.start, shape=start))
-    follow = control_elastic if controlled else release_elastic
     return follow(begun, until_s, by, stiffened=stiffened, tolerance=tolerance)
 
 

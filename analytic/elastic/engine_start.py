@@ -9,10 +9,9 @@ from numpy.polynomial import legendre
 
 from analytic.elastic.beam import Beam, ElasticBody
 from analytic.elastic.control import elastic_history
-from analytic.elastic.discretisation import REFERENCE, Segments
+from analytic.elastic.discretisation import REFERENCE, SegmentChain, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion, ElasticHistory
 from analytic.elastic.released import ENOUGH
-from analytic.elastic.segments import SegmentChain
 from analytic.multibody.as_motion import as_motion
 from models.array import Array
 from models.cut_links import line_of

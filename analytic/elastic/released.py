@@ -31,8 +31,8 @@ from analytic.multibody.dynamics import Dynamics, joint_forces
 from analytic.multibody.generalised_forces import GeneralisedForces, edges
 from analytic.multibody.release_multibody import Acting, ready
 from models.array import Array, samples
-from models.driver import check_duration
-from models.errors import CrankcheckError, StructureError
+from models.driver import check_duration, check_within
+from models.errors import StructureError
 from models.motion import Motion, State
 from models.scene import Scene
 
@@ -168,11 +168,7 @@ class ReleasedElasticMotion:
     def _instants(self, time_s: Array) -> Iterator[PieceInstants]:
         """Those of all pieces, one after the other."""
         instants = samples(time_s, "time_s")
-        if instants.min() < 0.0 or instants.max() > self.until_s * (1.0 + 1e-12):
-            raise CrankcheckError(
-                f"{self.scene.name}: times from {instants.min():g} to {instants.max():g} s; it was "
-                f"let go at 0, and integrated up to {self.until_s:g} s"
-            )
+        check_within(self.scene, instants, self.until_s)
         ends = np.array([piece.end_s for piece in self.pieces[:-1]])
         number = np.searchsorted(ends, instants, side="right")
         for k in np.unique(number):

@@ -24,8 +24,8 @@ import numpy as np
 from analytic.dyads.plane import EPS, Real
 from analytic.forces.bounded import Bounded, BoundedVec
 from analytic.forces.dyad_balance import torque_of
+from analytic.forces.force_elements import Rubbing
 from analytic.forces.free_body import Balance, Displaced, FreeBody
-from analytic.forces.rubbing import Rubbing
 from analytic.structure.mobility import Structure
 from models.array import Array, Mask
 from models.loads import CoulombFriction

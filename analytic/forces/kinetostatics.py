@@ -16,11 +16,15 @@ from analytic.dyads.chunk import Chunk, told
 from analytic.dyads.plane import Real
 from analytic.forces.bounded import Bounded, BoundedVec
 from analytic.forces.dyad_balance import torque_of
+from analytic.forces.force_elements import (
+    Rubbing,
+    apply_springs,
+    put_constant_friction,
+    rubbing_joints,
+)
 from analytic.forces.free_body import Balance, apply_loads, free_bodies
 from analytic.forces.friction import CoulombSolution, LoadedBodies, coulomb_friction
 from analytic.forces.given_motion import chunks_of
-from analytic.forces.rubbing import Rubbing, put_constant_friction, rubbing_joints
-from analytic.forces.springs import apply_springs
 from analytic.forces.virtual_power import torque_by_power
 from analytic.kinematics import chunks, unit_chunk
 from analytic.structure.mobility import Structure, analyse

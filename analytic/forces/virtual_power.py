@@ -20,8 +20,8 @@ from numpy.typing import ArrayLike
 from analytic.dyads.chunk import Chunk, driver_scale
 from analytic.dyads.plane import EPS, BodyKinematics, PointKinematics, Real, Vec
 from analytic.forces.bounded import NOUGHT, Bounded, BoundedVec
+from analytic.forces.force_elements import apply_springs
 from analytic.forces.free_body import FreeBody, apply_loads
-from analytic.forces.springs import apply_springs
 from analytic.kinematics import chunks, unit_chunk
 from models.array import Array, samples
 from models.joints import block_name

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from analytic.dyads.chunk import Chunk
-from analytic.forces.springs import spring_lengths
+from analytic.forces.force_elements import spring_lengths
 from analytic.free.coordinate_history import MOST
 from analytic.free.machine import Machine
 from analytic.free.window import Gauss, WindowSolution, gauss

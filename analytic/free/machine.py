@@ -21,7 +21,7 @@ import numpy as np
 
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import Real
-from analytic.forces.springs import spring_lengths
+from analytic.forces.force_elements import spring_lengths
 from analytic.forces.virtual_power import inertia_and_slope, loaded_bodies, torque_by_power
 from analytic.free.chart import Arc, Chart
 from analytic.structure.mobility import analyse

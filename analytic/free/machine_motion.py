@@ -17,7 +17,7 @@ from analytic.free.window import gauss, sums
 from analytic.kinematics import solve_driven
 from analytic.multibody.bodies import EnergyBalance
 from models.array import Array, from_end, samples
-from models.errors import CrankcheckError
+from models.driver import check_within
 from models.motion import Motion
 from models.scene import Scene
 
@@ -65,7 +65,7 @@ class MachineMotion:
         """The motion at times [s], (T,), from 0 to ``until_s``; bounds hold what the integration
         may be off by as well. Raises CrankcheckError for times beyond."""
         instants = samples(time_s, "time_s")
-        self._check_within(instants)
+        check_within(self.scene, instants, self.until_s)
         return motion_along(self.scene, self.history, self.doubt if bound else None, instants)
 
     def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
@@ -95,7 +95,7 @@ class MachineMotion:
     def energy(self, time_s: Array) -> EnergyBalance:
         """The energies at times [s], (T,). Raises CrankcheckError for times beyond."""
         instants = samples(time_s, "time_s")
-        self._check_within(instants)
+        check_within(self.scene, instants, self.until_s)
         return history_energy(self.scene, self.history, instants)
 
     def sensitivity(self, time_s: Array) -> Array:
@@ -141,13 +141,6 @@ class MachineMotion:
     def _growth(self) -> tuple[Array, Array]:
         reach = min(2.0 * np.pi, self.range_rad)
         return growth(self.history, self.peak_speed_rad_s / reach if reach > 0.0 else 0.0)
-
-    def _check_within(self, time_s: Array) -> None:
-        if time_s.min() < 0.0 or time_s.max() > self.until_s * (1.0 + 1e-12):
-            raise CrankcheckError(
-                f"{self.scene.name}: times from {time_s.min():g} to {time_s.max():g} s; it was let "
-                f"go at 0, and integrated up to {self.until_s:g} s"
-            )
 
 
 def history_energy(scene: Scene, history: CoordinateHistory, time_s: Array) -> EnergyBalance:

@@ -25,16 +25,18 @@ from analytic.multibody.generalised_forces import (
     strokes,
     switches,
 )
-from analytic.multibody.singular_passage import (
+from analytic.multibody.steps import (
     CLOSE,
     LEAST,
     NEAR,
     SHORT,
+    Pace,
+    StateHistory,
+    Steps,
     passage_ahead,
     singular_at,
     smallest_singular,
 )
-from analytic.multibody.steps import Pace, StateHistory, Steps
 from models.array import Array
 from models.errors import CrankcheckError
 

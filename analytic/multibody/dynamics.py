@@ -100,9 +100,7 @@ class Dynamics:
             power += (
                 deflection.spring.rate * (deflection.q - deflection.spring.free) * deflection.rate
             )
-        if self.assembly.elastic:
-            power -= self.assembly.lost(now.rates)
-        return np.asarray(power)
+        return np.asarray(power - self.assembly.lost(now.rates))
 
     def energies(self, now: Configuration, work: Array) -> EnergyBalance:
         """The energies at a configuration, beside the work until then [J]."""

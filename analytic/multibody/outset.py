@@ -19,9 +19,8 @@ from analytic.multibody.bodies import Configuration
 from analytic.multibody.generalised_forces import GeneralisedForces
 from models.array import Array
 from models.errors import CrankcheckError, few
-from models.joints import local_point, sliding_angle, sliding_body, turned
+from models.joints import frames, local_point, sliding_angle, sliding_body, turned
 from models.motion import State
-from models.poses import frames
 from models.scene import GROUND, Point
 
 ROUGH_RAD, ROUGH = math.radians(1.0), 0.01
@@ -220,10 +219,10 @@ class Outset:
         values = np.array([one.value for one in named])
         if not values.any():
             return np.zeros(assembly.size)
-        free = 3 * len(assembly.bodies) - self._rank(rows)
-        if free:
+        unnamed = 3 * len(assembly.bodies) - self._rank(rows)
+        if unnamed:
             raise CrankcheckError(
-                f"{scene.name}: the start moves, and {free} of its freedoms have no speed; give "
+                f"{scene.name}: the start moves, and {unnamed} of its freedoms have no speed; give "
                 "start.rates_rad_s of as many more links, 0 where they do not turn"
             )
         rates = self._least(rows, np.concatenate([np.zeros(assembly.joints.count), values]))

@@ -119,13 +119,13 @@ def _check_elastic(scene: Scene, flexible: Mapping[str, Flexible]) -> None:
         )
 
 
-def _check_start(dynamics: Dynamics, q: Array, free: Array) -> None:
+def _check_start(dynamics: Dynamics, q: Array, directions: Array) -> None:
     """Raises CrankcheckError for a start in a change point, and for a freedom without mass."""
-    assembly, count = dynamics.assembly, len(free)
+    assembly, count = dynamics.assembly, len(directions)
     if count == 0:
         raise CrankcheckError(f"{assembly.scene.name}: nothing of it can move; it has no freedom")
     mass = assembly.mass(q[None])[0]
-    masses = np.linalg.eigvalsh(free @ mass @ free.T)
+    masses = np.linalg.eigvalsh(directions @ mass @ directions.T)
     # In the units of coordinates: small mechanisms have small moments of inertia.
     heaviest = np.abs(mass * np.outer(assembly.units, assembly.units)).max()
     if masses[0] <= LIGHT * max(masses[-1], heaviest):
@@ -133,19 +133,19 @@ def _check_start(dynamics: Dynamics, q: Array, free: Array) -> None:
             f"{assembly.scene.name}: {int((masses <= LIGHT * masses[-1]).sum()) or 1} of its "
             f"{count} freedoms moves nothing that has a mass; give links or sliders a mass"
         )
-    if dynamics.redundant and _freer(dynamics, q, free):
+    if dynamics.redundant and _freer(dynamics, q, directions):
         raise CrankcheckError(
             f"{assembly.scene.name}: it starts in a change point, where it is free to go on in "
             "several ways, and its accelerations are not determined; let it go beside it"
         )
 
 
-def _freer(dynamics: Dynamics, q: Array, free: Array) -> bool:
+def _freer(dynamics: Dynamics, q: Array, directions: Array) -> bool:
     """Whether a position has more freedoms than those next to it."""
     outset = Outset(dynamics.assembly)
-    for direction in free:
+    for direction in directions:
         beside, _ = dynamics.closed(q + 1e-3 * direction, np.zeros_like(q))
-        if len(outset.freedoms(beside)) < len(free):
+        if len(outset.freedoms(beside)) < len(directions):
             return True
     return False
 

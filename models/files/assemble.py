@@ -10,7 +10,13 @@ from numbers import Integral
 from models.elastic import ElasticLink
 from models.errors import SceneError
 from models.files.driver_table import DriverTable, driver_of, driver_table
-from models.files.elastic_table import elastic_of, faults_of_beams, mass_of
+from models.files.elastic_table import (
+    elastic_of,
+    faults_of_beams,
+    faults_of_free_motion,
+    mass_of,
+    start_of,
+)
 from models.files.load_table import LawOfLoad, in_degrees, load_of, load_table
 from models.files.schema import (
     LARGEST,
@@ -22,7 +28,6 @@ from models.files.schema import (
     within_a_turn,
 )
 from models.files.spring_table import springs_of
-from models.files.start_table import faults_of_free_motion, start_of
 from models.loads import ConstantFriction, CoulombFriction, Friction, LineSpring, PinSpring, Spring
 from models.scene import GROUND, Link, Point, Scene, Slider, Start, span
 

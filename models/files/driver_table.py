@@ -238,57 +238,43 @@ def _sliding(table: DriverTable) -> Law:
 
 def driver_table(driver: Driver) -> Mapping[str, object]:
     """The table that reads as a driver. Raises CrankcheckError for a law of another kind."""
+    law = _law_table(driver.law, slides=driver.slider is not None)
     if driver.slider is not None:
-        return {"slider": driver.slider, **_slide_table(driver.law)}
+        return {"slider": driver.slider, **law}
     if driver.pin is not None:
-        links = (driver.base, driver.link)
-        return {"pin": driver.pin, "links": links, **_turn_table(driver.law)}
-    return {"link": driver.link, **_turn_table(driver.law)}
+        return {"pin": driver.pin, "links": (driver.base, driver.link), **law}
+    return {"link": driver.link, **law}
 
 
-def _turn_table(law: Law) -> Mapping[str, object]:
-    """A law of an angle."""
+def _law_table(law: Law, *, slides: bool) -> Mapping[str, object]:
+    """A law of an angle, or of a displacement."""
+    place, rate = ("m", "m_s") if slides else ("deg", "rad_s")
+    shown = (lambda size_m: size_m) if slides else in_degrees
     if isinstance(law, Oscillating):
         return {
             "law": "oscillating",
-            "centre_deg": in_degrees(law.centre_rad),
-            "amplitude_deg": in_degrees(law.amplitude_rad),
+            f"centre_{place}": shown(law.centre_rad),
+            f"amplitude_{place}": shown(law.amplitude_rad),
             "frequency_rad_s": law.frequency_rad_s,
             "phase_deg": in_degrees(law.phase_rad),
         }
     law = _written(law)
-    start = {"start_deg": in_degrees(law.start_rad), "speed_rad_s": law.speed_rad_s}
+    start = {f"start_{place}": shown(law.start_rad), f"speed_{rate}": law.speed_rad_s}
     if isinstance(law, Released):
+        if slides:
+            raise CrankcheckError(
+                "what is let go is told by a link: a scene file has no free slider"
+            )
         return {"law": "free", **start, "duration_s": law.duration_s}
+    if slides:
+        start["travel_m"] = law.travel_rad
     if isinstance(law, Controlled):
         gains = {"kp_n_m_rad": law.kp_n_m_rad, "kd_n_m_s": law.kd_n_m_s}
         return {"law": "controlled", **start, **gains}
     if isinstance(law, FromRest):
         return {"law": "from-rest", **start, "rise_s": law.rise_s}
     if isinstance(law, Accelerating):
-        return {"law": "accelerating", **start, "acceleration_rad_s2": law.acceleration_rad_s2}
-    return start
-
-
-def _slide_table(law: Law) -> Mapping[str, object]:
-    """A law of a displacement."""
-    if isinstance(law, Oscillating):
-        return {
-            "law": "oscillating",
-            "centre_m": law.centre_rad,
-            "amplitude_m": law.amplitude_rad,
-            "frequency_rad_s": law.frequency_rad_s,
-            "phase_deg": in_degrees(law.phase_rad),
-        }
-    law = _written(law)
-    start = {"start_m": law.start_rad, "speed_m_s": law.speed_rad_s}
-    if isinstance(law, Released):
-        raise CrankcheckError("what is let go is told by a link: a scene file has no free slider")
-    start |= {"travel_m": law.travel_rad}
-    if isinstance(law, FromRest):
-        return {"law": "from-rest", **start, "rise_s": law.rise_s}
-    if isinstance(law, Accelerating):
-        return {"law": "accelerating", **start, "acceleration_m_s2": law.acceleration_rad_s2}
+        return {"law": "accelerating", **start, f"acceleration_{rate}2": law.acceleration_rad_s2}
     return start
 
 

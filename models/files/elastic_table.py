@@ -1,17 +1,20 @@
-"""From the tables `[elastic.LINK]` of a scene file to elastic links; what is wrong with them."""
+"""From tables `[elastic.LINK]` and `[start]` of a scene file to links and a start; their faults."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from models.cut_links import line_of
+from models.driver import Controlled, Released
 from models.elastic import ElasticLink
 from models.errors import cut, few
-from models.files.schema import ElasticTable, SceneTable
+from models.files.schema import ElasticTable, SceneTable, StartTable
 from models.laws import ConstantSpeed, Oscillating
-from models.scene import Scene
+from models.scene import Scene, Start
+from models.tabulated import Tabulated
 
 SAME = 1e-9
 """What masses and lengths that a file says twice agree to."""
@@ -165,3 +168,84 @@ def _pins(
         if isinstance(slider, Mapping) and "link" not in slider
     }
     return points[name] & (others | blocks)
+
+
+OF_LINKS, OF_SLIDERS = ("angles_deg", "rates_rad_s"), ("displacements_m", "speeds_m_s")
+
+
+def start_of(table: StartTable) -> Start:
+    """The start, angles in radians."""
+    return Start(
+        {link: math.radians(angle) for link, angle in table.angles_deg.items()},
+        dict(table.rates_rad_s),
+        dict(table.displacements_m),
+        dict(table.speeds_m_s),
+        table.shape,
+    )
+
+
+def faults_of_start(
+    start: Mapping[str, Any], links: Mapping[str, Any], sliders: Mapping[str, Any]
+) -> Iterator[str]:
+    """One line per link or slider of the raw table that the scene has not."""
+    for keys, known in ((OF_LINKS, links), (OF_SLIDERS, sliders)):
+        for key in keys:
+            table = start.get(key)
+            for name in table if isinstance(table, Mapping) else ():
+                if name not in known:
+                    have = f"use one of {few(map(cut, known), 12)}" if known else "there is none"
+                    yield f"start.{key}: found {cut(name)}; {have}"
+
+
+def faults_of_free_motion(scene: Scene) -> Iterator[str]:
+    """One line per fault of a scene that is let go, and of one that is driven and has a start."""
+    law = scene.driver.law
+    if scene.start.shape == "periodic" and isinstance(law, Controlled | Released):
+        yield (
+            'start.shape: found "periodic" with a driver whose angle is not told: it comes back '
+            'after no period that is known before; give "quasi-static" or "straight"'
+        )
+    if not isinstance(law, Released):
+        if replace(scene.start, shape=None):
+            yield 'start: it goes with law = "free"; a driven mechanism starts as its law has it'
+        return
+    yield from _of_driver(scene, law)
+    for joint in scene.coulomb_joints:
+        yield (
+            f"friction.{joint}: friction by mu follows from the reactions, and free motion is not "
+            "worked out with it; give torque_n_m of a pin, or force_n of a slider"
+        )
+    links, blocks = scene.links.values(), scene.sliders.values()
+    if not any(link.mass_kg > 0.0 for link in links) and not any(b.mass_kg > 0.0 for b in blocks):
+        yield (
+            "links: no body has a mass, and nothing says how fast it would move; give mass_kg, or "
+            "leave it out for slender rods"
+        )
+
+
+def _of_driver(scene: Scene, law: Released) -> Iterator[str]:
+    """What is said of the driver's start twice, in two ways, or beyond what moves it."""
+    name = scene.driver.link
+    theta, omega = law.start_rad, law.speed_rad_s
+    angle = scene.start.angles_rad.get(name, theta)
+    if abs(angle - theta) > SAME * max(1.0, abs(theta)):
+        yield (
+            f"start.angles_deg.{name}: found {math.degrees(angle):g}, and start_deg of [driver] is "
+            f"{math.degrees(theta):g}; leave it out here"
+        )
+    rate = scene.start.rates_rad_s.get(name, omega)
+    if abs(rate - omega) > SAME * max(1.0, abs(omega)):
+        yield (
+            f"start.rates_rad_s.{name}: found {rate:g}, and speed_rad_s of [driver] is {omega:g}; "
+            "leave it out here"
+        )
+    for load in scene.loads.values():
+        own = load.characteristic
+        if load.over != "omega" or load.body != name or not isinstance(own, Tabulated):
+            continue
+        if own.nearest(omega) != omega:
+            yield (
+                f"loads.{load.name}.at_rad_s: {name} starts at {omega:g} rad/s, and the table goes "
+                f"from {own.places[0]:g} to {own.places[-1]:g}; give it rows for all speeds of the "
+                "motion"
+            )

@@ -12,9 +12,8 @@ from itertools import chain, islice
 from typing import Any
 
 from models.errors import cut, few
-from models.files.elastic_table import faults_of_elastic
+from models.files.elastic_table import faults_of_elastic, faults_of_start
 from models.files.spring_table import faults_of_friction, faults_of_springs
-from models.files.start_table import faults_of_start
 from models.scene import GROUND
 
 MOST_ASSEMBLIES = 6

@@ -19,7 +19,7 @@ from xml.sax.saxutils import quoteattr
 
 from models.driver import Controlled, driver_rates
 from models.errors import EngineError
-from models.joints import bodies, local_point
+from models.joints import bodies, centre_of, local_point, mass_of
 from models.mjcf.forces import (
     friction_of,
     load_actuators,
@@ -41,7 +41,6 @@ from models.mjcf.options import (
     has_control,
 )
 from models.motion import State
-from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
 from models.tree import Limb, Tree, driven_freedom
 

@@ -10,6 +10,7 @@ from models.errors import EngineError
 from models.joints import (
     Slot,
     block_name,
+    centre_of,
     joints,
     line_ends,
     local_point,
@@ -20,7 +21,6 @@ from models.joints import (
 from models.loads import ConstantFriction, LineSpring, Load, PinSpring, Spring
 from models.mjcf.options import AttributeRow, Writing, attributes, commentable
 from models.motion import State
-from models.poses import centre_of
 from models.scene import GROUND, Point, Scene
 from models.tree import Freedom, Limb, Tree, closings, plan
 
@@ -194,7 +194,8 @@ def _tendon(spring: Spring, state: State, tree: Tree) -> SpringTendon:
         signs, shift = {_sliding(tree, spring.slider): 1}, 0.0
     if not signs:  # they never turn against each other; a tendon asks for a joint all the same
         signs = {next(freedom.name for limb in tree.limbs for freedom in limb.freedoms): 0}
-    sense = -1 if spring.free < shift else 1
+    slack = spring.free - shift
+    sense = -1 if slack < 0.0 else 1
     joints = tuple((name, sense * sign) for name, sign in signs.items())
     return SpringTendon(spring, joints, shift, sense)
 

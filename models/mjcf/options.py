@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from xml.sax.saxutils import quoteattr
 
+from models.joints import inertia_scale
 from models.laws import ConstantSpeed
-from models.poses import inertia_scale
 from models.scene import Scene
 
 FLYWHEEL_RATIO = 1e12

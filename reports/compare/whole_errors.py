@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.forces.late_impulses import jolts
+from models.joints import mass_ratio
 from models.laws import ConstantSpeed, Law
-from models.poses import mass_ratio
 from reports.compare.beside import Beside
 from reports.compare.error_rows import (
     Instants,

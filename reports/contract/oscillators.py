@@ -22,10 +22,9 @@ from analytic.multibody.multibody_motion import Baumgarte
 from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
 from models.driver import Released
-from models.joints import bodies
+from models.joints import bodies, centre_of, frames
 from models.loads import LineSpring, PinSpring, SlideSpring, Spring
 from models.motion import State
-from models.poses import centre_of, frames
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
 from sim.engine import Poses
 from sim.measure import motion

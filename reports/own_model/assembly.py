@@ -14,8 +14,8 @@ from analytic.kinematics import in_assembly, reach, solve, solve_driven
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, ReachError, few
 from models.files.names import MOST_ASSEMBLIES
+from models.joints import Frame, frames
 from models.laws import ConstantSpeed
-from models.poses import Frame, frames
 from models.scene import Driver, Scene
 from sim.engine import BodyPose
 from sim.own_models import MOST_TURNS, OwnModel

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from analytic.free.loosened import loosened
+from analytic.free.free_motion import loosened
 from models.cut_links import with_rigid_links
 from models.driver import Controlled
 from models.errors import CrankcheckError

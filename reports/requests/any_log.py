@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from analytic.free.loosened import loosened
+from analytic.free.free_motion import loosened
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, overload
 import typer
 from rich.console import Console
 
-from analytic.free.loosened import loosened
+from analytic.free.free_motion import loosened
 from models.errors import CrankcheckError, harmless
 from models.files.inputs import names_in
 from models.files.reading import find_scene, load_scene

@@ -15,7 +15,7 @@ from analytic.circuits.arcs import own_arc
 from analytic.circuits.circuits import Circuits, Extreme, Position, circuits_of, transmissions
 from analytic.circuits.rotatability import Rotation, at_limit, dead_points, rotations
 from analytic.dyads.chunk import driver_scale
-from analytic.mechanism.grashof import grashof_of
+from analytic.mechanism.fourbar import grashof_of
 from analytic.structure.mobility import analyse
 from models.driver import driver_unit
 from models.errors import CrankcheckError, StructureError, harmless, shown

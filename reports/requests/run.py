@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 from rich.console import Console
 
-from analytic.free.loosened import loosened
+from analytic.free.free_motion import loosened
 from models.errors import CrankcheckError, harmless
 from models.files.reading import find_scene
 from models.scene import Scene

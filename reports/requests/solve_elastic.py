@@ -54,19 +54,19 @@ def _check(scene: Scene, request: SolveOptions) -> None:
             f"-o {request.output}: a page has its own samples; leave out {option}"
         )
     if request.figures is not None:
-        from reports.figures.elastic.course_figures import elastic_figure_files
+        from reports.figures.elastic_figures import ELASTIC_FIGURES
 
-        check_folder(request.figures, "--figures", elastic_figure_files())
+        check_folder(request.figures, "--figures", ELASTIC_FIGURES.files)
 
 
 def _written(motion: ElasticHistory, time_s: Array, request: SolveOptions) -> list[str]:
     """Write what was asked for; what was written, a line each."""
     told, scene, output = [], motion.scene, request.output
     if request.figures is not None:
-        from reports.figures.elastic.writing import written_elastic_figures
+        from reports.figures.elastic_figures import ELASTIC_FIGURES
 
         course = drawn_course(motion, closely_sampled(scene, motion.until_s))
-        told.append(written_elastic_figures(course, request.figures))
+        told.append(ELASTIC_FIGURES.written(course, request.figures))
     if output is not None and output.suffix.lower() == PAGE:
         from reports.requests.scene_report import elastic_page_of
 

@@ -24,9 +24,10 @@ def tell_written(console: Console, scene: Scene, motion: Motion, request: SolveO
     """Write what was asked for, and say so."""
     told = []
     if request.figures is not None:
-        from reports.figures.forces.writing import written_figures
+        from reports.figures.force_figures import FORCE_FIGURES
+        from reports.figures.force_turn import force_turn
 
-        told.append(written_figures(scene, request.figures))
+        told.append(FORCE_FIGURES.written(force_turn(scene), request.figures))
     if request.output is not None:
         told.append(_write(request.output, scene, motion, is_turn=not request.at_place))
     for each in told:
@@ -54,9 +55,9 @@ def check_figures(request: SolveOptions) -> None:
         raise CrankcheckError(
             f"--figures with {request.at_place}: they are of a turn; leave one of them out"
         )
-    from reports.figures.forces.writing import figure_files
+    from reports.figures.force_figures import FORCE_FIGURES
 
-    check_folder(request.figures, "--figures", figure_files())
+    check_folder(request.figures, "--figures", FORCE_FIGURES.files)
 
 
 def _write(path: Path, scene: Scene, motion: Motion, *, is_turn: bool) -> str:

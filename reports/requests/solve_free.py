@@ -32,13 +32,13 @@ def run_solve_free(scene: Scene, request: SolveOptions, console: Console) -> Non
         raise CrankcheckError(f"-o {request.output}: a page has its own samples; leave out --steps")
     time_s = free_instants(scene, request)
     if request.figures is not None:
-        from reports.figures.free.writing import free_figure_files, written_free_figures
+        from reports.figures.free_figures import FREE_FIGURES, free_course
 
-        check_folder(request.figures, "--figures", free_figure_files())
+        check_folder(request.figures, "--figures", FREE_FIGURES.files)
     free = release(scene, float(time_s[-1]))
     told = []
     if request.figures is not None:
-        told.append(written_free_figures(free, request.figures))
+        told.append(FREE_FIGURES.written(free_course(free), request.figures))
     if is_page:
         from reports.requests.scene_report import free_page_of
 

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import pandas as pd
 
-from analytic.free.loosened import loosened
+from analytic.free.free_motion import loosened
 from models.errors import CrankcheckError
 from models.files.reading import parse_scene
 from models.scene import Scene

@@ -9,9 +9,8 @@ import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.joints import turned
+from models.joints import inertia_scale, turned
 from models.laws import ConstantSpeed, Law
-from models.poses import inertia_scale
 from models.scene import Scene
 from sim import drive as drives
 from sim.engine import Drive, Poses, Settings

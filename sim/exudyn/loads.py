@@ -10,10 +10,18 @@ import numpy as np
 
 from models.characteristics import Constant, Staircase
 from models.errors import CrankcheckError, EngineError, few
-from models.joints import Prism, Slot, block_name, bodies, joints, riding_body, sliding_angle
+from models.joints import (
+    Prism,
+    Slot,
+    block_name,
+    bodies,
+    frames,
+    joints,
+    riding_body,
+    sliding_angle,
+)
 from models.loads import Load
 from models.motion import State
-from models.poses import frames
 from models.scene import GROUND, Point, Scene
 from sim.engine import Drive
 from sim.exudyn.library import exu, items

@@ -9,10 +9,9 @@ import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.joints import joined_at, joints, line_ends, riding_body, turned, whole_turns
+from models.joints import frames, joined_at, joints, line_ends, riding_body, turned, whole_turns
 from models.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
 from models.motion import State
-from models.poses import frames
 from models.scene import GROUND, Point, Scene
 from sim.engine import Drive
 from sim.exudyn.library import items

@@ -17,18 +17,21 @@ from typing import Any
 from models.elastic import Beam
 from models.errors import EngineError
 from models.joints import (
+    Frame,
     Prism,
     Slot,
     bodies,
+    centre_of,
+    frames,
     joints,
     less,
     local_point,
+    mass_of,
     riding_body,
     sliding_angle,
     turned,
 )
 from models.motion import State
-from models.poses import Frame, centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene
 from sim.exudyn.library import exu, items
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
+from models.joints import inertia_scale
 from models.loads import SegmentSpring
 from models.mjcf import document, options
 from models.motion import State
-from models.poses import inertia_scale
 from models.scene import Scene
 from sim.engine import Drive, Profile, Setting, Settings, SettingValue
 from sim.settings import check_choices, check_ranges

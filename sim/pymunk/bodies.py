@@ -21,8 +21,7 @@ import pymunk
 import pymunk.batch
 
 from models.array import Array
-from models.joints import Prism, Slot, less, local_point, riding_body, turned
-from models.poses import FIXED, Frame
+from models.joints import FIXED, Frame, Prism, Slot, less, local_point, riding_body, turned
 from models.scene import GROUND, Point, Scene
 from sim.engine import BodyPose
 from sim.measure import across, arms

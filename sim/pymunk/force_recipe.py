@@ -9,10 +9,9 @@ from collections.abc import Iterable, Iterator
 import pymunk
 
 from models.errors import EngineError
-from models.joints import Slot, bodies, joints, less, riding_body, turned
+from models.joints import Slot, bodies, centre_of, joints, less, mass_of, riding_body, turned
 from models.laws import ConstantSpeed
 from models.motion import State
-from models.poses import centre_of, mass_of
 from models.scene import GROUND, Point, Scene
 from sim.engine import Settings
 from sim.offers import ForceRecipe

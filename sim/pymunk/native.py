@@ -13,6 +13,7 @@ from models.array import Array
 from models.errors import EngineError
 from models.joints import (
     End,
+    Frame,
     Prism,
     Slot,
     block_name,
@@ -27,7 +28,6 @@ from models.joints import (
 )
 from models.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
 from models.motion import State
-from models.poses import Frame
 from models.scene import Point, Scene
 
 Push = tuple[float, float, float]

@@ -21,16 +21,19 @@ from models.joints import (
     Joints,
     Prism,
     Slot,
+    along,
     bodies,
+    centre_of,
+    frames,
     joints,
     less,
     local_point,
+    mass_of,
     riding_body,
     sliding_angle,
     turned,
 )
 from models.motion import State
-from models.poses import along, centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene, Slider, span
 from sim.engine import Drive
 from sim.momentum_balance import Hinge
@@ -79,7 +82,7 @@ def build(
     A crank that is not prescribed is dynamic: with a motor under a servo, free without one.
     Points on lines run in Chipmunk's grooves or, with ``exact_lines``, on a `Rail` where the groove
     is in error. ``with_springs`` the space has those of the scene. Velocities are those of
-    ``delay_s`` later (see `models.poses.frames`).
+    ``delay_s`` later (see `models.joints.frames`).
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """What springs and dampers exert on the bodies, in plain arrays over a motion.
 
-Shares nothing with `analytic.forces.springs`.
+Shares nothing with `analytic.forces.force_elements`.
 """
 
 from __future__ import annotations

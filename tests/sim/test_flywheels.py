@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from analytic.lectures.regulation.cycle_scene import cycle_scene
 from analytic.lectures.regulation.flywheel import WantedFlywheel, wanted_flywheel
-from analytic.lectures.regulation.steady_cycle import SteadyCycle
+from analytic.lectures.regulation.steady_cycle import SteadyCycle, cycle_scene
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.characteristics import Polynomial
 from models.driver import Released

@@ -12,7 +12,7 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 import pytest
 
-from analytic.forces.springs import spring_lengths as true_lengths
+from analytic.forces.force_elements import spring_lengths as true_lengths
 from analytic.free.machine import Machine
 from analytic.kinematics import chunks, solve
 from models.errors import EngineError

@@ -14,9 +14,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from models.array import Array
-from models.joints import bodies, joints, local_point
+from models.joints import Frame, bodies, centre_of, frames, joints, local_point, mass_of
 from models.motion import State
-from models.poses import Frame, centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene
 from models.tree import Freedom, Limb, LoopPin, plan
 

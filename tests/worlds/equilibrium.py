@@ -5,9 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from models.array import Array
-from models.joints import block_name, joints, line_ends, local_point, riding_body
+from models.joints import (
+    block_name,
+    centre_of,
+    joints,
+    line_ends,
+    local_point,
+    mass_of,
+    riding_body,
+)
 from models.loads import LineSpring, PinSpring, SlideSpring
-from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
 from sim.engine import BodyPose, Log
 from sim.measure import spring_lengths

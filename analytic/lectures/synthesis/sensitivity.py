@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.kinematics import solve_driven
-from analytic.lectures.synthesis.asked import Asked
-from analytic.lectures.synthesis.asked_motion import asked_motion
+from analytic.lectures.synthesis.design import Asked, asked_motion
 from analytic.lectures.synthesis.examine import Examined, way_of
 from models.array import Array
 from models.errors import CrankcheckError, ReachError

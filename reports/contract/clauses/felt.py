@@ -11,10 +11,9 @@ import numpy as np
 from analytic.forces import kinetostatics
 from models.array import Array
 from models.characteristics import Constant, Sine
-from models.joints import blocks, bodies, joined_at
+from models.joints import blocks, bodies, centre_of, joined_at, mass_of
 from models.loads import ConstantFriction, Load
 from models.motion import Forces
-from models.poses import centre_of, mass_of
 from models.scene import Scene
 from reports.contract.clauses.reactions import LATE, OFF, START, STEPS, largest, late_by, named
 from reports.contract.subject import Clause, NotTriedError, Subject, numbers

@@ -12,9 +12,8 @@ import numpy as np
 from analytic.forces import kinetostatics
 from analytic.kinematics import solve
 from models.array import Array
-from models.joints import block_name, joined_at, local_point
+from models.joints import block_name, centre_of, joined_at, local_point, mass_of
 from models.motion import Forces, Motion
-from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
 from reports.contract.subject import Clause, Subject, numbers
 

@@ -17,11 +17,15 @@ from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.describe.driver_at import angle_at, driver_at
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
-from reports.lectures.drawing.sheets.centre_column import body_numbers, centre_name
-from reports.lectures.drawing.sheets.centre_sheet import CentreSheet, centres_of, draw_centres
+from reports.lectures.drawing.sheets.centre_sheet import (
+    CentreSheet,
+    body_numbers,
+    centre_name,
+    centres_of,
+    draw_centres,
+)
 from reports.lectures.drawing.sheets.driver_range import sense_of_law
-from reports.lectures.drawing.sheets.paper import Paper
-from reports.lectures.drawing.sheets.sheet_note import sheet_note
+from reports.lectures.drawing.sheets.paper import Paper, sheet_note
 from reports.output.columns import plain_table
 from reports.output.write import check_file
 from reports.requests.options import PaperSize, SceneName

@@ -14,15 +14,18 @@ from analytic.lectures.drawings.graphical import METHODS, Method
 from models.errors import CrankcheckError, shown
 from models.files.reading import find_scene, load_scene
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
-from reports.lectures.drawing.sheets.graphs.graph_drawing import DrawnGraphs, drawn_graphs
-from reports.lectures.drawing.sheets.graphs.graph_log import graph_log
+from reports.lectures.drawing.sheets.graphs.graph_drawing import (
+    DrawnGraphs,
+    drawn_graphs,
+    graph_log,
+)
 from reports.lectures.drawing.sheets.graphs.graph_orders import (
     GraphErrors,
+    draw_errors,
     graph_errors,
     show_errors,
     told_floor,
 )
-from reports.lectures.drawing.sheets.graphs.graph_orders_sheet import draw_errors
 from reports.lectures.drawing.sheets.graphs.graph_page import draw_graphs, laid_out
 from reports.lectures.drawing.sheets.graphs.graph_span import OVERS, Over, over_period
 from reports.lectures.drawing.sheets.graphs.graph_words import (
@@ -31,8 +34,7 @@ from reports.lectures.drawing.sheets.graphs.graph_words import (
     told_errors,
     told_log,
 )
-from reports.lectures.drawing.sheets.paper import Paper
-from reports.lectures.drawing.sheets.sheet_note import of_elastic, sheet_note
+from reports.lectures.drawing.sheets.paper import Paper, of_elastic, sheet_note
 from reports.output.write import check_file
 from reports.requests.options import Duration, PaperSize, SceneName
 

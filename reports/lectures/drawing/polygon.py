@@ -16,23 +16,24 @@ from models.errors import CrankcheckError, harmless
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.lectures.drawing.sheets.paper import Paper
-from reports.lectures.drawing.sheets.polygons.logged_instant import LoggedInstant, LogInstants
-from reports.lectures.drawing.sheets.polygons.polygon_course import PolygonCourse
-from reports.lectures.drawing.sheets.polygons.polygon_files import (
+from reports.lectures.drawing.sheets.polygons.polygon_course import (
     ANIMATED,
     ENDINGS,
     PAGE,
+    PolygonCourse,
     polygon_file,
     turning_file,
 )
 from reports.lectures.drawing.sheets.polygons.polygon_instant import (
     AT_DEG,
+    LoggedInstant,
+    LogInstants,
     placed_at_angle,
     placed_at_time,
 )
 from reports.lectures.drawing.sheets.polygons.polygon_listing import show_polygons
 from reports.lectures.drawing.sheets.polygons.polygon_sheet import PolygonSheet, laid_out
-from reports.lectures.drawing.sheets.polygons.polygon_words import doubts
+from reports.lectures.drawing.sheets.polygons.polygon_table import doubts
 from reports.logs.map_file import Map, read_map
 from reports.output.write import check_file, write
 from reports.requests.options import PaperSize, SceneName, seconds

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from analytic.forces.springs import spring_lengths
+from analytic.forces.force_elements import spring_lengths
 from analytic.free.machine import Machine
 from models.driver import Released
 from models.files.reading import load_scene

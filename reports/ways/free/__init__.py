@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence, Set
 from typing import Any
 
-from analytic.free.loosened import loosened
+from analytic.free.free_motion import loosened
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.compare.free.free_facts import FreeFacts

@@ -18,8 +18,8 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
 from models.hard import Chain
+from models.joints import centre_of, frames
 from models.motion import Motion
-from models.poses import centre_of, frames
 from models.scene import Same, Scene
 from reports.compare.beside import truth_of
 from reports.contract.oscillators import centres

@@ -26,13 +26,16 @@ from analytic.elastic.periodic import (
 )
 from analytic.elastic.reduced import ReducedForm
 from analytic.elastic.vibration import vibrate
-from analytic.lectures.vibration.any_speed import AnySpeed, apart, at_speed
-from analytic.lectures.vibration.floquet import stability, stability_of
-from analytic.lectures.vibration.monodromy import by_collocation, by_newmark
-from analytic.lectures.vibration.over_inertia import over_inertia
-from analytic.lectures.vibration.over_speeds import OverSpeeds, over_speeds, spectra
-from analytic.lectures.vibration.steady_vibration import steady_vibration
-from analytic.lectures.vibration.swing import spectrum, swings
+from analytic.lectures.vibration.floquet import by_collocation, by_newmark, stability, stability_of
+from analytic.lectures.vibration.over_speeds import OverSpeeds, over_inertia, over_speeds, spectra
+from analytic.lectures.vibration.steady_vibration import (
+    AnySpeed,
+    apart,
+    at_speed,
+    spectrum,
+    steady_vibration,
+    swings,
+)
 from models.array import Array
 from models.characteristics import Polynomial, Sine
 from models.errors import CrankcheckError

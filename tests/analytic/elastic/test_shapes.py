@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp  # type: ignore[import-untyped]
 
 from analytic.elastic.beam import Beam, ElasticBody
-from analytic.elastic.segments import SegmentChain, SegmentedBody
+from analytic.elastic.discretisation import SegmentChain, SegmentedBody
 from analytic.elastic.shapes import (
     HermiteElements,
     LegendrePolynomials,

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from mpmath import mpf
 
+from analytic.forces.force_elements import spring_lengths
 from analytic.forces.kinetostatics import forces
-from analytic.forces.springs import spring_lengths
 from analytic.kinematics import chunks, solve
 from models.array import Array
 from models.files.reading import load_scene, shipped

@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analytic.forces.force_elements import spring_lengths
 from analytic.forces.kinetostatics import forces
-from analytic.forces.springs import spring_lengths
 from analytic.kinematics import chunks, reach, solve, solve_driven
 from models.characteristics import Constant, Polynomial
 from models.errors import CrankcheckError

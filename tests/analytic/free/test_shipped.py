@@ -27,8 +27,8 @@ from models.characteristics import Constant
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
 from models.hard import UPRIGHT, Chain
+from models.joints import centre_of, mass_of
 from models.loads import Load
-from models.poses import centre_of, mass_of
 from models.scene import Scene
 from tests.analytic.free.mechanisms import (
     driver_by_steps,

@@ -11,8 +11,8 @@ import pytest
 
 from analytic.kinematics import solve, solve_driven
 from analytic.mechanism.cycle import Along, Output, series
-from analytic.mechanism.fourbar import FourBar
-from analytic.mechanism.grashof import (
+from analytic.mechanism.fourbar import (
+    FourBar,
     four_bar_type,
     grashof_of,
     inverted_slider_crank_type,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.lectures.chains.by_driver import StructureByDriver, by_drivers
+from analytic.lectures.chains.assur_groups import StructureByDriver, by_drivers
 from analytic.structure.groups import Bridge
 from analytic.structure.mobility import MOST_LOOKS, LeftOver, analyse
 from models.errors import StructureError

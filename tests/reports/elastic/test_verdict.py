@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from analytic.elastic.natural import lowest_rad_s
-from analytic.lectures.vibration.any_speed import at_speed
+from analytic.lectures.vibration.steady_vibration import at_speed
 from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, examined

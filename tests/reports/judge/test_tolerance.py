@@ -12,8 +12,8 @@ import pytest
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
+from models.joints import mass_ratio
 from models.laws import ConstantSpeed, Oscillating
-from models.poses import mass_ratio
 from models.scene import Scene
 from reports.compare.beside import SETTLING, Beside, Truth
 from reports.compare.compare import compare

@@ -154,7 +154,7 @@ def test_what_is_rigid_keeps_its_sections_without_what_bends(small: Stored, bent
 
 
 def test_the_course_of_the_beam_is_that_of_the_engine_less_its_error(bent: Stored) -> None:
-    last = PageReport(bent).elastic_lines[-1].cells.iloc[-1]
+    last = PageReport(bent).of_kind("elastic")[-1].cells.iloc[-1]
     trace = bent.trace(str(last["key"]))
     largest = abs(trace["deflection.coupler"] - trace["deflection_error.coupler"]).max()
     off = abs(trace["deflection_error.coupler"]).max() / largest

@@ -16,9 +16,8 @@ import pytest
 from analytic.kinematics import solve
 from models.array import Array
 from models.files.reading import load_scene
-from models.joints import line_ends
+from models.joints import line_ends, mass_of
 from models.loads import PinSpring
-from models.poses import mass_of
 from reports.compare.free.free_truth import free_truth
 from reports.judge.cell import CellRunner, check, examined
 from reports.selftest.all_faults import FAULTS, RUNS, chosen_faults

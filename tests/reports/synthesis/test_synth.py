@@ -14,7 +14,7 @@ from models.files.reading import read_scene
 from models.lectures.tasks.files import find_task, load_task
 from reports.cli import app
 from reports.lectures.design import synth as command
-from reports.lectures.design.solution_table import solution_frame
+from reports.lectures.design.design_tables import solution_frame
 from tests.worlds.command_line import flat, refused
 
 

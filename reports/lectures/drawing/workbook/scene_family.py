@@ -15,8 +15,13 @@ from models.errors import CrankcheckError, ReachError, suggestion
 from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import GROUND, Scene, span
-from reports.lectures.drawing.workbook.family import CLOSE_DEG, check_values
-from reports.lectures.drawing.workbook.family_curves import KINDS, FamilyChart, FamilyCurves
+from reports.lectures.drawing.workbook.family import (
+    CLOSE_DEG,
+    KINDS,
+    FamilyChart,
+    FamilyCurves,
+    check_values,
+)
 
 OMEGA = "omega"
 AXES = ("x", "y")

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from reports.figures.style import LARGE, QUIET, TINY, cut, width_in
-from reports.lectures.drawing.sheets.canvas import Canvas, line, text
+from reports.lectures.drawing.sheets.canvas import Canvas, line, text, write_head
 from reports.lectures.drawing.sheets.graphs.graph_drawing import READ, DrawnGraphs
 from reports.lectures.drawing.sheets.graphs.graph_lines import (
     DASHED,
@@ -22,12 +22,14 @@ from reports.lectures.drawing.sheets.graphs.graph_lines import (
     draw_rays,
 )
 from reports.lectures.drawing.sheets.graphs.graph_sheet import GraphSheet, Panel, graph_sheet
-from reports.lectures.drawing.sheets.graphs.graph_table import draw_table, table_width_mm
-from reports.lectures.drawing.sheets.graphs.graph_words import own_rates_off, share
-from reports.lectures.drawing.sheets.paper import MM_PER_IN, Paper
-from reports.lectures.drawing.sheets.sheet_frame import write_head
+from reports.lectures.drawing.sheets.graphs.graph_words import (
+    draw_table,
+    own_rates_off,
+    share,
+    table_width_mm,
+)
+from reports.lectures.drawing.sheets.paper import MM_PER_IN, Paper, of_elastic
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
-from reports.lectures.drawing.sheets.sheet_note import of_elastic
 from reports.output.numbers import readable
 
 NAME_IN = 1.3

@@ -8,20 +8,19 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from analytic.lectures.drawings.drawn_polygons import QUANTITIES
+from analytic.lectures.drawings.drawn_polygons import QUANTITIES, link_rates
 from analytic.lectures.drawings.polygon import UNITS
-from analytic.lectures.drawings.similarity import link_rates
 from models.array import Array
 from models.errors import harmless
+from reports.lectures.drawing.sheets.paper import of_elastic
 from reports.lectures.drawing.sheets.polygons.polygon_on_paper import DrawnPolygon
 from reports.lectures.drawing.sheets.polygons.polygon_sheet import PolygonSheet
-from reports.lectures.drawing.sheets.polygons.polygon_words import (
+from reports.lectures.drawing.sheets.polygons.polygon_table import (
     at_rest,
     doubts,
     drawn_links,
     image_words,
 )
-from reports.lectures.drawing.sheets.sheet_note import of_elastic
 from reports.output.columns import plain_table
 from reports.output.numbers import readable
 

@@ -6,17 +6,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analytic.lectures.drawings.drawn_polygons import QUANTITIES, DrawnPolygons
+from analytic.lectures.drawings.drawn_polygons import QUANTITIES, DrawnPolygons, link_rates
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
 from analytic.lectures.drawings.polygon import UNITS, Polygon, Quantity
-from analytic.lectures.drawings.similarity import link_rates
 from models.array import Array
 from reports.describe.law import describe_law
 from reports.drawing.moving import drawing
 from reports.drawing.packed import packed
 from reports.lectures.drawing.sheets.polygons.polygon_course import PolygonCourse
-from reports.lectures.drawing.sheets.polygons.polygon_letters import POLES, lower_case
-from reports.lectures.drawing.sheets.polygons.polygon_words import drawn_links
+from reports.lectures.drawing.sheets.polygons.polygon_drawing import POLES, lower_case
+from reports.lectures.drawing.sheets.polygons.polygon_table import drawn_links
 from reports.output.numbers import count
 from reports.output.provenance import crankcheck_version
 from reports.page.build import Head, assembled

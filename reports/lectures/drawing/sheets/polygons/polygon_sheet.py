@@ -22,33 +22,31 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from analytic.lectures.drawings.drawn_polygons import DrawnPolygons
-from analytic.lectures.drawings.paper_scale import book_scales
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.figures.style import QUIET, SMALL, TINY, cut
-from reports.lectures.drawing.sheets.canvas import Canvas, text
-from reports.lectures.drawing.sheets.ink import ink_of
-from reports.lectures.drawing.sheets.letters import Letter, write_letters
-from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper
-from reports.lectures.drawing.sheets.polygons.logged_instant import LoggedInstant
-from reports.lectures.drawing.sheets.polygons.magnified_errors import (
+from reports.lectures.drawing.sheets.canvas import Canvas, draw_border, inner_box, text, write_head
+from reports.lectures.drawing.sheets.letters import Letter, ink_of, write_letters
+from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper, book_scales, of_elastic
+from reports.lectures.drawing.sheets.polygons.polygon_drawing import draw_polygon, polygon_letters
+from reports.lectures.drawing.sheets.polygons.polygon_instant import LoggedInstant
+from reports.lectures.drawing.sheets.polygons.polygon_on_paper import (
     STAR,
+    DrawnPolygon,
     MagnifiedErrors,
     draw_errors,
+    fitted,
+    frame_of,
 )
-from reports.lectures.drawing.sheets.polygons.polygon_drawing import draw_polygon
-from reports.lectures.drawing.sheets.polygons.polygon_letters import polygon_letters
-from reports.lectures.drawing.sheets.polygons.polygon_on_paper import DrawnPolygon, fitted, frame_of
 from reports.lectures.drawing.sheets.polygons.polygon_table import (
+    at_rest,
+    doubts,
     draw_table,
     link_rows,
     vector_rows,
 )
-from reports.lectures.drawing.sheets.polygons.polygon_words import at_rest, doubts
 from reports.lectures.drawing.sheets.scheme import draw_scheme, extent_of, point_letters
-from reports.lectures.drawing.sheets.sheet_frame import draw_border, inner_box, write_head
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
-from reports.lectures.drawing.sheets.sheet_note import of_elastic
 from reports.output.numbers import readable
 
 GAP = 4.0
