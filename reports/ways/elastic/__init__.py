@@ -17,7 +17,7 @@ from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
 
-class Bending:
+class Bending(DrivenWay):
     """What is particular to links that bend, whatever drives them; before the way of rigid ones."""
 
     kinds: Sequence[str] = ("elastic",)
@@ -49,8 +49,12 @@ class Bending:
     def given(self, scene: Scene, given: GivenAs) -> Scene:
         return cut_scene(scene, given)
 
+    def refuse(self, run: Planned) -> None:
+        super().refuse(run)
+        refuse_unelastic(run.scene, run.given_as.segments, run.given_as.springs)
 
-class ElasticWay(Bending, DrivenWay):
+
+class ElasticWay(Bending):
     """As of `Way`."""
 
     name = "elastic"
@@ -75,10 +79,6 @@ class ElasticWay(Bending, DrivenWay):
             return super().lengths(scene, study, given)
         held = held_steps(scene, given.segments, given.springs)
         return [Length(None, times * held, study.turns) for times in study.times_held]
-
-    def refuse(self, run: Planned) -> None:
-        super().refuse(run)
-        refuse_unelastic(run.scene, run.given_as.segments, run.given_as.springs)
 
     def every(self, steps: int, steps_per_turn: float) -> int:
         return logged_every(steps_per_turn)

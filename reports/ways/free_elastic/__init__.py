@@ -7,12 +7,7 @@ from typing import Any
 
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.plan.elastic import (
-    counted_released,
-    logged_every,
-    refuse_unelastic,
-    shortened_note,
-)
+from reports.plan.elastic import counted_released, logged_every, shortened_note
 from reports.quantities.limits import FREE_ELASTIC
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
@@ -45,10 +40,6 @@ class FreeElasticWay(Bending, FreeWay):
         held_s, count = self.counted(scene, Length(duration_s=study.duration_s), given)
         lasts_s = held_s * count
         return [Length(held_s / times, duration_s=lasts_s) for times in study.times_held]
-
-    def refuse(self, run: Planned) -> None:
-        super().refuse(run)
-        refuse_unelastic(run.scene, run.given_as.segments, run.given_as.springs)
 
     def note(self, scene: Scene, duration_s: float) -> str:
         return shortened_note(scene, duration_s)
