@@ -67,7 +67,7 @@ class Parts:
 
 @cache
 def _part(classes: tuple[type, ...], name: str) -> object:
-    found = (getattr(_module(cls, name), name.upper(), None) for cls in classes)
+    found = (getattr(_module(cls, name), name.upper(), None) for cls in classes if cls is not Parts)
     return next(filter(None, found), None) or _OF_ALL[name]
 
 
