@@ -52,6 +52,8 @@ def log_forces(
 ) -> LogForces:
     """The forces that stand in the columns of a log.
 
+    Raises CrankcheckError for no column of forces, two of one, or cells that are no numbers.
+
     Parameters
     ----------
     time_s : Array
@@ -60,11 +62,6 @@ def log_forces(
         Those that the forces act at, where they are others.
     ignored : set of str
         Columns that the user's map leaves out.
-
-    Raises
-    ------
-    CrankcheckError
-        No column of forces, two of one, or cells that are no numbers.
     """
     found = _found(columns, scene, ignored)
     if not found:

@@ -10,7 +10,7 @@ import numpy as np
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
-from reports.compare.force_rows import force_rows
+from reports.compare.whole_errors import force_rows
 from sim.engine import Run
 
 

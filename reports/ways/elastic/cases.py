@@ -1,8 +1,6 @@
 """Hard cases of elastic links, by the group of the catalogue."""
 
-from reports.stability.catalogue import (
-    elastic_links,
-)
+from reports.stability.catalogue import elastic_links
 
 CASES = {
     "elastic links": elastic_links.CASES,

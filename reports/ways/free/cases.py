@@ -1,9 +1,6 @@
 """Hard cases of free motion, by the group of the catalogue."""
 
-from reports.stability.catalogue import (
-    free_motion,
-    toggles,
-)
+from reports.stability.catalogue import free_motion, toggles
 
 CASES = {
     "free motion": free_motion.CASES,
