@@ -83,10 +83,12 @@ def followed(
         return [text for text in texts if text]
 
     limit = limits(truth.scene, errors, tolerance).get(worst.tolerance)
+    unit = "rad" if worst.unit == "rad" else "of the longest link"
+    unit = "of the largest deflection" if worst.quantity in ELASTIC else unit
     of_places = convergence(
         steps_s,
         pure(worst),
-        _unit_words(worst),
+        unit,
         rounding,
         faults=faults,
         over=over(motion.closing, rounding),
@@ -105,13 +107,6 @@ def followed(
         steps_s, pure(force), f"of the largest {share}", exact, over=over(FORCES, exact)
     )
     return Followed(of_places, of_forces)
-
-
-def _unit_words(worst: Error) -> str:
-    """What an error of place is in."""
-    if worst.quantity in ELASTIC:
-        return "of the largest deflection"
-    return "rad" if worst.unit == "rad" else "of the longest link"
 
 
 def _finer(

@@ -219,10 +219,12 @@ def blank_map(columns: Columns, scene: Scene, map_: Map) -> tuple[str, str] | No
         *([] if bodies else ["of at least one column what it is of, in a [[channel]]"]),
     ]
     named = SceneNames(scene)
+    points = (name for name in scene.pins if name not in scene.ground)
+    every = (*scene.links, *points, *scene.sliders)
     lines = [
         *HEAD,
         f"# Still to be filled in: {'; '.join(lacks)}.",
-        f"# The scene has {', '.join(map(toml_text, _bodies(scene)))}.",
+        f"# The scene has {', '.join(map(toml_text, dict.fromkeys(every)))}.",
         "",
         *(file_lines(map_.file) or ["# [file]", '# decimal = ","', ""]),
         *_time_lines(map_, times, columns.raw),
@@ -258,12 +260,6 @@ def _time_lines(map_: Map, times: set[str], names: Iterable[str]) -> Sequence[st
         lines += [f"# column = {toml_text(name)}" for name in names]
         lines.append('# unit = "s"')
     return lines
-
-
-def _bodies(scene: Scene) -> Sequence[str]:
-    """All that a column can be of."""
-    points = (name for name in scene.pins if name not in scene.ground)
-    return list(dict.fromkeys([*scene.links, *points, *scene.sliders]))
 
 
 def _why_not(name: str, named: SceneNames) -> str:
