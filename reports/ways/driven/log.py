@@ -107,9 +107,9 @@ def seldom(case: Case) -> Iterator[str]:
         within = float(np.ptp(excerpt.reading.values)) < math.tau + 1e-2
         if excerpt.out and channel.of == scene.driver.link and channel.kind.turns and within:
             yield (
-                f"{column_text(column)}: {channel.of} turns by {turns:.3g} turns from row to row, and "
-                "of an angle within one turn it can not be told how often it went round in between; "
-                "log it more than twice a turn, or without jumps"
+                f"{column_text(column)}: {channel.of} turns by {turns:.3g} turns from row to row, "
+                "and of an angle within one turn it can not be told how often it went round in "
+                "between; log it more than twice a turn, or without jumps"
             )
 
 
