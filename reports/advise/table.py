@@ -11,10 +11,9 @@ from rich.text import Text
 
 from models.errors import harmless
 from reports.advise.advice import Advice, Offer
-from reports.advise.look import WORDS
 from reports.advise.remarks import remarks
-from reports.advise.search import Worst
-from reports.output.columns import hanging, plain_table
+from reports.advise.search import WORDS, Worst
+from reports.output.console import hanging, plain_table
 from reports.output.numbers import count, short
 from reports.plan.steps import LEAST_STEPS_PER_TURN
 

@@ -14,7 +14,7 @@ from models.driver_shown import driver_shown, driver_unit
 from models.forces import Forces
 from models.motion import Motion
 from models.scene import Scene
-from reports.describe.force_frame import acted_on
+from reports.describe.frame import acted_on
 from reports.describe.friction import (
     flow_of,
     friction_name,
@@ -23,7 +23,7 @@ from reports.describe.friction import (
     unit_of,
 )
 from reports.describe.tables import Columns, digits, head_table, tables_over_time
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 
 
 def position_force_tables(scene: Scene, motion: Motion, acting: Forces) -> list[Table]:

@@ -18,7 +18,7 @@ from reports.diff.words import (
     remarks,
     verdict,
 )
-from reports.output.columns import hanging, plain_table
+from reports.output.console import hanging, plain_table
 from reports.results.changes.changes import Diff
 from reports.results.changes.runs import StoredCell
 

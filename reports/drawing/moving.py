@@ -22,7 +22,7 @@ from models.scene import GROUND, Scene
 from reports.compare.last_turn import Trace
 from reports.compare.series import angle_error
 from reports.drawing.packed import packed
-from reports.drawing.true_motion import true_motion
+from reports.drawing.shape import true_motion
 
 INSTANTS = 91
 """Over one period, both ends included, where no trace says which."""

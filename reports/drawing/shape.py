@@ -11,11 +11,11 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
+from models.forces import Forces
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 from reports.compare.free.kept_motion import kept_motion
-from reports.drawing.beside_locking import clear_of_locking
 
 PATH_SAMPLES = 361
 MARGIN = 0.14
@@ -92,3 +92,29 @@ def colours_of(scene: Scene) -> dict[str, str]:
     """A colour for every link, the driver's first."""
     names = sorted(scene.links, key=lambda name: name != scene.driver.link)
     return {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
+
+
+BESIDE = 5.0 / 360.0
+"""The part of a turn on either side of a locked range that is not drawn."""
+
+
+def clear_of_locking(acting: Forces) -> Forces:
+    """The forces of a turn to be drawn: those beside where friction locks grow past all bounds, and
+    would leave the others too small to see."""
+    locked = acting.has_equilibria(0)
+    if not locked.any():
+        return acting
+    reach = math.ceil(BESIDE * locked.size)
+    near = np.any([np.roll(locked, k) for k in range(-reach, reach + 1)], axis=0)
+
+    def drawn(series: Array) -> Array:
+        return np.asarray(np.where(near if series.ndim == 1 else near[:, None], np.nan, series))
+
+    return replace(acting.each_series(drawn), friction_solution=acting.friction_solution)
+
+
+def true_motion(scene: Scene, time_s: Array) -> Motion:
+    """The motion at times [s], without bounds. Raises CrankcheckError where there is none."""
+    if not scene.is_free:
+        return solve(scene, time_s, bound=False)
+    return kept_motion(scene, float(np.max(time_s))).at(time_s, bound=False)

@@ -8,8 +8,7 @@ from collections.abc import Iterator, Sequence
 
 from reports.history.table import compared
 from reports.history.version_changes import FollowedChange, by_cell, headlines, steps
-from reports.history.version_result import FOLLOWED, VersionResult, errors_of
-from reports.history.version_rows import overview, profiles_of
+from reports.history.version_result import FOLLOWED, VersionResult, errors_of, overview, profiles_of
 from reports.output.markdown import plain, table
 from reports.results.changes.runs import StoredCell
 

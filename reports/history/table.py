@@ -16,9 +16,8 @@ from reports.history.version_changes import (
     steps,
     times,
 )
-from reports.history.version_result import VersionResult, errors_of
-from reports.history.version_rows import overview, profiles_of
-from reports.output.columns import hanging, plain_table
+from reports.history.version_result import VersionResult, errors_of, overview, profiles_of
+from reports.output.console import hanging, plain_table
 from reports.quantities import QUANTITIES, named
 from reports.results.changes.runs import CellName, StoredCell
 

@@ -1,4 +1,4 @@
-"""Where output goes: a terminal as wide as it is, or a file or pipe that may be full or closed."""
+"""The terminal as wide as it is, or a file or pipe that may be full or closed, and what is printed there."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from collections.abc import Sequence
 
 import typer
 from rich.console import Console
+from rich.table import Table
+from rich.text import Text
 
 TABLE_WIDTH = 100
 UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
@@ -60,3 +62,18 @@ def give_up_output() -> None:
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())
         os.close(nowhere)
+
+
+def plain_table(title: str | None = None, style: str = "bold", gap: int = 1) -> Table:
+    """A table without lines, ``gap`` spaces after every column; its title stands on the left."""
+    padding = (0, gap, 0, 0)
+    return Table(title=title, title_justify="left", title_style=style, box=None, padding=padding)
+
+
+def hanging(console: Console, head: str, text: str, style: str = "") -> None:
+    """Print a paragraph whose later lines stand below its text."""
+    grid = Table.grid(padding=0)
+    grid.add_column(no_wrap=True)
+    grid.add_column(overflow="fold")
+    grid.add_row(Text(head, style), Text(text, style))
+    console.print(grid)

@@ -14,7 +14,7 @@ from models.errors import cut, few, harmless
 from reports.causes.cause import Cause
 from reports.describe.held_to import held_to
 from reports.judge.rules import RULES
-from reports.output.columns import hanging, plain_table
+from reports.output.console import hanging, plain_table
 from reports.output.numbers import count, error_text, short
 from reports.own_log.judged import JudgedLog
 from reports.own_log.rows import LogRow, column_text, log_rows, share_of

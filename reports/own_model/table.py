@@ -14,7 +14,7 @@ from rich.text import Text
 from models.errors import harmless
 from reports.judge.halving import worst_place
 from reports.judge.rules import RULES
-from reports.output.columns import hanging, plain_table
+from reports.output.console import hanging, plain_table
 from reports.output.numbers import short
 from reports.own_model.checked_line import CheckedLine
 from reports.own_model.judged import JudgedModel, errors_of

@@ -15,8 +15,15 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
-from reports.describe.elastic_certainty import certainty
-from reports.describe.elastic_course import ElasticCourse, closely_sampled, elastic_course, start_of
+from reports.describe.elastic_course import (
+    ElasticCourse,
+    closely_sampled,
+    elastic_course,
+    energy_columns,
+    rigid_columns,
+    start_of,
+)
+from reports.describe.elastic_words import certainty
 from reports.requests.elastic_choice import ElasticChoice
 from reports.requests.solution import ROWS, Solution, drawn, thinned
 
@@ -50,7 +57,6 @@ class ElasticSolution(Solution):
         """As of `Solution`, with ``coupler_deflection_m`` and ``coupler_extension_m`` of elastic
         links, what rigid ones would have, ``rocker_theta_rigid_rad``, and the energies of what is
         let go."""
-        from reports.describe.elastic_motion import energy_columns, rigid_columns
 
         rigid = self.rigid if self.forces is not None else replace(self.rigid, forces=None)
         energy = energy_columns(self.vibration, self.time_s)

@@ -11,12 +11,13 @@ from analytic.elastic.sampled import ElasticHistory
 from analytic.structure.mobility import analyse
 from models.errors import StructureError
 from models.scene import Scene
-from reports.describe.elastic_course import ElasticCourse, start_of
-from reports.describe.elastic_motion import (
+from reports.describe.elastic_course import (
+    ElasticCourse,
     elastic_tables,
     extremes,
     extremes_table,
     largest_deflections,
+    start_of,
 )
 from reports.describe.elastic_words import elastic_facts, elastic_warnings, start_words
 from reports.describe.force_tables import motion_force_tables

@@ -11,7 +11,7 @@ from models.driver_shown import driver_unit
 from models.scene import Scene
 from reports.compare.errors import Error, ErrorKind, Errors, largest
 from reports.describe.held_to import held_to
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.numbers import short
 from reports.quantities import QUANTITIES
 

@@ -13,11 +13,10 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from models.files import find_scenes
-from reports.history.cache import alone, cache_folder
 from reports.history.document import page, table_text
 from reports.history.environments import EngineVersion, NotMeasuredError, ready, uv_here, wanted
 from reports.history.table import show
-from reports.history.verification import kept, key_of, measure, place
+from reports.history.verification import alone, cache_folder, kept, key_of, measure, place
 from reports.history.version_result import VersionResult, read_version
 from reports.judge.cell import Cell
 from reports.output.provenance import provenance

@@ -23,7 +23,7 @@ from models.driver_shown import driver_unit
 from models.errors import CrankcheckError, StructureError, harmless, shown
 from models.files import load_scene
 from models.scene import Scene
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.requests.options import SceneName
 
 Row = Mapping[str, object]

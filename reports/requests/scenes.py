@@ -13,7 +13,7 @@ from models.errors import StructureError
 from models.files import KINEMATICS, kinds, load_scene, shipped
 from models.scene import Scene
 from reports.describe.law import describe_law
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,8 @@ from models.laws import MOST_TURNS
 from models.motion import Motion
 from models.samples import samples
 from models.scene import Scene
-from reports.describe.driver_at import MOST_DEG, driver_at
 from reports.describe.facts import speed_facts
+from reports.describe.law import MOST_DEG, driver_at
 from reports.describe.with_forces import with_forces
 from reports.output.frame_file import ENDINGS
 from reports.output.write import check_file

@@ -8,9 +8,14 @@ from analytic.elastic.sampled import ElasticHistory
 from models.array import Array
 from models.errors import CrankcheckError, harmless
 from models.scene import Scene
-from reports.describe.elastic_certainty import certainty
-from reports.describe.elastic_course import closely_sampled, drawn_course, elastic_course
-from reports.describe.elastic_motion import elastic_frame, energy_columns
+from reports.describe.elastic_course import (
+    closely_sampled,
+    drawn_course,
+    elastic_course,
+    elastic_frame,
+    energy_columns,
+)
+from reports.describe.elastic_words import certainty
 from reports.output.frame_file import write_frame
 from reports.output.write import check_folder, write
 from reports.requests.elastic_choice import ElasticChoice

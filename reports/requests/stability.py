@@ -18,7 +18,7 @@ from reports.output.numbers import count
 from reports.output.provenance import provenance
 from reports.output.write import check_folder, write
 from reports.plan.chosen import PROFILES, chosen_engines, chosen_profiles
-from reports.plan.forces import silent_note
+from reports.plan.singular import silent_note
 from reports.requests.options import Engines, Forces, Jobs
 from reports.stability.case import Case
 from reports.stability.catalogue import CATALOGUE

@@ -23,7 +23,7 @@ from reports.plan.chosen_study import (
     study_engines,
 )
 from reports.plan.elastic import chosen_segments, chosen_springs, shortened_note
-from reports.plan.forces import silent_note
+from reports.plan.singular import silent_note
 from reports.plan.steps import positive
 from reports.plan.study import Study, StudyValue, load_study
 from reports.requests.arguments import (

@@ -22,15 +22,13 @@ from reports.judge.three_steps import AT_ROUNDING
 from reports.output.provenance import crankcheck_version, provenance
 from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
 from reports.plan.elastic import rigid_alone
-from reports.plan.key import MEASURE, digest
-from reports.plan.short_tables import refuse_short_tables
-from reports.plan.singular import refuse_singular
+from reports.plan.grid import MEASURE, digest
+from reports.plan.singular import refuse_short_tables, refuse_singular
 from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
-from reports.tune.attempt import Attempt, Bench, Goal, LostError, Row
+from reports.tune.attempt import Attempt, Bench, Goal, LostError, Row, times
 from reports.tune.search import Plan, attempts, best_of, plainer, search
 from reports.tune.storage import check_storage, study_in
 from reports.tune.table import Side, footer, show
-from reports.tune.timing import times
 from reports.workers.isolated import Limits
 from reports.workers.progress import progress_bar
 from reports.workers.signals import Stopped

@@ -31,13 +31,13 @@ from reports.plan.chosen import (
     refuse_unfollowed,
 )
 from reports.plan.elastic import given_of
-from reports.plan.forces import gives_forces, silent_note
 from reports.plan.free import (
     free_names,
     refuse_other_options,
     scenes_of,
     under_control,
 )
+from reports.plan.singular import gives_forces, silent_note
 from reports.requests.verify_files import IN_FOLDER, Results, write_results
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions, refuse_of_models
 from reports.verify.all_cells import check_all

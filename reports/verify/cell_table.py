@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from rich.table import Table
 
 from reports.judge.cell import Checked
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.verify.row_cells import mark, row_cells
 
 Texts = Callable[[Checked], Sequence[str]]

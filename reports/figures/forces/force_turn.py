@@ -21,8 +21,8 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.describe.law import describe_law
 from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_forces
-from reports.drawing.beside_locking import clear_of_locking
 from reports.drawing.moving import goes_round
+from reports.drawing.shape import clear_of_locking
 from reports.figures.style import SMALL
 from reports.output.provenance import crankcheck_version
 

@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
 from models.driver_shown import driver_shown
-from reports.describe.force_frame import acted_on
+from reports.describe.frame import acted_on
 from reports.drawing.lettering import Label, place
 from reports.drawing.moving import goes_round
 from reports.drawing.shape import colours_of

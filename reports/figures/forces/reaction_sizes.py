@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from models.array import Array
-from reports.describe.force_frame import acted_on
+from reports.describe.frame import acted_on
 from reports.drawing.shape import colours_of
 from reports.figures.forces.force_turn import SIDES, ForceTurn
 from reports.figures.marks import DASHES

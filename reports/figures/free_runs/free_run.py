@@ -12,7 +12,7 @@ from models.scene import Scene
 from reports.compare.free.energy_drift import window_means
 from reports.compare.last_turn import Trace
 from reports.describe.law import describe_law
-from reports.drawing.true_motion import true_motion
+from reports.drawing.shape import true_motion
 from reports.figures.marks import Mark, marks
 from reports.output.numbers import duration
 from reports.results.lines import named

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 
 from reports.lectures.design.proof import Met, in_words, unit_of
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 
 if TYPE_CHECKING:
     import pandas as pd  # a third of a second: not for what is only shown

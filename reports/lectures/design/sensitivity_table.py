@@ -9,7 +9,7 @@ from rich.table import Table
 
 from analytic.lectures.synthesis.sensitivity import Sensitivity, Spread
 from reports.lectures.design.proof import in_words, unit_of
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 
 
 def sensitivity_table(

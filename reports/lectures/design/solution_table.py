@@ -11,7 +11,7 @@ from rich.table import Table
 
 from analytic.lectures.synthesis.examine import Examined
 from analytic.lectures.synthesis.solutions import Solutions
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.numbers import count
 
 if TYPE_CHECKING:

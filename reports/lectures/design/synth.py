@@ -32,7 +32,7 @@ from reports.lectures.design.proof_table import proof_frame, proof_table
 from reports.lectures.design.sensitivity_table import clearance_in_words, sensitivity_table
 from reports.lectures.design.solution_table import counted, solution_frame, solution_table
 from reports.lectures.drawing.sheets.paper import Paper
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.frame_file import csv
 from reports.output.numbers import count
 from reports.output.provenance import provenance

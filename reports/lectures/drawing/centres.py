@@ -16,14 +16,14 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.files import find_scene, load_scene
 from models.scene import Scene
-from reports.describe.driver_at import angle_at, driver_at
+from reports.describe.law import angle_at, driver_at
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
 from reports.lectures.drawing.sheets.centre_column import body_numbers, centre_name
 from reports.lectures.drawing.sheets.centre_sheet import CentreSheet, centres_of, draw_centres
 from reports.lectures.drawing.sheets.driver_range import sense_of_law
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.lectures.drawing.sheets.sheet_note import sheet_note
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.write import check_file
 from reports.requests.options import PaperSize, SceneName
 

@@ -19,7 +19,7 @@ from reports.describe.roman import roman
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
 from reports.lectures.drawing.sheets.chain_sheet import DrawnChain, check_room, draw_chains
 from reports.lectures.drawing.sheets.paper import Paper
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.provenance import crankcheck_version
 from reports.output.write import check_file
 from reports.requests.options import PaperSize

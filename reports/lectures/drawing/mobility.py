@@ -16,7 +16,7 @@ from models.errors import CrankcheckError, harmless
 from models.lectures.scheme import HIGHER, Scheme
 from models.lectures.scheme_files import find_scheme, load_scheme, shipped_schemes
 from models.lectures.scheme_text import scheme_text
-from reports.output.columns import hanging, plain_table
+from reports.output.console import hanging, plain_table
 from reports.output.write import check_file, write
 
 HEAD = 10

@@ -10,7 +10,7 @@ from rich.table import Table
 from analytic.lectures.regulation.flywheel import WantedFlywheel
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from reports.lectures.machine import cycle_rows, flywheel_rows
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.numbers import NONE, error_text
 
 

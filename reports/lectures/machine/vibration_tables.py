@@ -12,7 +12,7 @@ from analytic.lectures.vibration.over_inertia import InertiaMap
 from analytic.lectures.vibration.over_speeds import OverSpeeds
 from analytic.lectures.vibration.steady_vibration import SteadyVibration
 from reports.lectures.machine import speed_rows, vibration_rows
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.numbers import NONE, count, readable
 
 MODES = 6

@@ -13,10 +13,14 @@ from analytic.elastic.sampled import ElasticHistory
 from models.array import Array
 from models.elastic_line import line_of
 from models.laws import ConstantSpeed
-from reports.describe.elastic_certainty import certainty
-from reports.describe.elastic_course import ElasticCourse, elastic_course, start_of
-from reports.describe.elastic_motion import extremes, largest_deflections
-from reports.describe.elastic_words import elastic_facts, elastic_warnings, start_words
+from reports.describe.elastic_course import (
+    ElasticCourse,
+    elastic_course,
+    extremes,
+    largest_deflections,
+    start_of,
+)
+from reports.describe.elastic_words import certainty, elastic_facts, elastic_warnings, start_words
 from reports.drawing.magnified import magnification
 from reports.drawing.moving import INSTANTS, drawing, moving_points
 from reports.drawing.packed import packed

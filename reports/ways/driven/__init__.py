@@ -6,9 +6,12 @@ from typing import TYPE_CHECKING
 
 from models.scene import Same, Scene
 from reports.compare.beside import Truth, truth_of
-from reports.plan.forces import refuse_forceless
-from reports.plan.short_tables import refuse_short_tables
-from reports.plan.singular import passage_note, refuse_singular
+from reports.plan.singular import (
+    passage_note,
+    refuse_forceless,
+    refuse_short_tables,
+    refuse_singular,
+)
 from reports.plan.steps import TURNS, counted
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths

@@ -17,9 +17,8 @@ from reports.advise.choices import choices
 from reports.advise.demand import demanded
 from reports.advise.document import document
 from reports.advise.evidence import MeasuredSteps, MeasuredStudy
-from reports.advise.look import TriedRun
 from reports.advise.prices import Price, Prices
-from reports.advise.search import SearchResult, Worst
+from reports.advise.search import SearchResult, TriedRun, Worst
 from reports.advise.table import show, word
 from tests.worlds.command_line import flat
 

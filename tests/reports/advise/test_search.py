@@ -14,9 +14,8 @@ from models.files import load_scene
 from reports.advise.choices import Choice, choices
 from reports.advise.demand import demanded
 from reports.advise.evidence import MeasuredSteps, MeasuredStudy
-from reports.advise.look import WORDS, TriedRun, _seen, look
 from reports.advise.prices import ROUNDS, Prices, prices, timings
-from reports.advise.search import SearchResult, Worst, _reached
+from reports.advise.search import WORDS, SearchResult, TriedRun, Worst, _reached, _seen, look
 from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Departure

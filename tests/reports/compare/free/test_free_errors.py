@@ -23,7 +23,7 @@ from reports.compare.free.energy_drift import drift, window_means, window_s
 from reports.compare.free.free_truth import FreeTruth, free_truth
 from reports.compare.free.kept_motion import kept_motion
 from reports.compare.free.momentum_drift import kept_about, momentum
-from reports.drawing.true_motion import true_motion
+from reports.drawing.shape import true_motion
 from reports.store.reader import read_store
 from sim.engine import Run
 from sim.run import run

@@ -14,7 +14,7 @@ from reports.lectures.drawing.sheets.graphs.graph_drawing import DrawnGraphs, dr
 from reports.lectures.drawing.sheets.graphs.graph_log import GraphLog
 from reports.lectures.drawing.sheets.graphs.graph_span import GraphSpan
 from reports.lectures.drawing.sheets.graphs.graph_words import NOTHING, share
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.results.fits.curves import straight
 
 Whose = Literal["reference", "log", "its own part"]

@@ -12,7 +12,7 @@ from models.errors import harmless
 from models.motion import Order
 from reports.lectures.drawing.sheets.graphs.graph_drawing import READ, DrawnGraphs
 from reports.lectures.drawing.sheets.graphs.graph_table import driver_column, numbers, written
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.numbers import listed
 
 NOTHING = 1e-9

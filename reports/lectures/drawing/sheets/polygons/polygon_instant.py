@@ -13,8 +13,8 @@ from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.free.kept_motion import LOOK, kept_motion
-from reports.describe.driver_at import angle_at, driver_at, time_at
-from reports.drawing.true_motion import true_motion
+from reports.describe.law import angle_at, driver_at, time_at
+from reports.drawing.shape import true_motion
 
 AT_DEG = 90.0
 """The angle where nothing is said."""
