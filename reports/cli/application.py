@@ -29,6 +29,7 @@ from reports.output.console import (
     terminal,
 )
 from reports.requests.named import named
+from reports.requests.options import note_of
 from reports.workers.signals import Stopped, broken_pipe_ends, finish, install, seen
 
 BAD_INPUT, INTERNAL, INTERRUPTED, BROKEN_PIPE = 2, 70, 130, 141
@@ -193,6 +194,7 @@ def _parameter(field: dataclasses.Field[Any], note: object) -> inspect.Parameter
     """A field as typer takes it: several texts as a list, None where none is given."""
     kind, option = get_args(note)
     default = inspect.Parameter.empty if field.default is dataclasses.MISSING else field.default
+    option = note_of(field.name, kind, option, default)
     if kind == Sequence[str]:
         kind, default = list[str], default or None
     note = Annotated[kind, option]

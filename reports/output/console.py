@@ -1,4 +1,4 @@
-"""The terminal as wide as it is, or a file or pipe that may be full or closed, and what is printed there."""
+"""The terminal as wide as it is, or a file or pipe that may be full or closed; what is printed."""
 
 from __future__ import annotations
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError, listed
@@ -26,7 +25,7 @@ from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
 from reports.plan.elastic import rigid_alone
-from reports.requests.options import Engines, Jobs, seconds
+from reports.requests.options import Engines, Jobs, argument, option, seconds
 from reports.requests.stored_files import stored_files
 from reports.results.lines import lines
 from reports.store.reader import Stored, read_store
@@ -42,31 +41,20 @@ class AdviseRequest:
     """What `advise` was asked for, as given."""
 
     dt_s: Annotated[
-        float,
-        typer.Option(
-            "--dt", metavar="SECONDS", parser=seconds, help="Frame time of your program, as 1/60."
-        ),
+        float, option("Frame time of your program, as 1/60.", "--dt SECONDS", parser=seconds)
     ]
-    speed: Annotated[
-        float, typer.Option(metavar="RAD_S", help="Speed of the driver; clockwise is negative.")
-    ]
-    target: Annotated[
-        float, typer.Option(help="Error to reach, as a pure number: rad, lengths over L.")
-    ]
+    speed: Annotated[float, option("Speed of the driver; clockwise is negative.", "RAD_S")]
+    target: Annotated[float, "Error to reach, as a pure number: rad, lengths over L."]
     scenes: Annotated[
-        Sequence[str],
-        typer.Argument(
-            metavar="SCENE", help="Shipped names or scene files; two usual ones if none."
-        ),
+        Sequence[str], argument("SCENE", "Shipped names or scene files; two usual ones if none.")
     ] = ()
     engines: Engines = ()
     study: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Folder of sweep -o: what it covers is read from it."),
+        Path | None, option("Folder of sweep -o: what it covers is read from it.", "DIR")
     ] = None
-    turns: Annotated[float, typer.Option(help="Turns of the driver in a run.")] = 10.0
+    turns: Annotated[float, "Turns of the driver in a run."] = 10.0
     jobs: Jobs = 0
-    json: Annotated[Path | None, typer.Option(help="Write all of it as JSON.")] = None
+    json: Annotated[Path | None, "Write all of it as JSON."] = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Do it; returns the exit code: 0 where some settings reach the target, 1 where none do, 2

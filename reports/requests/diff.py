@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError
@@ -16,6 +15,7 @@ from reports.diff.terminal import show
 from reports.output.console import tell
 from reports.output.junit import junit
 from reports.output.write import check_outputs, write
+from reports.requests.options import argument, option, output_option
 from reports.requests.stored_files import stored_files
 from reports.results.changes.changes import compare
 from reports.results.changes.reading import read_run
@@ -32,21 +32,17 @@ class DiffRequest:
     is Markdown in any case.
     """
 
-    old: Annotated[Path, typer.Argument(metavar="OLD", help="Folder of sweep -o or verify -o.")]
-    new: Annotated[Path, typer.Argument(metavar="NEW", help="Folder to compare with it.")]
-    factor: Annotated[float, typer.Option(help="Growth of an error that is no fault yet.")] = 1.1
-    strict: Annotated[
-        bool, typer.Option("--strict", help="Exit 1 for missing cells and changed scenes too.")
-    ] = False
-    old_version: Annotated[
-        str | None, typer.Option(help="Engine version to take of OLD, where it holds several.")
-    ] = None
-    new_version: Annotated[str | None, typer.Option(help="The same of NEW.")] = None
-    format: Annotated[str, typer.Option(metavar="text|md", help="What is printed.")] = "text"
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Write Markdown, for a pull request.")
-    ] = None
-    junit: Annotated[Path | None, typer.Option(help="Write JUnit XML, a case per cell.")] = None
+    old: Annotated[Path, argument("OLD", "Folder of sweep -o or verify -o.")]
+    new: Annotated[Path, argument("NEW", "Folder to compare with it.")]
+    factor: Annotated[float, "Growth of an error that is no fault yet."] = 1.1
+    strict: Annotated[bool, "Exit 1 for missing cells and changed scenes too."] = False
+    old_version: Annotated[str | None, "Engine version to take of OLD, where it holds several."] = (
+        None
+    )
+    new_version: Annotated[str | None, "The same of NEW."] = None
+    format: Annotated[str, option("What is printed.", "text|md")] = "text"
+    output: Annotated[Path | None, output_option("Write Markdown, for a pull request.")] = None
+    junit: Annotated[Path | None, "Write JUnit XML, a case per cell."] = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Do it; returns the exit code.

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-import typer
 from rich.console import Console
 
 from analytic.kinematics import solve
@@ -22,7 +21,7 @@ from reports.compare.free.kept_motion import released_state
 from reports.output.write import check_file, write
 from reports.plan.elastic import SPRINGS, held_steps, segmented
 from reports.plan.free import under_control
-from reports.requests.options import SceneName
+from reports.requests.options import SceneName, option, output_option
 from reports.way.length import SEGMENTS
 
 
@@ -31,12 +30,9 @@ class ExportRequest:
     """What `export` was asked for, as given."""
 
     scene: SceneName
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="Write an .xml file.")] = (
-        None
-    )
+    output: Annotated[Path | None, output_option("Write an .xml file.")] = None
     close: Annotated[
-        Sequence[str],
-        typer.Option(metavar="PIN", help="Close a loop at this pin; may be repeated."),
+        Sequence[str], option("Close a loop at this pin; may be repeated.", "PIN")
     ] = ()
 
     def run(self, console: Console, progress: Console) -> int:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
@@ -15,6 +14,7 @@ from models.files import find_scene, load_scene
 from reports.output.write import check_file, write
 from reports.plan.steps import MOST_STEPS
 from reports.requests.export import opened
+from reports.requests.options import option, output_option
 from sim.force_recipes import force_recipe
 from sim.registry import engine
 from sim.run import check_steps
@@ -25,13 +25,11 @@ from sim.settings import profile_of, resolved
 class ForceRecipeRequest:
     """What `recipe forces` was asked for, as given."""
 
-    engine: Annotated[str, typer.Option(help="Engine.")]
-    scene: Annotated[
-        str, typer.Option(metavar="SCENE", help="A shipped name, or a scene file.")
-    ] = "fourbar-lecture-1"
-    profile: Annotated[str, typer.Option(help="Profile of the engine.")] = "tuned"
-    steps_per_turn: Annotated[float, typer.Option(help="Steps in a turn.")] = 720.0
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="Write a .py file.")] = None
+    engine: Annotated[str, "Engine."]
+    scene: Annotated[str, option("A shipped name, or a scene file.", "SCENE")] = "fourbar-lecture-1"
+    profile: Annotated[str, "Profile of the engine."] = "tuned"
+    steps_per_turn: Annotated[float, "Steps in a turn."] = 720.0
+    output: Annotated[Path | None, output_option("Write a .py file.")] = None
 
     def run(self, console: Console, progress: Console) -> int:
         """The program, into a file or to the terminal."""

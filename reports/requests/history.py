@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from rich.console import Console
 from rich.progress import Progress
 
@@ -23,7 +22,7 @@ from reports.output.provenance import provenance
 from reports.output.write import check_folder, refuse_link, write
 from reports.plan.chosen import left_out_note
 from reports.plan.free import free_names
-from reports.requests.options import Duration, Jobs, StepS, StepsPerTurn
+from reports.requests.options import Duration, Jobs, StepS, StepsPerTurn, argument, option
 from reports.requests.verify import VerifyRequest, plan
 from reports.requests.verify_files import IN_FOLDER
 from reports.results.changes.reading import scene_digests
@@ -38,36 +37,24 @@ FILES = ("history.csv", "history.md")
 class HistoryRequest:
     """What `history` was asked for, as given; as of `verify` where the names are the same."""
 
-    engine: Annotated[str, typer.Argument(metavar="ENGINE", help="Engine, such as mujoco.")]
-    versions: Annotated[
-        Sequence[str], typer.Argument(metavar="VERSION", help="Released versions of it.")
-    ]
+    engine: Annotated[str, argument("ENGINE", "Engine, such as mujoco.")]
+    versions: Annotated[Sequence[str], argument("VERSION", "Released versions of it.")]
     scenes: Annotated[
-        Sequence[str],
-        typer.Option("--scene", help="Shipped name or file; may be repeated; all if none."),
+        Sequence[str], option("Shipped name or file; may be repeated; all if none.", "--scene")
     ] = ()
     profiles: Annotated[
-        Sequence[str], typer.Option("--profile", help="Profile; default: tuned and as-shipped.")
+        Sequence[str], option("Profile; default: tuned and as-shipped.", "--profile")
     ] = ()
     dt_s: StepS = None
     steps_per_turn: StepsPerTurn = None
-    turns: Annotated[float | None, typer.Option(help="Turns of the driver (default 2).")] = None
-    free: Annotated[
-        bool, typer.Option("--free", help="Let scenes go; those of free motion if none is named.")
-    ] = False
+    turns: Annotated[float | None, "Turns of the driver (default 2)."] = None
+    free: Annotated[bool, "Let scenes go; those of free motion if none is named."] = False
     duration_s: Duration = None
     jobs: Jobs = 0
-    cache: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Where environments and results are kept.")
-    ] = None
-    again: Annotated[bool, typer.Option("--again", help="Verify again; environments are kept.")] = (
-        False
-    )
+    cache: Annotated[Path | None, option("Where environments and results are kept.", "DIR")] = None
+    again: Annotated[bool, "Verify again; environments are kept."] = False
     folder: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="DIR", help="Write tables and each version's verification."
-        ),
+        Path | None, option("Write tables and each version's verification.", "-o --output DIR")
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:

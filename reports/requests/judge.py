@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, overload
 
-import typer
 from rich.console import Console
 
 from analytic.free.loosened import loosened
@@ -38,7 +37,15 @@ from reports.requests.compare import (
     refuse_without_forces,
 )
 from reports.requests.judge_files import write_log_map, write_results
-from reports.requests.options import SceneName, SegmentCount, SpringKind, seconds
+from reports.requests.options import (
+    SceneName,
+    SegmentCount,
+    SpringKind,
+    argument,
+    option,
+    output_option,
+    seconds,
+)
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
 from reports.requests.told import in_python, parts_in_python, told_at_the_call
@@ -241,46 +248,30 @@ class JudgeRequest:
     """What `judge` was asked for, as given."""
 
     scene: SceneName
-    log: Annotated[
-        Path, typer.Argument(metavar="LOG", help="Your log: .csv, .tsv, .txt, .parquet or .xlsx.")
-    ]
-    map: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="TOML that says what columns mean.")
-    ] = None
+    log: Annotated[Path, argument("LOG", "Your log: .csv, .tsv, .txt, .parquet or .xlsx.")]
+    map: Annotated[Path | None, option("TOML that says what columns mean.", "FILE")] = None
     write_map: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Write the map of what was understood, and end."),
+        Path | None, option("Write the map of what was understood, and end.", "FILE")
     ] = None
-    drive: Annotated[
-        str,
-        typer.Option(help="scene, fitted (speed and start), or logged (geometry at its angle)."),
-    ] = "scene"
+    drive: Annotated[str, "scene, fitted (speed and start), or logged (geometry at its angle)."] = (
+        "scene"
+    )
     step_s: Annotated[
-        float | None,
-        typer.Option("--step", metavar="SECONDS", parser=seconds, help="Step of the solver."),
+        float | None, option("Step of the solver.", "--step SECONDS", parser=seconds)
     ] = None
     target: Annotated[
         Sequence[str],
-        typer.Option(
-            metavar="NUMBER", help="Largest pure error, such as 1e-3 or angle=1e-4; repeatable."
-        ),
+        option("Largest pure error, such as 1e-3 or angle=1e-4; repeatable.", "NUMBER"),
     ] = ()
     require: Annotated[
-        Sequence[str],
-        typer.Option(metavar="NAME", help="Quantity or body that has to be in the log."),
+        Sequence[str], option("Quantity or body that has to be in the log.", "NAME")
     ] = ()
-    format: Annotated[str, typer.Option(metavar="text|md", help="What is printed.")] = "text"
-    json: Annotated[Path | None, typer.Option(help="Write errors and findings as JSON.")] = None
-    junit: Annotated[Path | None, typer.Option(help="Write JUnit XML, a case per error.")] = None
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="Write a page, .html.")] = (
-        None
-    )
-    free: Annotated[
-        bool, typer.Option("--free", help="It is of the driven scene, let go at time 0.")
-    ] = False
-    forces: Annotated[
-        bool, typer.Option("--forces", help="Judge its columns of forces and torque as well.")
-    ] = False
+    format: Annotated[str, option("What is printed.", "text|md")] = "text"
+    json: Annotated[Path | None, "Write errors and findings as JSON."] = None
+    junit: Annotated[Path | None, "Write JUnit XML, a case per error."] = None
+    output: Annotated[Path | None, output_option("Write a page, .html.")] = None
+    free: Annotated[bool, "It is of the driven scene, let go at time 0."] = False
+    forces: Annotated[bool, "Judge its columns of forces and torque as well."] = False
     segments: SegmentCount = None
     springs: SpringKind = None
 
@@ -328,9 +319,9 @@ def _checked(request: JudgeRequest, scene: Scene) -> LogRequest:
         raise CrankcheckError(f"--format {request.format!r}: unknown; use text or md")
     endings = {"--write-map": (".toml",), "-o": (".html",)}
     files = {"--write-map": request.write_map, "-o": request.output}
-    for option, path in files.items():
+    for name, path in files.items():
         if path is not None:
-            check_file(path, option, endings[option])
+            check_file(path, name, endings[name])
     files |= {"--json": request.json, "--junit": request.junit}
     check_outputs(files, inputs=(find_scene(request.scene), request.log, request.map))
     drive = chosen_drive(request.drive)

@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-import typer
 from rich.console import Console
 
 from analytic.circuits.circuits import Circuits, Position, circuits_of
@@ -24,7 +23,7 @@ from models.errors import CrankcheckError, StructureError, harmless, shown
 from models.files import load_scene
 from models.scene import Scene
 from reports.output.console import plain_table
-from reports.requests.options import SceneName
+from reports.requests.options import SceneName, option
 
 Row = Mapping[str, object]
 
@@ -36,13 +35,13 @@ class RotatabilityRequest:
     scene: SceneName
     position: Annotated[
         Sequence[str],
-        typer.Option(
-            metavar="DEG[:SIGNS]",
-            help="A position, such as 90 or 90:+-, signs by dyad in solving order; repeatable: "
+        option(
+            "A position, such as 90 or 90:+-, signs by dyad in solving order; repeatable: "
             "whether the driver leads through all in this order.",
+            "DEG[:SIGNS]",
         ),
     ] = ()
-    json: Annotated[bool, typer.Option("--json", help="As JSON, not as tables.")] = False
+    json: Annotated[bool, "As JSON, not as tables."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Show it; the exit code. Raises CrankcheckError for what can not be asked."""

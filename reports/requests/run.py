@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
-import typer
 from rich.console import Console
 
 from analytic.free.loosened import loosened
@@ -39,6 +38,8 @@ from reports.requests.options import (
     StepS,
     StepsPerTurn,
     given,
+    option,
+    output_option,
 )
 from reports.requests.shown import Shown
 from reports.requests.solution import ROWS, drawn, thinned
@@ -126,25 +127,19 @@ class RunRequest:
     """What `run` was asked for, as given; ``settings`` in Python alone."""
 
     scene: SceneName
-    engine: Annotated[
-        str | None, typer.Option(help="Engine; the first of `crankcheck engines` if none.")
-    ] = None
-    profile: Annotated[str, typer.Option(help="Profile of the engine.")] = "tuned"
+    engine: Annotated[str | None, "Engine; the first of `crankcheck engines` if none."] = None
+    profile: Annotated[str, "Profile of the engine."] = "tuned"
     dt_s: StepS = None
     steps_per_turn: StepsPerTurn = None
-    turns: Annotated[float | None, typer.Option(help="Turns of the driver (default 2).")] = None
+    turns: Annotated[float | None, "Turns of the driver (default 2)."] = None
     duration_s: Duration = None
-    every: Annotated[int, typer.Option(metavar="N", help="Log every N-th step.")] = 1
+    every: Annotated[int, option("Log every N-th step.", "N")] = 1
     drive: Annotated[
         str | None,
-        typer.Option(
-            help="prescribed, servo, or free (nothing drives it); default free for a scene that is "
-            "let go, else prescribed."
-        ),
+        "prescribed, servo, or free (nothing drives it); default free for a scene that is "
+        "let go, else prescribed.",
     ] = None
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx.")
-    ] = None
+    output: Annotated[Path | None, output_option("Write .csv, .parquet or .xlsx.")] = None
     forces: Forces = False
     segments: SegmentCount = None
     springs: SpringKind = None

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Annotated
 
 import pandas as pd
-import typer
 from rich.console import Console
 from rich.progress import Progress
 
@@ -19,7 +18,7 @@ from reports.output.frame_file import csv
 from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines
-from reports.requests.options import Jobs
+from reports.requests.options import Jobs, option, output_option
 from reports.selftest.all_faults import chosen_faults
 from reports.selftest.elastic_runs import BENDING
 from reports.selftest.fault import PROFILE, RunKind
@@ -46,29 +45,18 @@ class SelftestRequest:
     """What `selftest` was asked for, as given."""
 
     engines: Annotated[
-        Sequence[str], typer.Option("--engine", help="Engine; may be repeated; all if none.")
+        Sequence[str], option("Engine; may be repeated; all if none.", "--engine")
     ] = ()
     faults: Annotated[
-        Sequence[str],
-        typer.Option(
-            "--fault", metavar="NAME", help="Fault of the table; may be repeated; all if none."
-        ),
+        Sequence[str], option("Fault of the table; may be repeated; all if none.", "--fault NAME")
     ] = ()
     jobs: Jobs = 0
-    csv: Annotated[Path | None, typer.Option(help="Write a row per fault and place.")] = None
-    json: Annotated[Path | None, typer.Option(help="Write the same and more as JSON.")] = None
-    folder: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Write both into a folder.")
-    ] = None
-    forces: Annotated[
-        bool, typer.Option("--forces", help="Plant faults of reactions and torques instead.")
-    ] = False
-    free: Annotated[
-        bool, typer.Option("--free", help="Plant faults of dynamics in free motion instead.")
-    ] = False
-    elastic: Annotated[
-        bool, typer.Option("--elastic", help="Plant faults of elastic links instead.")
-    ] = False
+    csv: Annotated[Path | None, "Write a row per fault and place."] = None
+    json: Annotated[Path | None, "Write the same and more as JSON."] = None
+    folder: Annotated[Path | None, output_option("Write both into a folder.")] = None
+    forces: Annotated[bool, "Plant faults of reactions and torques instead."] = False
+    free: Annotated[bool, "Plant faults of dynamics in free motion instead."] = False
+    elastic: Annotated[bool, "Plant faults of elastic links instead."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Do it; returns the exit code: 0 where every fault is caught, 1 where one escapes or

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Annotated
 
 import pandas as pd
-import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError, suggestion
@@ -19,7 +18,7 @@ from reports.output.provenance import provenance
 from reports.output.write import check_folder, write
 from reports.plan.chosen import PROFILES, chosen_engines, chosen_profiles
 from reports.plan.singular import silent_note
-from reports.requests.options import Engines, Forces, Jobs
+from reports.requests.options import Engines, Forces, Jobs, argument, option, output_option
 from reports.stability.case import Case
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.critical import command
@@ -37,29 +36,17 @@ TABLE, PAGE = "stability.csv", "stability.html"
 class StabilityRequest:
     """What the user asked for; ``at`` is one value of one case."""
 
-    cases: Annotated[
-        Sequence[str], typer.Argument(metavar="CASE", help="Hard cases; all if none.")
-    ] = ()
+    cases: Annotated[Sequence[str], argument("CASE", "Hard cases; all if none.")] = ()
     engines: Engines = ()
-    profiles: Annotated[
-        Sequence[str], typer.Option("--profile", help="Profile; may be repeated.")
-    ] = ()
-    at: Annotated[
-        float | None, typer.Option(help="Only this value of the one case that is named.")
-    ] = None
-    folder: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder for matrix, table and page.")
-    ] = None
-    limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 120.0
-    memory_gb: Annotated[float, typer.Option(help="Most memory for a run, in GB.")] = 4.0
+    profiles: Annotated[Sequence[str], option("Profile; may be repeated.", "--profile")] = ()
+    at: Annotated[float | None, "Only this value of the one case that is named."] = None
+    folder: Annotated[Path | None, output_option("Folder for matrix, table and page.")] = None
+    limit_s: Annotated[float, "Longest time for a run, in seconds."] = 120.0
+    memory_gb: Annotated[float, "Most memory for a run, in GB."] = 4.0
     jobs: Jobs = 0
     forces: Forces = False
-    free: Annotated[
-        bool, typer.Option("--free", help="The cases of free motion, which are not among all.")
-    ] = False
-    elastic: Annotated[
-        bool, typer.Option("--elastic", help="Those of elastic links, which are not among all.")
-    ] = False
+    free: Annotated[bool, "The cases of free motion, which are not among all."] = False
+    elastic: Annotated[bool, "Those of elastic links, which are not among all."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Do it; returns the exit code: 0, or for one value 1 where it is not held.

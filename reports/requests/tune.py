@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-import typer
 from rich.console import Console
 from rich.text import Text
 
@@ -25,6 +24,7 @@ from reports.plan.elastic import rigid_alone
 from reports.plan.grid import MEASURE, digest
 from reports.plan.singular import refuse_short_tables, refuse_singular
 from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
+from reports.requests.options import argument, output_option
 from reports.tune.attempt import Attempt, Bench, Goal, LostError, Row, times
 from reports.tune.search import Plan, attempts, best_of, plainer, search
 from reports.tune.storage import check_storage, study_in
@@ -47,21 +47,15 @@ MOST_BUDGET, MOST_SEED, COARSEST = 100_000, 2**32 - 1, 1.0
 class TuneRequest:
     """What `tune` was asked for, as given."""
 
-    scenes: Annotated[
-        Sequence[str], typer.Argument(metavar="SCENE", help="Shipped names or scene files.")
-    ]
-    engine: Annotated[str, typer.Option(help="Engine whose settings are searched.")]
-    target: Annotated[
-        float, typer.Option(help="Error to reach, as a pure number: rad, lengths over L.")
-    ]
-    budget: Annotated[int, typer.Option(help="Trials in all, also of a resumed search.")] = 60
-    seed: Annotated[int, typer.Option(help="The same seed finds the same settings.")] = 0
-    turns: Annotated[float, typer.Option(help="Turns of the driver in a run.")] = 2.0
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Keep the search (.db), to go on later.")
-    ] = None
-    limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 20.0
-    timing: Annotated[bool, typer.Option(help="Time what was found beside the profile.")] = True
+    scenes: Annotated[Sequence[str], argument("SCENE", "Shipped names or scene files.")]
+    engine: Annotated[str, "Engine whose settings are searched."]
+    target: Annotated[float, "Error to reach, as a pure number: rad, lengths over L."]
+    budget: Annotated[int, "Trials in all, also of a resumed search."] = 60
+    seed: Annotated[int, "The same seed finds the same settings."] = 0
+    turns: Annotated[float, "Turns of the driver in a run."] = 2.0
+    output: Annotated[Path | None, output_option("Keep the search (.db), to go on later.")] = None
+    limit_s: Annotated[float, "Longest time for a run, in seconds."] = 20.0
+    timing: Annotated[bool, "Time what was found beside the profile."] = True
 
     def run(self, console: Console, progress: Console) -> int:
         """Do it; returns the exit code: 0 when settings reach the target, 1 when none do. Raises

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from rich.console import Console
 
 from models.errors import harmless
 from models.files import find_scene, load_scene
 from reports.output.write import check_file, write
 from reports.requests.export import opened
-from reports.requests.options import SceneName
+from reports.requests.options import SceneName, output_option
 from sim.viewing import viewer
 
 ENDINGS = (".gif", ".png")
@@ -27,12 +26,9 @@ class ViewRequest:
 
     scene: SceneName
     output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", help="Draw into a .gif or .png in place of the viewer."),
+        Path | None, output_option("Draw into a .gif or .png in place of the viewer.")
     ] = None
-    forces: Annotated[
-        bool, typer.Option("--forces", help="Draw the forces as arrows, into a file.")
-    ] = False
+    forces: Annotated[bool, "Draw the forces as arrows, into a file."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Show a scene; the viewer draws no forces of ours, so that these go into a file.
