@@ -13,7 +13,7 @@ from models.errors import harmless
 from reports.advise.advice import Advice, Offer
 from reports.advise.remarks import remarks
 from reports.advise.search import WORDS, Worst
-from reports.output.console import hanging, plain_table
+from reports.output.console import hanging, plain_table, say_whole
 from reports.output.numbers import count, short
 from reports.plan.steps import LEAST_STEPS_PER_TURN
 
@@ -36,7 +36,7 @@ def show(console: Console, advice: Advice) -> None:
     console.print()
     for offer in advice.best:
         if text := advice.snippet(offer):
-            console.print(text, markup=False, highlight=False, soft_wrap=True)
+            say_whole(console, text)
     for label, text in _settings(advice):
         hanging(console, f"{label}: ", text, style="dim")
     console.print(Text(footer(advice), "dim"), highlight=False)

@@ -18,7 +18,7 @@ from reports.diff.words import (
     remarks,
     verdict,
 )
-from reports.output.console import hanging, plain_table
+from reports.output.console import hanging, plain_table, say
 from reports.results.changes.changes import Diff
 from reports.results.changes.runs import StoredCell
 
@@ -64,7 +64,7 @@ def _table(console: Console, word: str, rows: Sequence[PrintedRow]) -> None:
     console.print(table)
     if len(rows) > len(shown):
         more = f"and {len(rows) - len(shown)} more rows; --junit FILE names every cell"
-        console.print(more, style="dim", highlight=False)
+        say(console, more, "dim")
     for text in dict.fromkeys(f"{line.engine}: {line.reason}" for line in shown if line.reason):
         hanging(console, "  ", text)
     console.print()

@@ -20,9 +20,9 @@ from reports.advise.evidence import MeasuredStudy, evidence, stored_choices, sto
 from reports.advise.prices import prices, timings
 from reports.advise.search import SearchResult, search_all
 from reports.advise.table import show
-from reports.output.console import tell
+from reports.output.console import say_whole, tell
 from reports.output.provenance import provenance
-from reports.output.write import check_outputs, write
+from reports.output.write import Outputs
 from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
 from reports.plan.elastic import rigid_alone
 from reports.requests.options import Engines, Jobs, argument, option, seconds
@@ -61,12 +61,13 @@ class AdviseRequest:
         where none could be run. Raises CrankcheckError for what can be told of the request before
         anything runs."""
         read = [*find_scenes(self.scenes), *stored_files(self.study)]
-        check_outputs({"--json": self.json}, inputs=read)
+        outputs = Outputs({"--json": self.json})
+        outputs.check(read)
         stored = _study(self)
         scenes, texts = _scenes(self, stored)
         demand = demanded(scenes, self.speed, self.dt_s, self.target, self.turns)
         if note := left_out_note(self.scenes):
-            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+            say_whole(progress, note)
         engines = chosen_engines(self.engines)
         every = lines(stored) if stored else ()
         wanted = choices(engines, stored_choices(every))
@@ -79,10 +80,7 @@ class AdviseRequest:
         facts = provenance({name: engine(name).version() for name in engines})
         named = bool(self.scenes or stored)
         advice = Advice(demand, offers(found, priced), priced.noise, known, facts, named)
-        try:
-            if self.json is not None:
-                write(self.json, document(advice))
-        finally:  # a full disk costs the file, and not the advice with it
+        with outputs.written({"--json": lambda: document(advice)}):
             show(console, advice)
         return 0 if advice.promises else 1
 

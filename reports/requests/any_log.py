@@ -55,9 +55,9 @@ def log_of(scene: Scene, log: object, map_: MapLike = None, *, forces: bool = Fa
     from reports.logs.meanings import understood, wanted
 
     if isinstance(log, str | PathLike):
-        worth = wanted(scene, told, forces=forces)
-        columns = read_columns(path_of(log, "log"), told.layout, worth)
-        return understood(columns, scene, told, forces=forces)
+        path, worth = path_of(log, "log"), wanted(scene, told, forces=forces)
+        # No name for the columns, which take as much memory as all readings.
+        return understood(read_columns(path, told.layout, worth), scene, told, forces=forces)
     frame, source = _frame_of(log)
     return understood(columns_of(frame, source), scene, told, forces=forces)
 

@@ -14,7 +14,7 @@ from reports.diff.markdown import markdown
 from reports.diff.terminal import show
 from reports.output.console import tell
 from reports.output.junit import junit
-from reports.output.write import check_outputs, write
+from reports.output.write import Outputs
 from reports.requests.options import argument, option, output_option
 from reports.requests.stored_files import stored_files
 from reports.results.changes.changes import compare
@@ -61,19 +61,16 @@ class DiffRequest:
         if self.format not in FORMATS:
             raise CrankcheckError(f"--format {self.format!r}: unknown; use {' or '.join(FORMATS)}")
         read = stored_files(self.old, self.new)
-        check_outputs({"-o": self.output, "--junit": self.junit}, inputs=read)
+        outputs = Outputs({"-o": self.output, "--junit": self.junit})
+        outputs.check(read)
         old = read_run(self.old, self.old_version, "--old-version")
         new = read_run(self.new, self.new_version, "--new-version")
         for run in (old, new) if self.old != self.new else (old,):
             tell(run.notice)
         diff = compare(old, new, self.factor)
         page = markdown(diff, self.strict)
-        try:
-            if self.output:
-                write(self.output, page)
-            if self.junit:
-                write(self.junit, junit(suite(diff, self.strict)))
-        finally:  # a full disk costs the file, and not the verdict with it
+        contents = {"-o": lambda: page, "--junit": lambda: junit(suite(diff, self.strict))}
+        with outputs.written(contents):
             if self.format == "md" and not self.output:
                 console.print(page, end="", markup=False, highlight=False, soft_wrap=True)
             else:

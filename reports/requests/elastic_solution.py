@@ -24,6 +24,7 @@ from reports.describe.elastic_course import (
     start_of,
 )
 from reports.describe.elastic_words import certainty
+from reports.output.console import say
 from reports.requests.elastic_choice import ElasticChoice
 from reports.requests.solution import ROWS, Solution, drawn, thinned
 
@@ -74,7 +75,7 @@ class ElasticSolution(Solution):
         show_elastic(console, self.vibration, shown, fine, self.certainty, forces=forces)
         if few.size < self.time_s.size:
             left = f"{few.size} of {self.time_s.size} samples; all of them: frame()"
-            console.print(left, style="dim", highlight=False)
+            say(console, left, "dim")
 
     def _course(self, time_s: Array) -> ElasticCourse:
         return elastic_course(self.vibration, time_s)

@@ -23,6 +23,7 @@ from reports.describe.elastic_words import elastic_facts, elastic_warnings, star
 from reports.describe.force_tables import motion_force_tables
 from reports.describe.frame import cleaned
 from reports.describe.law import describe_law
+from reports.output.console import say
 from reports.requests.solution_text import heading
 
 
@@ -39,7 +40,7 @@ def show_elastic(
     sampled, ``fine``."""
     scene = motion.scene
     facts = elastic_facts(scene, motion.by, stiffened=motion.stiffened)
-    console.print(_heading(scene) + "\n".join(facts) + "\n", highlight=False, markup=False)
+    say(console, _heading(scene) + "\n".join(facts) + "\n")
     for table in elastic_tables(shown, console.width):
         console.print(table, "")
     if forces and shown.motion.forces is not None:
@@ -48,9 +49,9 @@ def show_elastic(
             console.print(table, "")
     console.print(extremes_table(scene, extremes(fine)), "")
     for line in (start_words(scene, start_of(motion)), *certainty):
-        console.print(line, highlight=False, markup=False)
+        say(console, line)
     for line in elastic_warnings(scene, largest_deflections(fine)):
-        console.print(line, style="yellow", highlight=False, markup=False)
+        say(console, line, "yellow")
 
 
 def _heading(scene: Scene) -> str:

@@ -11,7 +11,7 @@ from models.driver_shown import driver_unit
 from models.scene import Scene
 from reports.compare.errors import Error, ErrorKind, Errors, largest
 from reports.describe.held_to import held_to
-from reports.output.console import plain_table
+from reports.output.console import plain_table, say
 from reports.output.numbers import short
 from reports.quantities import QUANTITIES
 
@@ -42,9 +42,9 @@ def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> 
         )
     console.print(table, "")
     said = held_to(free=errors.free is not None, elastic=errors.elastic)
-    console.print(said, style="dim", highlight=False)
+    say(console, said, "dim")
     for note in errors.notes:
-        console.print(note, style="yellow", highlight=False, markup=False)
+        say(console, note, "yellow")
 
 
 def _driver(error: Error) -> str:

@@ -11,14 +11,15 @@ import numpy as np
 from rich.console import Console
 
 from analytic.kinematics import solve
-from models.errors import CrankcheckError, harmless
+from models.errors import CrankcheckError
 from models.files import find_scene, load_scene
 from models.mjcf import build
 from models.mjcf_options import exact
 from models.motion import State
 from models.scene import Scene
 from reports.compare.free.kept_motion import released_state
-from reports.output.write import check_file, write
+from reports.output.console import put
+from reports.output.write import check_file
 from reports.plan.elastic import SPRINGS, held_steps, segmented
 from reports.plan.free import under_control
 from reports.requests.options import SceneName, option, output_option
@@ -48,13 +49,7 @@ class ExportRequest:
         # Of segments the step is one that holds their fastest vibration.
         steps = (held_steps(own, SEGMENTS, SPRINGS[0]),) if own.elastic else ()
         text = build(scene, start, replace(exact(scene, *steps), close=tuple(self.close)))
-        if self.output is None:
-            console.file.write(text)
-            return 0
-        write(self.output, text)
-        console.print(
-            harmless(f"{self.output}: MJCF of {scene.name}"), highlight=False, markup=False
-        )
+        put(console, self.output, text, f"MJCF of {scene.name}")
         return 0
 
 

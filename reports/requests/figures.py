@@ -18,7 +18,7 @@ from models.table_fields import NAME
 from reports.figures.all_figures import FIGURES, Drawing
 from reports.figures.saving import FORMATS, saved
 from reports.figures.style import styled
-from reports.output.console import tell
+from reports.output.console import say_whole, tell
 from reports.output.numbers import count
 from reports.output.write import check_folder, write
 from reports.requests.options import argument, option, output_option
@@ -71,7 +71,7 @@ class FiguresRequest:
             f"{self.output}: {drawn}, each as {kinds}",
             *(f"  {x}: nothing to draw" for x in empty),
         ]
-        console.print("\n".join(lines), markup=False, highlight=False, soft_wrap=True)
+        say_whole(console, "\n".join(lines))
         return 0
 
 

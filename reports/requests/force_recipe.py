@@ -9,9 +9,10 @@ from typing import Annotated
 
 from rich.console import Console
 
-from models.errors import CrankcheckError, harmless
+from models.errors import CrankcheckError
 from models.files import find_scene, load_scene
-from reports.output.write import check_file, write
+from reports.output.console import put
+from reports.output.write import check_file
 from reports.plan.steps import MOST_STEPS
 from reports.requests.export import opened
 from reports.requests.options import option, output_option
@@ -50,10 +51,5 @@ class ForceRecipeRequest:
         check_steps(scene, period, period / self.steps_per_turn, 1, 1)
         scene, start = opened(scene)
         text = force_recipe(self.engine, scene, start, settings, self.steps_per_turn)
-        if self.output is None:
-            console.file.write(text)
-            return 0
-        write(self.output, text)
-        told = f"{self.output}: forces of {scene.name} in {self.engine}"
-        console.print(harmless(told), highlight=False, markup=False)
+        put(console, self.output, text, f"forces of {scene.name} in {self.engine}")
         return 0

@@ -11,6 +11,7 @@ from analytic.result import Selection
 from models.array import Array
 from models.motion import Bound, Motion
 from models.scene import Scene
+from reports.output.console import say
 from reports.requests.solution import ROWS, Solution, drawn, thinned
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ class FreeSolution(Solution):
         show_free(console, self.free, few)
         if few.time_s.size < self.time_s.size:
             left = f"{few.time_s.size} of {self.time_s.size} samples; all of them: frame()"
-            console.print(left, style="dim", highlight=False)
+            say(console, left, "dim")
 
     def _drawn(self) -> str:
         return drawn(self.scene)

@@ -12,6 +12,7 @@ from reports.describe.frame import cleaned
 from reports.describe.free_motion import free_notes, free_tables
 from reports.describe.law import describe_law
 from reports.describe.tables import motion_tables
+from reports.output.console import say
 from reports.plan.singular import continued_note
 from reports.requests.solution_text import heading
 
@@ -20,7 +21,7 @@ def show_free(console: Console, free: FreeMotion, motion: Motion) -> None:
     """Print the mechanism, every sample of its motion, and the notes."""
     scene = free.scene
     told = heading(scene, analyse(scene)) if free.by_dyads else _without_dyads(free)
-    console.print(told, highlight=False, markup=False)
+    say(console, told)
     shown = cleaned(motion)
     tables = motion_tables(scene, shown, console.width)
     if scene.driver.link in motion.links:
@@ -29,7 +30,7 @@ def show_free(console: Console, free: FreeMotion, motion: Motion) -> None:
         console.print(table, "")
     notes = [*free_notes(free, float(np.max(motion.time_s))), continued_note(scene, motion)]
     for note in filter(None, notes):
-        console.print(note, style="yellow", highlight=False, markup=False)
+        say(console, note, "yellow")
 
 
 def _without_dyads(free: FreeMotion) -> str:

@@ -18,6 +18,7 @@ from reports.history.table import show
 from reports.history.verification import alone, cache_folder, kept, key_of, measure, place
 from reports.history.version_result import VersionResult, read_version
 from reports.judge.cell import Cell
+from reports.output.console import say_whole
 from reports.output.provenance import provenance
 from reports.output.write import check_folder, refuse_link, write
 from reports.plan.chosen import left_out_note
@@ -70,7 +71,7 @@ class HistoryRequest:
         _check_outputs(self, versions)
         uv = uv_here()
         if note := left_out_note(names):
-            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+            say_whole(progress, note)
         # The files of a result hold the digests of the scenes' texts, by which they are compared.
         key, results = key_of([*cells, scene_digests(names)]), []
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:

@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Any, overload
 from rich.console import Console
 
 from analytic.free.loosened import loosened
-from models.errors import CrankcheckError, harmless
+from models.errors import CrankcheckError
 from models.files import find_scene, load_scene
 from models.one_or_more import names_in
 from models.scene import Scene
 from reports.judge.tolerance import DEFAULTS, FREE, check_names, parse, refuse_of_other_motion
 from reports.logs.map_file import Map, read_map
+from reports.output.console import say_whole
 from reports.output.provenance import provenance
-from reports.output.write import check_file, check_outputs
+from reports.output.write import Outputs, check_file
 from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, judge_log
 from reports.own_log.log_kind import LogRequest
@@ -36,7 +37,7 @@ from reports.requests.compare import (
     refuse_segments,
     refuse_without_forces,
 )
-from reports.requests.judge_files import write_log_map, write_results
+from reports.requests.judge_files import contents, write_log_map
 from reports.requests.options import (
     SceneName,
     SegmentCount,
@@ -281,49 +282,36 @@ class JudgeRequest:
         scene = load_scene(self.scene)
         if self.free:
             scene = loosened(scene)
-        asked = _checked(self, scene)
+        outputs = Outputs({"-o": self.output, "--json": self.json, "--junit": self.junit})
+        asked = _checked(self, scene, outputs)
         check_names(scene)
         _refuse_other_targets(scene, asked.target)
-        map_ = read_map(self.map) if self.map else Map()
         if self.write_map is not None:
-            told = f"{self.write_map}: {write_log_map(self.write_map, self.log, scene, map_)}"
-            console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
+            map_ = read_map(self.map) if self.map else Map()
+            told = write_log_map(self.write_map, self.log, scene, map_)
+            say_whole(console, f"{self.write_map}: {told}")
             return 0
-        from reports.logs.columns import read_columns
-        from reports.logs.meanings import understood, wanted
-
-        # No name for the columns, which take as much memory as all readings.
-        log = understood(
-            read_columns(self.log, map_.layout, wanted(scene, map_, forces=self.forces)),
-            scene,
-            map_,
-            forces=self.forces,
-        )
-        judged = judge_log(log, asked)
+        judged = judge_log(log_of(scene, self.log, self.map, forces=self.forces), asked)
         facts = provenance({})
-        try:
-            write_results(judged, facts, self.json, self.junit, self.output)
-        finally:  # a full disk costs the file, and not the verdict with it
+        with outputs.written(contents(judged, facts)):
             if self.format == "md":
-                console.print(
-                    markdown(judged, facts), markup=False, highlight=False, soft_wrap=True
-                )
+                text = markdown(judged, facts)
+                console.print(text, markup=False, highlight=False, soft_wrap=True)
             else:
                 show(console, judged, facts)
         return int(judged.verdict == "out")
 
 
-def _checked(request: JudgeRequest, scene: Scene) -> LogRequest:
+def _checked(request: JudgeRequest, scene: Scene, outputs: Outputs) -> LogRequest:
     """What the log is to be judged by. Raises CrankcheckError for what can be told before."""
     if request.format not in FORMATS:
         raise CrankcheckError(f"--format {request.format!r}: unknown; use text or md")
-    endings = {"--write-map": (".toml",), "-o": (".html",)}
-    files = {"--write-map": request.write_map, "-o": request.output}
-    for name, path in files.items():
-        if path is not None:
-            check_file(path, name, endings[name])
-    files |= {"--json": request.json, "--junit": request.junit}
-    check_outputs(files, inputs=(find_scene(request.scene), request.log, request.map))
+    if request.write_map is not None:
+        check_file(request.write_map, "--write-map", (".toml",))
+    if request.output is not None:
+        check_file(request.output, "-o", (".html",))
+    files = {"--write-map": request.write_map, **outputs.files}
+    Outputs(files).check((find_scene(request.scene), request.log, request.map))
     drive = chosen_drive(request.drive)
     refuse_geometry_alone(drive, forces=request.forces)
     if request.step_s is not None and not request.step_s > 0.0:

@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.output.console import tell
+from reports.output.console import say, tell
 from reports.output.write import check_file, write
 from reports.requests.arguments import path_of
 from reports.requests.options import argument, option, output_option
@@ -122,7 +122,7 @@ class ReportRequest:
             return 0
         write(output, made.text)
         size = len(made.text.encode()) / 1e6
-        console.print(f"{output}: {made.content}, {size:.1f} MB", markup=False, highlight=False)
+        say(console, f"{output}: {made.content}, {size:.1f} MB")
         return 0
 
 

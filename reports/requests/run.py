@@ -16,6 +16,7 @@ from models.files import find_scene
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.compare.free.kept_motion import released_state
+from reports.output.console import say, say_whole
 from reports.output.frame_file import ENDINGS, write_frame
 from reports.output.write import check_file
 from reports.plan.elastic import given_of
@@ -82,17 +83,17 @@ class Simulation(Shown, Run):
     def show(self, console: Console) -> None:
         from reports.describe.tables import motion_tables
 
-        console.print(self._heading(), highlight=False, markup=False)
+        say(console, self._heading())
         if self.motion is not None:
             few = thinned(self.motion, ROWS)
             for table in motion_tables(self.mechanism, few, console.width):
                 console.print(table, "")
             left = f"{few.time_s.size} of {self.motion.time_s.size} logged samples"
-            console.print(left, style="dim", highlight=False)
+            say(console, left, "dim")
         style = "" if self.status == "ok" else "red"
-        console.print(self.ending(), style=style, highlight=False, markup=False)
+        say(console, self.ending(), style)
         for warning in self.warnings:
-            console.print(f"warning: {warning}", style="yellow", highlight=False, markup=False)
+            say(console, f"warning: {warning}", "yellow")
 
     def _heading(self) -> str:
         """What was run."""
@@ -194,12 +195,10 @@ class RunRequest:
             raise CrankcheckError(f"{done.scene}, {done.engine}: {done.status}: {done.reason}")
         if self.output is None:
             done.show(console)
-            console.print(
-                "All samples: -o log.csv, .parquet or .xlsx", style="dim", highlight=False
-            )
+            say(console, "All samples: -o log.csv, .parquet or .xlsx", "dim")
         else:
             write_frame(self.output, done.frame(), "log", _origin(done))
-            console.print(_written(self, done), highlight=False, markup=False, soft_wrap=True)
+            say_whole(console, _written(self, done))
         return int(done.status != "ok")
 
 
@@ -302,15 +301,15 @@ def _truth(scene: Scene, bent: GivenAs, dt_s: float, steps: int) -> Truth | None
 def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> None:
     """Refuse a length that the run has no use for: turns of a scene that has no law, a duration of
     what is driven, or both. Raises CrankcheckError."""
-    for option in given(request, "turns", "steps_per_turn"):
+    for name in given(request, "turns", "steps_per_turn"):
         if scene.is_free:
             raise CrankcheckError(
-                f"{option}: {scene.name} is let go, and has no turns; give --dt and --duration, in "
+                f"{name}: {scene.name} is let go, and has no turns; give --dt and --duration, in "
                 "seconds"
             )
         if request.duration_s is not None:
             raise CrankcheckError(
-                f"--duration and {option}: a run that is let go has its length in seconds, or that "
+                f"--duration and {name}: a run that is let go has its length in seconds, or that "
                 "of turns of the law that drove it; give one of them"
             )
     if request.duration_s is not None and drive != "free":

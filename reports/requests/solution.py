@@ -13,6 +13,7 @@ from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.with_forces import cleaned_forces
+from reports.output.console import say
 from reports.requests.shown import Shown
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ class Solution(Shown, Motion):
             show_motion(console, self.scene, few)
             if few.time_s.size < self.time_s.size:
                 left = f"{few.time_s.size} of {self.time_s.size} samples; all of them: frame()"
-                console.print(left, style="dim", highlight=False)
+                say(console, left, "dim")
             if self.forces is not None:
                 show_largest(console, self.scene)
         if self.forces is not None:

@@ -30,6 +30,7 @@ from reports.describe.with_forces import (
     left_out_notes,
     turn_with_forces,
 )
+from reports.output.console import say
 from reports.plan.singular import continued_note, singular_note
 
 
@@ -41,7 +42,7 @@ def show_heading(
     speeds: SpeedFacts | None = None,
 ) -> None:
     """Print what the mechanism is, and its extreme speeds, where there are any."""
-    console.print(heading(scene, structure, along), highlight=False, markup=False)
+    say(console, heading(scene, structure, along))
     if speeds and speeds.rows:
         console.print(speed_table(speeds), "")
 
@@ -71,7 +72,7 @@ def show_position(console: Console, scene: Scene, motion: Motion) -> None:
         told.append(force_certainty(scene, motion.forces))
         for table in position_force_tables(scene, motion, cleaned_forces(motion.forces)):
             console.print(table, "")
-    console.print("\n".join(filter(None, told)), style="dim", highlight=False)
+    say(console, "\n".join(filter(None, told)), "dim")
 
 
 def show_motion(console: Console, scene: Scene, motion: Motion) -> None:
@@ -94,13 +95,13 @@ def show_largest(console: Console, scene: Scene) -> None:
     assert turn.forces is not None
     console.print(largest_table(scene, turn, cleaned_forces(turn.forces)), "")
     for note in left_out_notes(scene, turn):
-        console.print(note, style="yellow", highlight=False, markup=False)
+        say(console, note, "yellow")
 
 
 def show_friction(console: Console, scene: Scene) -> None:
     """Print what friction takes over a cycle, and where it locks, where it does."""
     for words in friction_words(scene):
-        console.print(words, highlight=False, markup=False)
+        say(console, words)
 
 
 def show_notes(console: Console, scene: Scene, motion: Motion) -> None:
@@ -110,4 +111,4 @@ def show_notes(console: Console, scene: Scene, motion: Motion) -> None:
     singular = singular_note(scene, motion) if told else ""
     notes = (continued_note(scene, motion), singular, *force_notes(scene, motion))
     for note in filter(None, notes):
-        console.print(note, style="yellow", highlight=False, markup=False)
+        say(console, note, "yellow")

@@ -25,6 +25,7 @@ from models.scene import Scene
 from reports.describe.facts import speed_facts
 from reports.describe.law import MOST_DEG, driver_at
 from reports.describe.with_forces import with_forces
+from reports.output.console import say
 from reports.output.frame_file import ENDINGS
 from reports.output.write import check_file
 from reports.requests.arguments import SceneLike, is_true, scene_of
@@ -291,9 +292,7 @@ def _show(console: Console, scene: Scene, motion: Motion, request: SolveOptions)
     if request.forces:
         show_largest(console, scene)
         show_friction(console, scene)
-    console.print(
-        "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
-    )
+    say(console, "Points, and more digits: -o out.csv, .parquet or .xlsx", "dim")
 
 
 def _along(scene: Scene, text: str) -> Along:

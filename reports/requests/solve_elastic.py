@@ -16,6 +16,7 @@ from reports.describe.elastic_course import (
     energy_columns,
 )
 from reports.describe.elastic_words import certainty
+from reports.output.console import say, say_whole
 from reports.output.frame_file import write_frame
 from reports.output.write import check_folder, write
 from reports.requests.elastic_choice import ElasticChoice
@@ -38,10 +39,10 @@ def run_solve_elastic(
         fine = elastic_course(motion, closely_sampled(scene, motion.until_s))
         show_elastic(console, motion, shown, fine, certainty(motion), forces=request.forces)
         more = "Points, and more digits: -o out.csv, .parquet or .xlsx; moving: -o out.html"
-        console.print(more, style="dim", highlight=False)
+        say(console, more, "dim")
         return
     for line in _written(motion, time_s, request):
-        console.print(harmless(line), highlight=False, markup=False, soft_wrap=True)
+        say_whole(console, harmless(line))
 
 
 def _check(scene: Scene, request: SolveOptions) -> None:

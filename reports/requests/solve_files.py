@@ -10,6 +10,7 @@ from models.errors import CrankcheckError, harmless
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.frame import motion_frame
+from reports.output.console import say_whole
 from reports.output.frame_file import write_frame
 from reports.output.write import check_folder, write
 from reports.requests.named import LIVE_SHEET, named
@@ -30,7 +31,7 @@ def tell_written(console: Console, scene: Scene, motion: Motion, request: SolveO
     if request.output is not None:
         told.append(_write(request.output, scene, motion, is_turn=not request.at_place))
     for each in told:
-        console.print(harmless(each), highlight=False, markup=False, soft_wrap=True)
+        say_whole(console, harmless(each))
 
 
 def check_page(request: SolveOptions) -> None:

@@ -14,6 +14,7 @@ from models.errors import CrankcheckError, harmless
 from models.scene import Scene
 from reports.describe.frame import motion_frame
 from reports.describe.free_motion import free_columns
+from reports.output.console import say, say_whole
 from reports.output.frame_file import SHEET_ROWS, write_frame
 from reports.output.write import check_folder, write
 from reports.requests.free_text import show_free
@@ -52,11 +53,11 @@ def run_solve_free(scene: Scene, request: SolveOptions, console: Console) -> Non
         write_frame(request.output, frame, "motion", origin)
         told.append(f"{request.output}: {time_s.size} samples of {scene.name}")
     for line in told:
-        console.print(harmless(line), highlight=False, markup=False, soft_wrap=True)
+        say_whole(console, harmless(line))
     if not told:
         show_free(console, free, free.at(time_s))
         more = "Points, and more digits: -o out.csv, .parquet or .xlsx; figures: -o out.html"
-        console.print(more, style="dim", highlight=False)
+        say(console, more, "dim")
 
 
 def refuse_turns(scene: Scene, request: SolveOptions) -> None:

@@ -14,6 +14,7 @@ from rich.console import Console
 
 from models.errors import CrankcheckError, shown
 from models.one_or_more import names_in
+from reports.output.console import say_whole
 from reports.plan.chosen import left_out_note
 from reports.plan.chosen_study import (
     StudyChoice,
@@ -252,14 +253,14 @@ class SweepRequest:
         study = asked(self)
         silent = silent_note([one.engine for one in study.variants]) if study.forces else ""
         for note in filter(None, (silent, left_out_note(study.scenes))):
-            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+            say_whole(progress, note)
         laid, done = swept(study, self.folder, manner, command, progress)
         lengths = {
             (t.cell.scene.name, t.cell.dt_s * t.cell.steps): t.cell.scene for t in laid.tasks
         }
         notes = (shortened_note(scene, lasts_s) for (_, lasts_s), scene in lengths.items())
         for note in filter(None, dict.fromkeys(notes)):
-            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+            say_whole(progress, note)
         show_sweep(console, self.folder, len(laid.tasks), done)
         return 0
 

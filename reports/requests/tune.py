@@ -18,6 +18,7 @@ from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import find_scenes, read_text
 from reports.judge.three_steps import AT_ROUNDING
+from reports.output.console import say_whole
 from reports.output.provenance import crankcheck_version, provenance
 from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
 from reports.plan.elastic import rigid_alone
@@ -62,7 +63,7 @@ class TuneRequest:
         CrankcheckError for what can be told of the request before the search."""
         goal = _goal(self)
         if note := left_out_note(self.scenes):
-            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+            say_whole(progress, note)
         base = resolved(profile_of(engine(goal.engine), goal.profile), None)
         space = search_space(goal.engine).around(base)
         if self.output is not None:
@@ -91,7 +92,7 @@ class TuneRequest:
             ].driver.law.period_s  # to copy, at the speed of the first scene
             text = snippet(goal.engine, best.settings, float(best.tried), period_s)
             console.print()
-            console.print(text, markup=False, highlight=False, soft_wrap=True)
+            say_whole(console, text)
         around = len(goal.scenes) + sum(len(side.rows) for side in sides)
         facts = provenance({goal.engine: engine(goal.engine).version()})
         how = _how(self, trials, tried, around)
@@ -164,12 +165,10 @@ def _searched(
                 return search(study, plan, bench.attempt, advance)
         except Stopped:
             if request.output is not None:
-                progress.print(
+                say_whole(
+                    progress,
                     f"{len(attempts(study))} of {request.budget} trials are kept in "
                     f"{request.output}; the same command goes on from there",
-                    markup=False,
-                    highlight=False,
-                    soft_wrap=True,
                 )
             raise
 

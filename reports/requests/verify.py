@@ -20,9 +20,9 @@ from reports.judge.tolerance import (
     refuse_forces_unasked,
     refuse_of_other_motion,
 )
-from reports.output.console import tell
+from reports.output.console import say_whole, tell
 from reports.output.provenance import provenance
-from reports.output.write import check_outputs
+from reports.output.write import Outputs, check_outputs
 from reports.plan.chosen import (
     chosen_engines,
     chosen_profiles,
@@ -38,7 +38,7 @@ from reports.plan.free import (
     under_control,
 )
 from reports.plan.singular import gives_forces, silent_note
-from reports.requests.verify_files import IN_FOLDER, Results, write_results
+from reports.requests.verify_files import IN_FOLDER, contents
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions, refuse_of_models
 from reports.verify.all_cells import check_all
 from reports.verify.table import show
@@ -68,15 +68,15 @@ class VerifyRequest(VerifyOptions):
         refuse_of_models(self)
         cells = plan(self)
         files = {"--junit": self.junit, "--csv": self.csv, "--json": self.json}
+        outputs = Outputs(files, self.folder, IN_FOLDER)
         names = free_names(self.scenes) if self.free else self.scenes
-        read = find_scenes(names)
-        check_outputs(files, self.folder, IN_FOLDER, inputs=read)
+        outputs.check(find_scenes(names))
         if self.baseline is not None:
             _spare_baseline(files, self.baseline)
         digests = _digests(self)
         silent = silent_note(chosen_engines(())) if self.forces and not self.engines else ""
         for note in filter(None, (*passages(cells), silent, left_out_note(names))):
-            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+            say_whole(progress, note)
         base = _baseline(self, cells, digests)
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
             task = bar.add_task("verifying", total=len(cells))
@@ -84,9 +84,7 @@ class VerifyRequest(VerifyOptions):
         engines = dict.fromkeys(cell.engine for cell in cells)
         facts = provenance({name: engine(name).version() for name in engines})
         diff = _changes(base, checked, facts, digests, self.factor) if base else None
-        try:
-            write_results(self, Results(checked, facts, digests, diff))
-        finally:  # a full disk costs the file, and not the verdict with it
+        with outputs.written(contents(checked, facts, digests, diff)):
             show(console, checked, facts)
             if diff:
                 from reports.diff.terminal import show as show_diff

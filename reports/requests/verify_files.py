@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
+from xml.etree.ElementTree import Element
 
 from reports.judge.cell import Checked
 from reports.judge.frames import cell_frame, error_frame
@@ -13,53 +13,44 @@ from reports.judge.rows import cell_row
 from reports.output.frame_file import csv, parquet
 from reports.output.junit import junit
 from reports.output.numbers import finite
-from reports.output.write import write
-from reports.requests.verify_options import VerifyOptions
 from reports.verify.junit import suite
 
 if TYPE_CHECKING:  # half a second to import: where there is a run to compare with
     from reports.results.changes.changes import Diff
 
-IN_FOLDER = ("verify.csv", "verify.json", "verify.junit.xml", "errors.parquet")
+IN_FOLDER = {
+    "verify.csv": "--csv",
+    "verify.json": "--json",
+    "verify.junit.xml": "--junit",
+    "errors.parquet": "",
+}
 
 
-@dataclass(frozen=True)
-class Results:
-    """What there is to write: cells, where they come from, the digests of the texts of their
+def contents(
+    checked: Sequence[Checked],
+    facts: Mapping[str, str],
+    digests: Mapping[str, str],
+    diff: Diff | None,
+) -> dict[str, Callable[[], bytes | str]]:
+    """What there is to write: of cells, where they come from, the digests of the texts of their
     scenes, and what changed since the baseline."""
-
-    checked: Sequence[Checked]
-    facts: Mapping[str, str]
-    digests: Mapping[str, str]
-    diff: Diff | None = None
-
-
-def write_results(request: VerifyOptions, results: Results) -> None:
-    """Write every output that was asked for, each whole or not at all."""
-    folder = request.folder
-    *texts, table = IN_FOLDER
-    for name, path in zip(texts, (request.csv, request.json, request.junit), strict=True):
-        for target in filter(None, (path, folder and folder / name)):
-            write(target, _content(name, results))
-    if folder:
-        write(folder / table, parquet(error_frame(results.checked)))
+    return {
+        "verify.csv": lambda: csv(cell_frame(checked)),
+        "verify.json": lambda: _json(checked, facts, digests),
+        "verify.junit.xml": lambda: junit(suite(checked, facts), *_changes(diff)),
+        "errors.parquet": lambda: parquet(error_frame(checked)),
+    }
 
 
-def _content(name: str, results: Results) -> str:
-    """The text of one output."""
-    if name.endswith(".csv"):
-        return csv(cell_frame(results.checked))
-    if name.endswith(".xml"):
-        verification = suite(results.checked, results.facts)
-        if results.diff is None:
-            return junit(verification)
+def _changes(diff: Diff | None) -> Iterator[Element]:
+    """The suite of what changed, if that is known."""
+    if diff is not None:
         from reports.diff.junit import suite as diff_suite
 
-        return junit(verification, diff_suite(results.diff))
-    return _json(results)
+        yield diff_suite(diff)
 
 
-def _json(results: Results) -> str:
+def _json(checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping[str, str]) -> str:
     """Facts, digests of scenes, and cells with their findings; what is not finite is null."""
     cells = [
         cell_row(one)
@@ -69,11 +60,11 @@ def _json(results: Results) -> str:
             "notes": list(one.errors.notes) if one.errors else [],
             "findings": [vars(finding) for finding in one.findings],
         }
-        for one in results.checked
+        for one in checked
     ]
     content = {
-        "provenance": dict(results.facts),
-        "scenes": dict(results.digests),
+        "provenance": dict(facts),
+        "scenes": dict(digests),
         "cells": cells,
     }
     return json.dumps(finite(content), indent=1) + "\n"

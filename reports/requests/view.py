@@ -12,6 +12,7 @@ from rich.console import Console
 
 from models.errors import harmless
 from models.files import find_scene, load_scene
+from reports.output.console import say
 from reports.output.write import check_file, write
 from reports.requests.export import opened
 from reports.requests.options import SceneName, output_option
@@ -55,8 +56,7 @@ class ViewRequest:
         content = draw(scene, with_forces=self.forces)
         write(output, content)
         what = "in free motion" if scene.is_free else "over one turn"
-        told = harmless(f"{output}: {scene.name} {what}")
-        console.print(told, highlight=False, markup=False)
+        say(console, harmless(f"{output}: {scene.name} {what}"))
         return 0
 
 
