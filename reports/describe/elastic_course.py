@@ -24,12 +24,11 @@ from models.motion import Motion
 from models.rigid import with_rigid_links
 from models.scene import Scene
 from reports.describe.elastic_words import described
-from reports.describe.frame import motion_frame
 from reports.describe.tables import Columns, tables_over_time
 from reports.output.console import plain_table
 
 if TYPE_CHECKING:
-    import pandas as pd
+    pass
 
 
 SHARES = np.linspace(0.0, 1.0, 41)
@@ -171,14 +170,6 @@ def energy_columns(motion: ElasticHistory, time_s: Array) -> dict[str, Array]:
     energy, back = energies(motion, time_s[order]), np.argsort(order)
     columns = {"kinetic_j": energy.kinetic, "potential_j": energy.potential, "work_j": energy.work}
     return {name: series[back] for name, series in columns.items()}
-
-
-def elastic_frame(course: ElasticCourse, *, with_forces: bool) -> pd.DataFrame:
-    """One row per sample: the motion, and what rigid links would have."""
-    motion, rigid = course.motion, course.rigid
-    if not with_forces:
-        motion, rigid = replace(motion, forces=None), replace(rigid, forces=None)
-    return motion_frame(motion).assign(**rigid_columns(rigid))
 
 
 def elastic_tables(course: ElasticCourse, width: int) -> list[Table]:

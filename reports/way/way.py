@@ -48,6 +48,11 @@ class Way(Protocol):
         """What is particular to its logs, a `reports.own_log.log_kind.LogKind`."""
         ...
 
+    @property
+    def solving(self) -> object:
+        """How its scenes are solved, a `reports.requests.solving.Solving`."""
+        ...
+
     def takes(self, scene: Scene, drive: Drive) -> bool:
         """Whether a run of the scene with that drive is of this kind."""
         ...

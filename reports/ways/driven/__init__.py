@@ -19,6 +19,7 @@ from sim.engine import Drive
 
 if TYPE_CHECKING:
     from reports.own_log.log_kind import LogKind
+    from reports.requests.solving import Solving
     from reports.verify.cell_table import CellTable
 
 
@@ -57,6 +58,12 @@ class DrivenWay:
         from reports.ways.driven.table import TABLE  # what is shown is loaded when it is
 
         return TABLE
+
+    @property
+    def solving(self) -> Solving:
+        from reports.requests.solve import SOLVING  # for references alone
+
+        return SOLVING
 
     def turn_s(self, scene: Scene) -> float:
         return scene.driver.law.period_s

@@ -15,6 +15,7 @@ from sim.engine import Drive
 
 if TYPE_CHECKING:
     from reports.own_log.log_kind import LogKind
+    from reports.requests.solving import Solving
     from reports.verify.cell_table import CellTable
 
 
@@ -57,6 +58,12 @@ class ElasticWay(Bending, DrivenWay):
             return super().lengths(scene, study, given)
         held = held_steps(scene, given.segments, given.springs)
         return [Length(None, times * held, study.turns) for times in study.times_held]
+
+    @property
+    def solving(self) -> Solving:
+        from reports.requests.elastic_solution import DRIVEN  # slow to import
+
+        return DRIVEN
 
     def refuse(self, run: Planned) -> None:
         super().refuse(run)

@@ -14,6 +14,7 @@ from sim.engine import Drive
 
 if TYPE_CHECKING:
     from reports.own_log.log_kind import LogKind
+    from reports.requests.solving import Solving
     from reports.verify.cell_table import CellTable
 
 
@@ -49,6 +50,12 @@ class FreeWay:
         from reports.ways.free.table import TABLE  # what is shown is loaded when it is
 
         return TABLE
+
+    @property
+    def solving(self) -> Solving:
+        from reports.requests.free_solution import SOLVING  # for references alone
+
+        return SOLVING
 
     def turn_s(self, scene: Scene) -> float:
         return 1.0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.plan.elastic import (
@@ -15,6 +17,9 @@ from reports.way.way import StudyLengths
 from reports.ways.elastic import Bending
 from reports.ways.free import FreeWay
 from sim.engine import Drive
+
+if TYPE_CHECKING:
+    from reports.requests.solving import Solving
 
 
 class FreeElasticWay(Bending, FreeWay):
@@ -35,6 +40,12 @@ class FreeElasticWay(Bending, FreeWay):
         held_s, count = self.counted(scene, Length(duration_s=study.duration_s), given)
         lasts_s = held_s * count
         return [Length(held_s / times, duration_s=lasts_s) for times in study.times_held]
+
+    @property
+    def solving(self) -> Solving:
+        from reports.requests.elastic_solution import LET_GO  # slow to import
+
+        return LET_GO
 
     def refuse(self, run: Planned) -> None:
         super().refuse(run)
