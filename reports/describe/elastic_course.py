@@ -209,7 +209,8 @@ def extremes(course: ElasticCourse) -> list[Extreme]:
 def _series(course: ElasticCourse) -> Iterator[tuple[str, str, Array, str]]:
     for name, shape in course.motion.elastic.items():
         length_m, places = line_of(course.scene, name).length_m, course.bent[name]
-        if course.scene.elastic[name].bends:
+        link = course.scene.elastic[name]
+        if link.bends:
             middle = float(np.max(np.abs(shape.middle)))
             share = f"1/{length_m / middle:.4g} of its length" if middle > 0.0 else ""
             yield f"{name}, deflection of its middle", "m", shape.middle, share

@@ -6,10 +6,11 @@ import math
 
 from models.controlled import Controlled
 from models.errors import CrankcheckError
-from models.laws import MOST_TURNS, Accelerating, ConstantSpeed, FromRest, Oscillating
+from models.laws import Accelerating, ConstantSpeed, FromRest, Oscillating
 from models.passing import passing
-from models.released import LONGEST_S, Released
+from models.released import Released
 from models.scene import Scene
+from reports.way.way import way_of
 
 
 def describe_law(scene: Scene) -> str:
@@ -59,7 +60,7 @@ def angle_at(at_deg: float) -> float:
 
 def time_at(scene: Scene, at_s: float) -> float:
     """A time that a user named [s]. Raises CrankcheckError for what is none, or of no motion."""
-    latest = LONGEST_S if scene.is_free else MOST_TURNS * scene.driver.law.period_s
+    latest = way_of(scene).latest_s(scene)
     if not 0.0 <= at_s <= latest:  # or no number
         raise CrankcheckError(
             f"--at-s {at_s:g}: {scene.name} moves from t = 0 on; give a time in seconds, such as "

@@ -31,6 +31,7 @@ from reports.drawing.shape import (
     turn_of,
 )
 from reports.output.numbers import readable
+from reports.way.way import way_of
 
 FRAMES, FRAME_S = 60, 0.06
 STRIP = 6
@@ -44,7 +45,7 @@ def animation(scene: Scene, *, with_forces: bool = False) -> bytes:
     figure = _figure(turn.box, columns=1, rows=1, width=6.4)
     canvas = FigureCanvasAgg(figure)
     axes = figure.add_subplot()
-    _legend(figure, scene, with_forces=with_forces)
+    _legend(figure, turn)
     frames = []
     for index in range(FRAMES):
         axes.clear()
@@ -73,7 +74,7 @@ def strip(scene: Scene, *, with_forces: bool = False) -> bytes:
     figure = _figure(turn.box, columns, rows, width=4.0)
     for index in range(STRIP):
         _draw(figure.add_subplot(rows, columns, index + 1), turn, index)
-    _legend(figure, scene, with_forces=with_forces)
+    _legend(figure, turn)
     buffer = io.BytesIO()
     FigureCanvasAgg(figure).print_png(buffer)  # type: ignore[no-untyped-call]  # as above
     return buffer.getvalue()
@@ -92,13 +93,12 @@ class _Turn:
 
     @staticmethod
     def of(scene: Scene, positions: int, *, with_forces: bool) -> _Turn:
-        most_s = FRAMES * FRAME_S if scene.is_free else math.inf
+        most_s = way_of(scene).drawn_s(FRAMES * FRAME_S)
         path = turn_of(scene, PATH_SAMPLES, most_s, with_forces=with_forces)
         motion = turn_of(scene, positions + 1, most_s, with_forces=with_forces)
-        if not with_forces:
-            return _Turn(scene, motion, path, box_of(path))
-        arrows = force_arrows(scene, path)
-        return _Turn(scene, motion, path, arrows.box(path), arrows)
+        arrows = None if path.forces is None else force_arrows(scene, path)
+        box = box_of(path) if arrows is None else arrows.box(path)
+        return _Turn(scene, motion, path, box, arrows)
 
 
 def _figure(box: tuple[Array, Array], columns: int, rows: int, width: float) -> Figure:
@@ -120,11 +120,11 @@ def _figure(box: tuple[Array, Array], columns: int, rows: int, width: float) -> 
     return figure
 
 
-def _legend(figure: Figure, scene: Scene, *, with_forces: bool) -> None:
+def _legend(figure: Figure, turn: _Turn) -> None:
     """The links by colour, below everything that moves."""
-    colours = colours_of(scene)
+    colours = colours_of(turn.scene)
     handles = [Line2D([], [], color=colours[name], linewidth=4, label=name) for name in colours]
-    if with_forces:
+    if turn.arrows is not None:
         words = "force on the body of that colour, black: on a block"
         look: dict[str, Any] = {"color": INK, "linewidth": 1.6, "marker": ">", "markersize": 5}
         handles.append(Line2D([], [], label=words, **look))

@@ -16,15 +16,12 @@ from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.output.numbers import count as told
 from reports.plan.chosen import chosen_engines
-from reports.plan.elastic import (
-    given_as,
-    refuse_rigid,
-)
+from reports.plan.elastic import refuse_rigid
 from reports.plan.free import scenes_of
 from reports.plan.singular import gives_forces
-from reports.plan.study import Study, Variant
+from reports.plan.study import UNITS, Study, Variant
 from reports.way.length import GivenAs, Planned
-from reports.way.way import way_of
+from reports.way.way import driven_by, way_of
 from sim.engine import SettingValue
 from sim.registry import engine
 from sim.settings import profile_of, resolved
@@ -53,7 +50,7 @@ class Task:
     @property
     def label(self) -> str:
         cell = self.cell
-        step = f"dt {cell.dt_s:g} s" if cell.drive == "free" else f"{cell.steps_per_turn:g} a turn"
+        step = cell.way.step(cell.scene, cell.dt_s)
         return f"{cell.scene.name}, {cell.engine} {self.variant}, {step}"
 
 
@@ -81,7 +78,7 @@ def grid(study: Study) -> Grid:
     tasks: dict[str, Task] = {}
     for scene in scenes:
         name = digest(texts[scene.name])
-        given = [(bent, _steps(study, scene, bent)) for bent in given_as(scene, study)]
+        given = [(bent, _steps(study, scene, bent)) for bent in way_of(scene).given_by(study)]
         for (variant, settings), (bent, steps) in itertools.product(complete, given):
             for dt_s, count in steps:
                 cell = Cell(
@@ -91,7 +88,7 @@ def grid(study: Study) -> Grid:
                     dt_s=dt_s,
                     steps=count,
                     gated=variant.profile == "tuned" and not variant.settings,
-                    drive="free" if study.free else study.drive,
+                    drive=driven_by(scene, study.drive),
                     converge=False,
                     settings=variant.chosen,
                     with_forces=study.forces and gives_forces(variant.engine),
@@ -137,7 +134,7 @@ def refuse_endless(study: Study) -> None:
             f"{sum(numbers):.6g} variants"
             + f" (one has {several}, each with each)"
             * bool(several)
-            + f" x {steps} steps{'' if study.free else ' in a turn'}; a sweep has at most "
+            + f" x {steps} steps{UNITS[study.lists[0]]}; a sweep has at most "
             f"{MOST_CELLS}: take fewer of them"
         )
 
@@ -224,7 +221,7 @@ def line_key(
             *(["forces"] if cell.with_forces else ()),
             *(["loads"] if cell.scene.loads else ()),
             *(["friction"] if cell.scene.friction else ()),
-            *(["elastic", cell.segments, cell.springs] if cell.scene.elastic else ()),
+            *cell.way.key(cell.given_as),
         ]
     )
 

@@ -43,6 +43,8 @@ from sim.engine import SettingValue
 
 DEFAULT = Path(__file__).parent / "studies" / "default.toml"
 StudyValue = StrictInt | StrictFloat | str
+UNITS = {"steps_per_turn": " in a turn", "dt_s": ""}
+"""What the steps of a study are in, by its field."""
 VariantName = Annotated[str, Field(min_length=1, max_length=80)]
 
 
@@ -104,9 +106,14 @@ class Study(BaseModel):
     times_held: list[float] = Field(default_factory=list)
 
     @property
+    def lists(self) -> tuple[str, ...]:
+        """The field that has the steps of its scenes, and the one of other scenes."""
+        return tuple(UNITS)[:: -1 if self.free else 1]
+
+    @property
     def steps(self) -> list[float]:
         """What the cells of a line differ in: steps in a turn, or of free motion seconds."""
-        return self.dt_s if self.free else self.steps_per_turn
+        return list(getattr(self, self.lists[0]))
 
 
 def load_study(path: Path | None) -> Study:
@@ -142,7 +149,7 @@ def load_study(path: Path | None) -> Study:
 
 def _unsaid(study: Study) -> Iterator[str]:
     """What is missing where scenes are driven or let go, and what belongs to the other."""
-    needed, other = ("dt_s", "steps_per_turn") if study.free else ("steps_per_turn", "dt_s")
+    needed, other = study.lists
     if not study.steps:
         yield f"{needed}: missing; add it"
     if getattr(study, other):

@@ -6,16 +6,15 @@ from collections.abc import Collection, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from analytic.free.loosened import loosened
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
 from reports.logs.channel import OwnLog
 from reports.logs.map_file import Map, map_of, read_map
-from reports.plan.free import under_control
 from reports.requests.arguments import kind_of, path_of
 from reports.requests.run import Simulation
 from reports.requests.solution import Solution
+from reports.way.way import way_of
 from sim.engine import Run
 
 if TYPE_CHECKING:
@@ -68,7 +67,7 @@ def refuse_other_scene(scene: Scene, run: Run) -> None:
     if run.scene != scene.name or mechanism not in (None, scene_of_run(scene, run)):
         other = f"another {run.scene}" if run.scene == scene.name else run.scene
         raise CrankcheckError(f"the run is of {other}, not of {scene.name}; give the scene of both")
-    if scene.is_free and run.drive != "free":
+    if run.drive not in way_of(scene).drives:
         raise CrankcheckError(
             f"the run of {run.scene} is of drive {run.drive}, and the scene is let go; run it with "
             "drive free"
@@ -78,7 +77,7 @@ def refuse_other_scene(scene: Scene, run: Run) -> None:
 def scene_of_run(scene: Scene, run: Run) -> Scene:
     """The scene as the run has it: let go where that was, with the torque of its controller if it
     has elastic links and one."""
-    return loosened(under_control(scene)) if run.drive == "free" else scene
+    return way_of(scene, run.drive).released(scene)
 
 
 def _refuse_other(scene: Scene, motion: Motion) -> None:

@@ -12,7 +12,6 @@ from reports.compare.beside import Truth
 from reports.compare.errors import Error, Errors
 from reports.judge.tolerance import check_names
 from reports.plan.elastic import given_of
-from reports.plan.free import refuse_unreleased
 from reports.plan.steps import positive
 from reports.quantities import QUANTITIES
 from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
@@ -136,11 +135,11 @@ def compare(
 
 def _truth_of_run(scene: Scene, run: Run) -> Truth:
     """The truth of a scene as a run has it. Raises CrankcheckError."""
-    scene, free = scene_of_run(scene, run), run.drive == "free"
-    if free and not scene.elastic:
-        refuse_unreleased(scene, run.dt_s * run.steps)
+    scene = scene_of_run(scene, run)
     given = GivenAs(getattr(run, "segments", SEGMENTS), getattr(run, "springs", "plain"))
-    return way_of(scene, run.drive).truth(Planned(scene, run.dt_s, run.steps, given))
+    way, planned = way_of(scene, run.drive), Planned(scene, run.dt_s, run.steps, given)
+    way.refuse_made(planned)
+    return way.truth(planned)
 
 
 def refuse_without_forces(run: Run, *, forces: bool) -> None:

@@ -67,11 +67,12 @@ class ElasticChoice:
                         "give one of them"
                     )
             return Elements(_number(self.elements, "--elements", MOST_ELEMENTS))
+        links = scene.elastic.values()
         for option, value, kind in (
             ("--modes", self.modes, "bends"),
             ("--axial-modes", self.axial_modes, "stretches"),
         ):
-            if value is not None and not any(getattr(x, kind) for x in scene.elastic.values()):
+            if value is not None and not any(getattr(each, kind) for each in links):
                 raise CrankcheckError(
                     f"{option} {value}: no elastic link of {scene.name} {kind}; give one "
                     f"{kind} = true, or leave {option} out"

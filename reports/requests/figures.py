@@ -114,10 +114,9 @@ def _report_on(report: Report, drawing: Drawing, scene: str) -> Report | None:
     driven = report.driven
     if driven is not None and scene in driven.scenes and "driven" in drawing.drives:
         return driven
-    if "elastic" in drawing.drives and any(line.scene == scene for line in report.elastic_lines):
-        return report
-    free = any(line.scene == scene for line in report.free_lines)
-    return report if free and "let go" in drawing.drives else None
+    lines = {"elastic": report.elastic_lines, "let go": report.free_lines}
+    shown = (line for kind in drawing.drives for line in lines.get(kind, ()))
+    return report if any(line.scene == scene for line in shown) else None
 
 
 def _chosen(asked: Sequence[str], names: Iterable[str], option: str, noun: str) -> list[str]:

@@ -14,8 +14,8 @@ from models.files import find_scene, load_scene
 from reports.output.console import put
 from reports.output.write import check_file
 from reports.plan.steps import MOST_STEPS
-from reports.requests.export import opened
 from reports.requests.options import option, output_option
+from reports.way.way import way_of
 from sim.force_recipes import force_recipe
 from sim.registry import engine
 from sim.run import check_steps
@@ -49,7 +49,7 @@ class ForceRecipeRequest:
         settings = resolved(profile_of(engine(self.engine), self.profile), None)
         period = scene.driver.law.period_s
         check_steps(scene, period, period / self.steps_per_turn, 1, 1)
-        scene, start = opened(scene)
+        scene, start = way_of(scene).opened(scene)
         text = force_recipe(self.engine, scene, start, settings, self.steps_per_turn)
         put(console, self.output, text, f"forces of {scene.name} in {self.engine}")
         return 0

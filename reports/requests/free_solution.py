@@ -100,27 +100,27 @@ def _chosen(of: Bodies, wanted: Selection) -> Bodies:
     )
 
 
-def show_free(console: Console, free: FreeMotion, motion: Motion) -> None:
+def show_free(console: Console, whole: FreeMotion, motion: Motion) -> None:
     """Print the mechanism, every sample of its motion, and the notes."""
-    scene = free.scene
-    told = heading(scene, analyse(scene)) if free.by_dyads else _without_dyads(free)
+    scene = whole.scene
+    told = heading(scene, analyse(scene)) if whole.by_dyads else _without_dyads(whole)
     say(console, told)
     shown = cleaned(motion)
     tables = motion_tables(scene, shown, console.width)
     if scene.driver.link in motion.links:
-        tables = [*free_tables(free, shown, console.width), *tables]
+        tables = [*free_tables(whole, shown, console.width), *tables]
     for table in tables:
         console.print(table, "")
-    notes = [*free_notes(free, float(np.max(motion.time_s))), continued_note(scene, motion)]
+    notes = [*free_notes(whole, float(np.max(motion.time_s))), continued_note(scene, motion)]
     for note in filter(None, notes):
         say(console, note, "yellow")
 
 
-def _without_dyads(free: FreeMotion) -> str:
+def _without_dyads(whole: FreeMotion) -> str:
     """What a mechanism of other freedoms than one, or of other groups than dyads, is."""
-    scene = free.scene
+    scene = whole.scene
     return (
-        f"{scene.name}: {scene.source}\nmobility {free.freedoms}; driver {scene.driver.link}, "
+        f"{scene.name}: {scene.source}\nmobility {whole.freedoms}; driver {scene.driver.link}, "
         f"{describe_law(scene)}; by the equations of motion of all bodies\n"
     )
 

@@ -22,7 +22,6 @@ from reports.output.console import say_whole
 from reports.output.provenance import provenance
 from reports.output.write import check_folder, refuse_link, write
 from reports.plan.chosen import left_out_note
-from reports.plan.free import free_names
 from reports.requests.options import Duration, Jobs, StepS, StepsPerTurn, argument, option
 from reports.requests.verify import VerifyRequest, plan
 from reports.requests.verify_files import IN_FOLDER
@@ -65,8 +64,8 @@ class HistoryRequest:
         versions = wanted(self.engine, self.versions)
         if not versions:
             raise CrankcheckError(f"history {self.engine}: name versions, such as 3.6.0 3.7.0")
-        cells = plan(_verification(self))
-        names = free_names(self.scenes) if self.free else self.scenes
+        verification = _verification(self)
+        cells, names = plan(verification), verification.names
         cache = cache_folder(self.cache)
         _check_outputs(self, versions)
         uv = uv_here()

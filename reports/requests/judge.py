@@ -14,7 +14,7 @@ from models.errors import CrankcheckError
 from models.files import find_scene, load_scene
 from models.one_or_more import names_in
 from models.scene import Scene
-from reports.judge.tolerance import DEFAULTS, FREE, check_names, parse, refuse_of_other_motion
+from reports.judge.tolerance import check_names, parse, refuse_of_other_motion
 from reports.logs.map_file import Map, read_map
 from reports.output.console import say_whole
 from reports.output.provenance import provenance
@@ -50,7 +50,7 @@ from reports.requests.options import (
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
 from reports.requests.told import in_python, parts_in_python, told_at_the_call
-from reports.way.length import LEAST_STEPS
+from reports.way.way import way_of
 from sim.engine import Run
 
 if TYPE_CHECKING:
@@ -198,7 +198,7 @@ def judged(
         scene = scene_of_run(scene, log)
         _refuse_other_targets(scene, limits)
         _refuse_few_steps(scene, log)
-        every_name = FREE if scene.is_free else DEFAULTS
+        every_name = way_of(scene).tolerances
         named = limits if every is None else {name: limits.get(name, every) for name in every_name}
         return verdict_of_run(scene, log, named)
     if free:
@@ -227,10 +227,10 @@ def _refuse_other_targets(scene: Scene, target: Mapping[str, float]) -> None:
 
 def _refuse_few_steps(scene: Scene, run: Run) -> None:
     """Refuse a free run that has hardly begun, whose drift and order are those of its start."""
-    if scene.is_free and run.steps < LEAST_STEPS:
+    if run.steps < (least := way_of(scene).least_judged):
         raise CrankcheckError(
             f"{scene.name}: the run has {run.steps} steps; free motion is judged from "
-            f"{LEAST_STEPS} on: take shorter ones, or a longer time"
+            f"{least} on: take shorter ones, or a longer time"
         )
 
 

@@ -10,11 +10,9 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 from rich.console import Console
 
-from analytic.free.loosened import loosened
-from models.errors import CrankcheckError, harmless
+from models.errors import CrankcheckError
 from models.files import find_scene
 from models.scene import Scene
-from reports.compare.beside import Truth
 from reports.compare.free.kept_motion import released_state
 from reports.output.console import say, say_whole
 from reports.output.frame_file import ENDINGS, write_frame
@@ -105,11 +103,7 @@ class Simulation(Shown, Run):
 
     def _length(self) -> str:
         """How long it is: in turns of what drives it, or in time."""
-        if self.mechanism.is_free:
-            return f"{self.steps} steps, {self.steps * self.dt_s:.6g} s"
-        per_turn = self.mechanism.driver.law.period_s / self.dt_s
-        turns = self.steps / per_turn
-        return f"{per_turn:.6g} steps a turn, {turns:.6g} turn{'s' * (turns != 1.0)}"
+        return way_of(self.mechanism).long(self.mechanism, self.dt_s, self.steps)
 
     def ending(self) -> str:
         """What came of it, in a line."""
@@ -156,13 +150,13 @@ class RunRequest:
         _refuse_other_length(scene, drive, self)
         bent = given_of([scene], self.segments, self.springs)
         length = Length(self.dt_s, self.steps_per_turn, self.turns, self.duration_s, every, 1)
-        if drive == "free":
-            driven, scene = scene, loosened(scene)
-        if drive == "free" and (self.turns, self.steps_per_turn) != (None, None):
+        chosen, driven = way_of(scene, drive), scene
+        scene = chosen.released(scene)
+        if scene is not driven and [*given(self, "turns", "steps_per_turn")]:
             dt_s, steps = way("driven").counted(driven, length, bent)  # by the law that drove it
         else:
-            dt_s, steps = way_of(scene, drive).counted(scene, length, bent)
-        truth = _truth(scene, bent, dt_s, steps)
+            dt_s, steps = chosen.counted(scene, length, bent)
+        truth = chosen.launch(Planned(scene, dt_s, steps, bent))
         done = stepping.run(
             scene if truth is None else truth.given,
             released_state(scene) if truth is None else truth.start,
@@ -217,14 +211,13 @@ def _written(request: RunRequest, done: Simulation) -> str:
         f"{request.output}: {done.motion.time_s.size} samples of {done.scene} in {done.engine} "
         f"{done.version}, profile {done.profile}; {done.ending()}"
     )
-    if done.mechanism.elastic and done.drive == "free":
-        return harmless(told)
+    bent = GivenAs(done.segments, done.springs)
+    options = way_of(done.mechanism).judged_by(bent)
+    if options is None:
+        return told
     judge = ["crankcheck", "judge", request.scene, str(request.output), "--step", repr(done.dt_s)]
     judge += ["--forces"] * request.forces + ["--free"] * (request.drive == "free")
-    if done.mechanism.elastic:
-        judge += ["--segments", str(done.segments)]
-        judge += ["--springs", done.springs] * (done.springs != "plain")
-    return harmless(f"{told}\nnext: {shlex.join(judge)}")
+    return f"{told}\nnext: {shlex.join([*judge, *options])}"
 
 
 @told_at_the_call
@@ -290,19 +283,11 @@ def run(
     return RunRequest(**locals()).answer()
 
 
-def _truth(scene: Scene, bent: GivenAs, dt_s: float, steps: int) -> Truth | None:
-    """What a run of so many steps starts from, None of one with rigid links that is let go. Raises
-    CrankcheckError."""
-    if scene.is_free and not scene.elastic:
-        return None
-    return way_of(scene).truth(Planned(scene, dt_s, steps, bent))
-
-
 def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> None:
     """Refuse a length that the run has no use for: turns of a scene that has no law, a duration of
     what is driven, or both. Raises CrankcheckError."""
     for name in given(request, "turns", "steps_per_turn"):
-        if scene.is_free:
+        if name not in way_of(scene).lengths_by:
             raise CrankcheckError(
                 f"{name}: {scene.name} is let go, and has no turns; give --dt and --duration, in "
                 "seconds"
@@ -312,7 +297,7 @@ def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> Non
                 f"--duration and {name}: a run that is let go has its length in seconds, or that "
                 "of turns of the law that drove it; give one of them"
             )
-    if request.duration_s is not None and drive != "free":
+    if request.duration_s is not None and "--duration" not in way_of(scene, drive).lengths_by:
         raise CrankcheckError(
             f"--duration: it is of runs that are let go, and {scene.name} is driven; give --turns, "
             "or let it go with --drive free"
@@ -321,10 +306,11 @@ def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> Non
 
 def _drive(scene: Scene, drive: str | None) -> Drive:
     """What drives a scene. Raises CrankcheckError for a drive of what is let go: it has no law."""
+    chosen = way_of(scene)
     if drive is None:
-        return "free" if scene.is_free else "prescribed"
+        return chosen.drive
     driven = cast(Drive, one_of(drive, "--drive", DRIVES))
-    if scene.is_free and driven != "free":
+    if driven not in chosen.drives:
         raise CrankcheckError(
             f"--drive {driven}: {scene.name} is let go, and nothing drives it; leave --drive out"
         )

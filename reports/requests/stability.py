@@ -31,6 +31,9 @@ from reports.workers.isolated import Limits, checked_limits
 from reports.workers.progress import progress_bar
 from sim.registry import engine
 
+KINDS = {"free": "case of free motion", "elastic": "elastic link in it"}
+"""Of hard cases, that are run where they are asked for; and what others have not."""
+
 
 @dataclass(frozen=True)
 class StabilityRequest:
@@ -92,21 +95,22 @@ class StabilityRequest:
 def _cases(names: Sequence[str], *, free: bool, elastic: bool) -> list[Case]:
     """The named cases, or all: those that are let go with ``free``, those of ``elastic`` links, or
     those that are driven and rigid."""
-    if free and elastic:
+    asked = [kind for kind, wanted in zip(KINDS, (free, elastic), strict=True) if wanted]
+    if len(asked) > 1:
         raise CrankcheckError("--free with --elastic: no case is of both; ask for one of them")
     for name in names:
         if name not in CATALOGUE:
             raise CrankcheckError(f"case {name!r}: unknown; {suggestion(name, CATALOGUE, 'use')}")
-    driven = [name for name in names if free and not CATALOGUE[name].free]
-    if driven:
-        known = ", ".join(name for name, case in CATALOGUE.items() if case.free)
-        raise CrankcheckError(f"--free and {driven[0]}: no case of free motion; those are {known}")
-    rigid = [name for name in names if elastic and not CATALOGUE[name].elastic]
-    if rigid:
-        known = ", ".join(name for name, case in CATALOGUE.items() if case.elastic)
-        raise CrankcheckError(f"--elastic and {rigid[0]}: no elastic link in it; those are {known}")
-    kind = free, elastic
-    every = (name for name, case in CATALOGUE.items() if (case.free, case.elastic) == kind)
+    for kind in asked:
+        those = [name for name, case in CATALOGUE.items() if getattr(case, kind)]
+        for name in (each for each in names if each not in those):
+            raise CrankcheckError(
+                f"--{kind} and {name}: no {KINDS[kind]}; those are {', '.join(those)}"
+            )
+    own = {kind: kind in asked for kind in KINDS}
+    every = (
+        name for name, case in CATALOGUE.items() if {k: getattr(case, k) for k in KINDS} == own
+    )
     return [CATALOGUE[name] for name in dict.fromkeys(names or every)]
 
 

@@ -22,7 +22,7 @@ from reports.plan.chosen_study import (
     refuse_other_engine,
     study_engines,
 )
-from reports.plan.elastic import chosen_segments, chosen_springs, shortened_note
+from reports.plan.elastic import chosen_segments, chosen_springs
 from reports.plan.singular import silent_note
 from reports.plan.steps import positive
 from reports.plan.study import Study, StudyValue, load_study
@@ -52,6 +52,7 @@ from reports.requests.sweep_arguments import (
     scene_names,
 )
 from reports.requests.told import told_at_the_call
+from reports.way.way import way_of
 from reports.workers.isolated import checked_limits
 
 if TYPE_CHECKING:
@@ -258,7 +259,7 @@ class SweepRequest:
         lengths = {
             (t.cell.scene.name, t.cell.dt_s * t.cell.steps): t.cell.scene for t in laid.tasks
         }
-        notes = (shortened_note(scene, lasts_s) for (_, lasts_s), scene in lengths.items())
+        notes = (way_of(scene).shortened(scene, lasts_s) for (_, lasts_s), scene in lengths.items())
         for note in filter(None, dict.fromkeys(notes)):
             say_whole(progress, note)
         show_sweep(console, self.folder, len(laid.tasks), done)

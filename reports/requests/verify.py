@@ -43,7 +43,7 @@ from reports.requests.verify_options import PRESCRIBED, VerifyOptions, refuse_of
 from reports.verify.all_cells import check_all
 from reports.verify.table import show
 from reports.way.length import Length
-from reports.way.way import laid_out
+from reports.way.way import driven_by, laid_out, way_of
 from sim.engine import Drive
 from sim.registry import engine
 
@@ -58,6 +58,11 @@ if (
 class VerifyRequest(VerifyOptions):
     """What `verify` was asked for, as given."""
 
+    @property
+    def names(self) -> Sequence[str]:
+        """The scenes by name, also where free ones are meant and none is named."""
+        return free_names(self.scenes) if self.free else self.scenes
+
     def run(self, console: Console, progress: Console) -> int:
         """Do it; returns the exit code: 0 within, 1 out of tolerance or worse than the baseline, 2
         not to be run. Raises CrankcheckError for what can be told of the request before running."""
@@ -69,13 +74,12 @@ class VerifyRequest(VerifyOptions):
         cells = plan(self)
         files = {"--junit": self.junit, "--csv": self.csv, "--json": self.json}
         outputs = Outputs(files, self.folder, IN_FOLDER)
-        names = free_names(self.scenes) if self.free else self.scenes
-        outputs.check(find_scenes(names))
+        outputs.check(find_scenes(self.names))
         if self.baseline is not None:
             _spare_baseline(files, self.baseline)
         digests = _digests(self)
         silent = silent_note(chosen_engines(())) if self.forces and not self.engines else ""
-        for note in filter(None, (*passages(cells), silent, left_out_note(names))):
+        for note in filter(None, (*passages(cells), silent, left_out_note(self.names))):
             say_whole(progress, note)
         base = _baseline(self, cells, digests)
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
@@ -132,7 +136,7 @@ def plan(request: VerifyOptions) -> list[Cell]:
             dt_s=dt_s,
             steps=count,
             gated=gated,
-            drive="free" if scene.is_free else cast(Drive, request.drive),
+            drive=driven_by(scene, cast(Drive, request.drive)),
             tolerance=tolerance,
             converge=request.converge,
             with_forces=request.forces and (bool(request.engines) or gives_forces(name)),
@@ -167,14 +171,14 @@ def _refuse_options(request: VerifyOptions, scenes: Sequence[Scene]) -> None:
             f"--drive {request.drive!r}: unknown; use prescribed or servo, let scenes go with "
             "--free, or name the model whose joint that is with --mjcf FILE"
         )
-    free = [scene.name for scene in scenes if scene.is_free]
-    if free and request.drive != PRESCRIBED:
+    other = [scene.name for scene in scenes if request.drive not in way_of(scene).drives]
+    if other and request.drive != PRESCRIBED:
         raise CrankcheckError(
-            f"--drive {request.drive}: {free[0]} is let go, and nothing drives it; leave --drive "
+            f"--drive {request.drive}: {other[0]} is let go, and nothing drives it; leave --drive "
             "out, or the scene"
         )
-    driven = {"--turns": request.turns, "--steps-per-turn": request.steps_per_turn}
-    refuse_other_options(scenes, {"--duration": request.duration_s}, driven)
+    lengths = {"--duration": request.duration_s, "--turns": request.turns}
+    refuse_other_options(scenes, lengths | {"--steps-per-turn": request.steps_per_turn})
 
 
 def passages(cells: Sequence[Cell]) -> list[str]:
@@ -211,13 +215,13 @@ def _spare_baseline(files: Mapping[str, Path | None], baseline: Path) -> None:
     check_outputs(files, inputs=stored_files(baseline))
 
 
-def _digests(request: VerifyOptions) -> dict[str, str]:
+def _digests(request: VerifyRequest) -> dict[str, str]:
     """The digests of the texts of the scenes, where they are kept or compared."""
     if not (request.baseline or request.folder or request.json):
         return {}
     from reports.results.changes.reading import scene_digests
 
-    return scene_digests(free_names(request.scenes) if request.free else request.scenes)
+    return scene_digests(request.names)
 
 
 def _changes(

@@ -14,8 +14,8 @@ from models.errors import harmless
 from models.files import find_scene, load_scene
 from reports.output.console import say
 from reports.output.write import check_file, write
-from reports.requests.export import opened
 from reports.requests.options import SceneName, output_option
+from reports.way.way import way_of
 from sim.viewing import viewer
 
 ENDINGS = (".gif", ".png")
@@ -43,7 +43,7 @@ class ViewRequest:
             check_file(output, "-o", ENDINGS, inputs=read)
         scene = load_scene(self.scene)
         if output is None and has_screen() and not self.forces:
-            viewer()(*opened(scene))
+            viewer()(*way_of(scene).opened(scene))
             return 0
         if output is None:
             output = Path(f"{scene.name}.gif")
@@ -55,8 +55,7 @@ class ViewRequest:
         draw = picture.strip if output.suffix.lower() == ".png" else picture.animation
         content = draw(scene, with_forces=self.forces)
         write(output, content)
-        what = "in free motion" if scene.is_free else "over one turn"
-        say(console, harmless(f"{output}: {scene.name} {what}"))
+        say(console, harmless(f"{output}: {scene.name} {way_of(scene).over}"))
         return 0
 
 

@@ -6,13 +6,17 @@ add the folder and its name in `WAYS`.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import cache
 from importlib import import_module
-from typing import Protocol, cast
+from typing import NoReturn, Protocol, cast
 
+from models.array import Array
+from models.forces import Forces
+from models.motion import Motion, State
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.way.length import GivenAs, Length, Planned
+from reports.way.length import GivenAs, Length, Planned, Springs
 from sim.engine import Drive
 
 WAYS = ("free_elastic", "elastic", "free", "driven")
@@ -27,6 +31,13 @@ class StudyLengths(Protocol):
     dt_s: list[float]
     duration_s: float | None
     times_held: list[float]
+
+
+class StudyLinks(Protocol):
+    """What a study says of elastic links."""
+
+    segments: list[int]
+    springs: list[Springs]
 
 
 class Way(Protocol):
@@ -76,11 +87,11 @@ class Way(Protocol):
 
     def every(self, steps: int, steps_per_turn: float) -> int:
         """How many steps are taken from sample to sample of the log."""
-        ...
+        return 1
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
         """The scene that an engine is given: of elastic links, the segments."""
-        ...
+        return scene
 
     def note(self, scene: Scene, duration_s: float) -> str:
         """What is said of a run of that duration [s] beside its numbers; "" for nothing."""
@@ -88,6 +99,83 @@ class Way(Protocol):
 
     def truth(self, run: Planned) -> Truth:
         """The reference of a run. Raises CrankcheckError for a scene that has none."""
+        ...
+
+    drives: tuple[Drive, ...]
+    """By which it may be run."""
+    lengths_by: tuple[str, ...]
+    """Options of a length that say something of it."""
+    over: str
+    """What is drawn of it, in words."""
+    tolerances: Collection[str]
+    """The quantities that one target stands for."""
+    least_judged: int
+    """Steps of a run that was made before, and can be judged."""
+
+    def refuse_length(self, option: str) -> NoReturn:
+        """Refuse an option of a length that says nothing of it. Raises CrankcheckError."""
+        ...
+
+    def step(self, scene: Scene, dt_s: float) -> str:
+        """A step, in words."""
+        ...
+
+    def long(self, scene: Scene, dt_s: float, steps: int) -> str:
+        """How long a run of so many steps is, in words."""
+        ...
+
+    def released(self, scene: Scene) -> Scene:
+        """The scene that a run of it is of: let go, where the drive is free."""
+        ...
+
+    def opened(self, scene: Scene) -> tuple[Scene, State]:
+        """The scene that an engine is given, and where it begins. Raises CrankcheckError where it
+        can not."""
+        ...
+
+    def held_steps(self, scene: Scene) -> tuple[float, ...]:
+        """Steps in a turn that the scene of an engine is exact for; empty for any."""
+        return ()
+
+    def launch(self, run: Planned) -> Truth | None:
+        """What a run starts from, None where it starts as the scene is let go. Raises
+        CrankcheckError."""
+        ...
+
+    def refuse_made(self, run: Planned) -> None:
+        """Refuse a run that was made before and has no reference. Raises CrankcheckError."""
+        ...
+
+    def judged_by(self, given: GivenAs) -> list[str] | None:
+        """The options of `judge` for a log of it; None where no log of it is judged."""
+        return []
+
+    def given_by(self, study: StudyLinks) -> list[GivenAs]:
+        """All that a study gives elastic links as. Raises CrankcheckError."""
+        return [GivenAs()]
+
+    def key(self, given: GivenAs) -> list[object]:
+        """What names a stored result beside what all have."""
+        return []
+
+    def shortened(self, scene: Scene, lasts_s: float) -> str:
+        """What is said of a run that ends before the scene does; "" for nothing."""
+        return ""
+
+    def motion(self, scene: Scene, time_s: Array) -> Motion:
+        """How it moves in truth, to be drawn, with rigid links. Raises CrankcheckError."""
+        ...
+
+    def drawn_forces(self, scene: Scene, time_s: Array) -> Forces:
+        """The forces that it is drawn with. Raises CrankcheckError where there are none."""
+        ...
+
+    def drawn_s(self, most_s: float) -> float:
+        """How long of it is drawn at most, where it does not come back [s]."""
+        ...
+
+    def latest_s(self, scene: Scene) -> float:
+        """Until when it can be looked at [s]."""
         ...
 
 
@@ -101,6 +189,12 @@ def way_of(scene: Scene, drive: Drive | None = None) -> Way:
     """The way of a run of the scene with a drive; of None with its own."""
     chosen = drive or ("free" if scene.is_free else "prescribed")
     return next(each for each in map(way, WAYS) if each.takes(scene, chosen))
+
+
+def driven_by(scene: Scene, drive: Drive) -> Drive:
+    """The drive of a run of the scene: that which is asked for, if it takes that, or its own."""
+    chosen = way_of(scene)
+    return drive if drive in chosen.drives else chosen.drive
 
 
 def laid_out(

@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Collection
+from typing import TYPE_CHECKING, NoReturn
 
+import numpy as np
+
+from analytic.forces.kinetostatics import forces
+from analytic.kinematics import solve
+from models.array import Array
+from models.errors import CrankcheckError
+from models.forces import Forces
+from models.laws import MOST_TURNS
+from models.motion import Motion, State
 from models.scene import Same, Scene
 from reports.compare.beside import Truth, truth_of
+from reports.judge.tolerance import DEFAULTS
 from reports.plan.singular import (
     passage_note,
     refuse_forceless,
@@ -14,7 +26,7 @@ from reports.plan.singular import (
 )
 from reports.plan.steps import TURNS, counted
 from reports.way.length import GivenAs, Length, Planned
-from reports.way.way import StudyLengths
+from reports.way.way import StudyLengths, Way
 from sim.engine import Drive
 
 if TYPE_CHECKING:
@@ -23,7 +35,7 @@ if TYPE_CHECKING:
     from reports.verify.cell_table import CellTable
 
 
-class DrivenWay:
+class DrivenWay(Way):
     """As of `Way`."""
 
     name = "driven"
@@ -68,17 +80,56 @@ class DrivenWay:
     def turn_s(self, scene: Scene) -> float:
         return scene.driver.law.period_s
 
-    def every(self, steps: int, steps_per_turn: float) -> int:
-        return 1
-
-    def given(self, scene: Scene, given: GivenAs) -> Scene:
-        return scene
-
     def note(self, scene: Scene, duration_s: float) -> str:
         return passage_note(scene, duration_s)
 
     def truth(self, run: Planned) -> Truth:
         return truth_of(Same(run.scene))
+
+    drives: tuple[Drive, ...] = ("prescribed", "servo", "free")
+    lengths_by: tuple[str, ...] = ("--turns", "--steps-per-turn")
+    over = "over one turn"
+    tolerances: Collection[str] = DEFAULTS
+    least_judged = 0
+
+    def refuse_length(self, option: str) -> NoReturn:
+        raise CrankcheckError(
+            f"{option}: it is of scenes that are let go; add --free, or leave {option} out"
+        )
+
+    def step(self, scene: Scene, dt_s: float) -> str:
+        return f"{self.turn_s(scene) / dt_s:g} a turn"
+
+    def long(self, scene: Scene, dt_s: float, steps: int) -> str:
+        per_turn = self.turn_s(scene) / dt_s
+        turns = steps / per_turn
+        return f"{per_turn:.6g} steps a turn, {turns:.6g} turn{'s' * (turns != 1.0)}"
+
+    def released(self, scene: Scene) -> Scene:
+        return scene
+
+    def opened(self, scene: Scene) -> tuple[Scene, State]:
+        return scene, solve(scene, np.zeros(1)).state()
+
+    def launch(self, run: Planned) -> Truth | None:
+        return self.truth(run)
+
+    def refuse_made(self, run: Planned) -> None:
+        """Nothing: it was refused before it was run."""
+
+    def motion(self, scene: Scene, time_s: Array) -> Motion:
+        return solve(scene, time_s, bound=False)
+
+    def drawn_forces(self, scene: Scene, time_s: Array) -> Forces:
+        from reports.drawing.shape import clear_of_locking  # for drawings alone
+
+        return clear_of_locking(forces(scene, time_s, bound=False, skip_dead_points=True))
+
+    def drawn_s(self, most_s: float) -> float:
+        return math.inf
+
+    def latest_s(self, scene: Scene) -> float:
+        return MOST_TURNS * self.turn_s(scene)
 
 
 WAY = DrivenWay()
