@@ -14,8 +14,7 @@ from models.files import parse_scene
 from models.friction import ConstantFriction
 from models.laws import ConstantSpeed
 from models.scene import Scene
-from reports.advise.choices import Choice, key_of
-from reports.advise.demand import Demand
+from reports.advise.demand import Choice, Demand, key_of
 from reports.plan.grid import shape_digest
 from reports.results.fits.reach import interpolate
 from reports.results.lines import Line

@@ -10,8 +10,7 @@ from functools import partial
 
 from models.errors import CrankcheckError, EngineError
 from models.scene import Scene
-from reports.advise.choices import Choice
-from reports.advise.demand import Demand
+from reports.advise.demand import Choice, Demand
 from reports.advise.evidence import MeasuredStudy
 from reports.compare.beside import Truth
 from reports.judge.cell import Cell

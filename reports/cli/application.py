@@ -28,8 +28,7 @@ from reports.output.console import (
     readable_everywhere,
     terminal,
 )
-from reports.requests.named import named
-from reports.requests.options import note_of
+from reports.requests.options import named, note_of
 from reports.workers.signals import Stopped, broken_pipe_ends, finish, install, seen
 
 BAD_INPUT, INTERNAL, INTERRUPTED, BROKEN_PIPE = 2, 70, 130, 141

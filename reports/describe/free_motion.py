@@ -76,3 +76,14 @@ def free_notes(motion: FreeMotion, until_s: float) -> list[str]:
 def _few(words: list[str]) -> str:
     left = len(words) - NAMED
     return ", ".join(words[:NAMED]) + (f", and {left} more" if left > 0 else "")
+
+
+LEAST, MOST, IN_A_TURN, IN_A_SECOND = 121, 1201, 45, 60
+"""Instants of the drawing: at least and at most, in a turn, and in a second."""
+
+
+def instants(free: FreeMotion) -> int:
+    """How many a free motion is drawn at."""
+    turns = free.peak_speed_rad_s * free.until_s / math.tau
+    wanted = max(IN_A_TURN * turns, IN_A_SECOND * free.until_s)
+    return int(np.clip(wanted, LEAST, MOST))

@@ -16,7 +16,7 @@ from matplotlib.ticker import MaxNLocator
 from models.array import Array
 from models.driver_shown import driver_stands
 from models.scene import Scene
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law
 from reports.drawing.gif import draw_bodies
 from reports.drawing.names import Name, Sheet, names
 from reports.drawing.shape import PATH_SAMPLES, box_of, clearest, turn_of

@@ -12,21 +12,18 @@ from rich.console import Console
 from models.errors import CrankcheckError, listed
 from models.files import find_scenes, parse_scene, scene_texts
 from models.scene import Scene
-from reports.advise.advice import Advice, offers
-from reports.advise.choices import choices
-from reports.advise.demand import demanded
-from reports.advise.document import document
+from reports.advise.advice import Advice, offers, prices, timings
+from reports.advise.demand import choices, demanded
 from reports.advise.evidence import MeasuredStudy, evidence, stored_choices, stored_scenes
-from reports.advise.prices import prices, timings
 from reports.advise.search import SearchResult, search_all
-from reports.advise.table import show
+from reports.advise.table import document, show
 from reports.output.console import say_whole, tell
 from reports.output.provenance import provenance
 from reports.output.write import Outputs
 from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
 from reports.plan.elastic import rigid_alone
+from reports.requests.diff import stored_files
 from reports.requests.options import Engines, Jobs, argument, option, seconds
-from reports.requests.stored_files import stored_files
 from reports.results.lines import lines
 from reports.store.reader import Stored, read_store
 from reports.workers.progress import progress_bar

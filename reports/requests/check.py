@@ -18,13 +18,14 @@ from reports.requests.arguments import (
     engine_of,
     is_true,
     one_of,
+    parts_in_python,
     scene_of,
     settings_of,
+    told_at_the_call,
     tolerances_of,
 )
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
-from reports.requests.told import parts_in_python, told_at_the_call
 from reports.verify.advised import advised
 from reports.way.length import SEGMENTS, Length, Planned
 from reports.way.way import laid_out, way_of

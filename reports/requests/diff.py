@@ -10,15 +10,29 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from reports.diff.junit import suite
-from reports.diff.markdown import markdown
-from reports.diff.terminal import show
+from reports.diff.terminal import markdown, show
 from reports.output.console import tell
 from reports.output.junit import junit
 from reports.output.write import Outputs
 from reports.requests.options import argument, option, output_option
-from reports.requests.stored_files import stored_files
 from reports.results.changes.changes import compare
-from reports.results.changes.reading import read_run
+from reports.results.changes.reading import CELLS, FACTS, read_run
+from reports.store.folder import paths_of
+from reports.store.manifest import MANIFEST
+from reports.store.schema import TABLES
+
+
+def stored_files(*folders: Path | None) -> list[Path]:
+    """What is read of the folders of sweeps and verifications; some of it may not be there."""
+    return [
+        path
+        for folder in filter(None, folders)
+        for path in (
+            *(folder / name for name in (MANIFEST, CELLS, FACTS)),
+            *(part for table in TABLES for part in paths_of(folder, table)),
+        )
+    ]
+
 
 FORMATS = ("text", "md")
 

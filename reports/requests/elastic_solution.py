@@ -34,17 +34,16 @@ from reports.describe.elastic_course import (
     start_of,
 )
 from reports.describe.elastic_words import certainty, elastic_facts, elastic_warnings, start_words
+from reports.describe.facts import describe_law
 from reports.describe.force_tables import motion_force_tables
 from reports.describe.frame import cleaned
-from reports.describe.law import describe_law
 from reports.output.console import say
 from reports.requests.arguments import is_true
-from reports.requests.elastic_choice import ElasticChoice
 from reports.requests.free_solution import LetGo
 from reports.requests.options import given
 from reports.requests.solution import ROWS, Solution, drawn, heading, thinned
 from reports.requests.solve_options import SolveOptions
-from reports.requests.solving import Asked, Solving, refuse_samples, refuse_times
+from reports.requests.solving import Asked, ElasticChoice, Solving, refuse_samples, refuse_times
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,7 +1,10 @@
-"""`crankcheck export`: a scene as MJCF."""
+"""Commands that show a scene as an engine has it: `export`, `recipe forces`, `view`."""
 
 from __future__ import annotations
 
+import math
+import os
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,14 +12,21 @@ from typing import Annotated
 
 from rich.console import Console
 
+from models.errors import CrankcheckError, harmless
 from models.files import find_scene, load_scene
 from models.mjcf import build
 from models.mjcf_options import exact
-from reports.output.console import put
-from reports.output.write import check_file
+from reports.output.console import put, say
+from reports.output.write import check_file, write
 from reports.plan.free import under_control
+from reports.plan.steps import MOST_STEPS
 from reports.requests.options import SceneName, option, output_option
 from reports.way.way import way_of
+from sim.force_recipes import force_recipe
+from sim.registry import engine
+from sim.run import check_steps
+from sim.settings import profile_of, resolved
+from sim.viewing import viewer
 
 
 @dataclass(frozen=True)
@@ -45,3 +55,84 @@ class ExportRequest:
         text = build(scene, start, replace(exact(scene, *steps), close=tuple(self.close)))
         put(console, self.output, text, f"MJCF of {scene.name}")
         return 0
+
+
+@dataclass(frozen=True)
+class ForceRecipeRequest:
+    """What `recipe forces` was asked for, as given."""
+
+    engine: Annotated[str, "Engine."]
+    scene: Annotated[str, option("A shipped name, or a scene file.", "SCENE")] = "fourbar-lecture-1"
+    profile: Annotated[str, "Profile of the engine."] = "tuned"
+    steps_per_turn: Annotated[float, "Steps in a turn."] = 720.0
+    output: Annotated[Path | None, output_option("Write a .py file.")] = None
+
+    def run(self, console: Console, progress: Console) -> int:
+        """The program, into a file or to the terminal."""
+        if self.output is not None:
+            check_file(self.output, "-o", (".py",), inputs=[find_scene(self.scene)])
+        if not (math.isfinite(self.steps_per_turn) and self.steps_per_turn > 0.0):
+            raise CrankcheckError(
+                f"--steps-per-turn: found {self.steps_per_turn:g}; give a number above 0"
+            )
+        if self.steps_per_turn > MOST_STEPS:
+            raise CrankcheckError(
+                f"--steps-per-turn: found {self.steps_per_turn:g}; the program keeps a line for "
+                f"each step, so give {MOST_STEPS} at most"
+            )
+        scene = load_scene(self.scene)
+        settings = resolved(profile_of(engine(self.engine), self.profile), None)
+        period = scene.driver.law.period_s
+        check_steps(scene, period, period / self.steps_per_turn, 1, 1)
+        scene, start = way_of(scene).opened(scene)
+        text = force_recipe(self.engine, scene, start, settings, self.steps_per_turn)
+        put(console, self.output, text, f"forces of {scene.name} in {self.engine}")
+        return 0
+
+
+PICTURES = (".gif", ".png")
+
+
+@dataclass(frozen=True)
+class ViewRequest:
+    """What `view` was asked for, as given."""
+
+    scene: SceneName
+    output: Annotated[
+        Path | None, output_option("Draw into a .gif or .png in place of the viewer.")
+    ] = None
+    forces: Annotated[bool, "Draw the forces as arrows, into a file."] = False
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Show a scene; the viewer draws no forces of ours, so that these go into a file.
+
+        Raises CrankcheckError for a scene or a file that can not be used, or forces that there are
+        none of.
+        """
+        output = self.output
+        read = [find_scene(self.scene)]
+        if output is not None:
+            check_file(output, "-o", PICTURES, inputs=read)
+        scene = load_scene(self.scene)
+        if output is None and has_screen() and not self.forces:
+            viewer()(*way_of(scene).opened(scene))
+            return 0
+        if output is None:
+            output = Path(f"{scene.name}.gif")
+            check_file(output, "view", PICTURES, inputs=read)
+            why = "forces are drawn" if self.forces else "no screen here, so"
+            console.print(f"{why} into a file:", style="dim")
+        from reports.drawing import gif as picture
+
+        draw = picture.strip if output.suffix.lower() == ".png" else picture.animation
+        content = draw(scene, with_forces=self.forces)
+        write(output, content)
+        say(console, harmless(f"{output}: {scene.name} {way_of(scene).over}"))
+        return 0
+
+
+def has_screen() -> bool:
+    """Whether a window can be opened here."""
+    if sys.platform in ("darwin", "win32"):
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

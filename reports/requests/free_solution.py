@@ -20,9 +20,9 @@ from models.errors import CrankcheckError
 from models.motion import Bound, Motion
 from models.samples import samples
 from models.scene import Scene
+from reports.describe.facts import describe_law
 from reports.describe.frame import cleaned
 from reports.describe.free_motion import free_columns, free_notes, free_tables
-from reports.describe.law import describe_law
 from reports.describe.tables import motion_tables
 from reports.output.console import say
 from reports.plan.singular import continued_note

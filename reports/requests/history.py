@@ -12,9 +12,8 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from models.files import find_scenes
-from reports.history.document import page, table_text
 from reports.history.environments import EngineVersion, NotMeasuredError, ready, uv_here, wanted
-from reports.history.table import show
+from reports.history.table import page, show, table_text
 from reports.history.verification import alone, cache_folder, kept, key_of, measure, place
 from reports.history.version_result import VersionResult, read_version
 from reports.judge.cell import Cell
@@ -23,8 +22,7 @@ from reports.output.provenance import provenance
 from reports.output.write import check_folder, refuse_link, write
 from reports.plan.chosen import left_out_note
 from reports.requests.options import Duration, Jobs, StepS, StepsPerTurn, argument, option
-from reports.requests.verify import VerifyRequest, plan
-from reports.requests.verify_files import IN_FOLDER
+from reports.requests.verify import IN_FOLDER, VerifyRequest, plan
 from reports.results.changes.reading import scene_digests
 from reports.verify.footer import DRIVEN, FREE
 from reports.workers.programs import run_child

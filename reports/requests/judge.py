@@ -29,7 +29,16 @@ from reports.own_log.table import show
 from reports.plan.elastic import given_of
 from reports.plan.steps import positive
 from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
-from reports.requests.arguments import SceneLike, is_true, one_of, scene_of, tolerances_of
+from reports.requests.arguments import (
+    SceneLike,
+    in_python,
+    is_true,
+    one_of,
+    parts_in_python,
+    scene_of,
+    told_at_the_call,
+    tolerances_of,
+)
 from reports.requests.check import CellVerdict, verdict_of_run
 from reports.requests.compare import (
     LOG_DRIVES,
@@ -49,7 +58,6 @@ from reports.requests.options import (
 )
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
-from reports.requests.told import in_python, parts_in_python, told_at_the_call
 from reports.way.way import way_of
 from sim.engine import Run
 

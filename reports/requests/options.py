@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator, Sequence
+from importlib import import_module
 from typing import Annotated, Any, get_type_hints
 
 import typer
@@ -92,3 +93,15 @@ def given(request: Any, *fields: str) -> Iterator[str]:
         value, default = getattr(request, field), defaults[field]
         if not isinstance(value, type(default)) or value != default:
             yield option_of(type(request), field)
+
+
+FAMILY = "lectures.drawing.workbook.solve_family:run_family"
+"""`solve --family`."""
+LIVE_SHEET = "lectures.drawing.workbook.beside_values:live_sheet"
+"""Formulas and charts beside the values of `solve -o FILE.xlsx`."""
+
+
+def named(place: str) -> Any:
+    """What has that place, ``room.module:name``, in a room beside this one; loaded now."""
+    module, _, name = place.partition(":")
+    return getattr(import_module(f"..{module}", __package__), name)

@@ -13,10 +13,9 @@ from rich.console import Console
 from models.errors import CrankcheckError
 from reports.output.console import say, tell
 from reports.output.write import check_file, write
-from reports.requests.arguments import path_of
+from reports.requests.arguments import path_of, told_at_the_call
 from reports.requests.options import argument, option, output_option
 from reports.requests.sweep import Sweep
-from reports.requests.told import told_at_the_call
 from reports.stability.matrix import FILE as MATRIX
 from reports.stability.matrix import Matrix, read_matrix
 from reports.store.schema import TABLES

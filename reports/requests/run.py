@@ -26,6 +26,7 @@ from reports.requests.arguments import (
     one_of,
     scene_of,
     settings_of,
+    told_at_the_call,
     whole_of,
 )
 from reports.requests.options import (
@@ -42,7 +43,6 @@ from reports.requests.options import (
 )
 from reports.requests.shown import Shown
 from reports.requests.solution import ROWS, drawn, thinned
-from reports.requests.told import told_at_the_call
 from reports.way.length import SEGMENTS, GivenAs, Length, Planned, Springs
 from reports.way.way import way, way_of
 from sim import run as stepping

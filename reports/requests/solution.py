@@ -18,11 +18,14 @@ from models.driver_course import driver_place
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
-from reports.describe.facts import facts, speed_facts
-from reports.describe.force_tables import largest_table, motion_force_tables, position_force_tables
+from reports.describe.facts import describe_law, facts, speed_facts
+from reports.describe.force_tables import (
+    friction_words,
+    largest_table,
+    motion_force_tables,
+    position_force_tables,
+)
 from reports.describe.frame import cleaned
-from reports.describe.friction import friction_words
-from reports.describe.law import describe_law
 from reports.describe.tables import certainty, motion_tables, position_tables, speed_table
 from reports.describe.with_forces import (
     cleaned_forces,

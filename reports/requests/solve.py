@@ -21,20 +21,19 @@ from models.files import find_scene, load_scene
 from models.laws import MOST_TURNS
 from models.motion import Motion
 from models.scene import Scene
-from reports.describe.law import MOST_DEG, driver_at
+from reports.describe.facts import MOST_DEG, driver_at
 from reports.describe.with_forces import with_forces
 from reports.output.frame_file import ENDINGS
 from reports.output.write import check_file
-from reports.requests.arguments import SceneLike, is_true, scene_of
-from reports.requests.elastic_choice import ElasticChoice
-from reports.requests.named import FAMILY, LIVE_SHEET, named
-from reports.requests.options import given
+from reports.requests.arguments import SceneLike, is_true, scene_of, told_at_the_call
+from reports.requests.options import FAMILY, LIVE_SHEET, given, named
 from reports.requests.solution import Solution, show_solution
 from reports.requests.solve_options import SolveOptions
 from reports.requests.solving import (
     FAMILY_ENDINGS,
     PAGE,
     Asked,
+    ElasticChoice,
     Names,
     Solving,
     elastic_choice,
@@ -43,7 +42,6 @@ from reports.requests.solving import (
     refuse_times,
     solving_of,
 )
-from reports.requests.told import told_at_the_call
 
 SAMPLES = 361
 """Instants of a period, both ends included, where none are given: as in a file of the command."""

@@ -31,6 +31,7 @@ from reports.requests.arguments import (
     each_of,
     is_true,
     path_of,
+    told_at_the_call,
 )
 from reports.requests.options import (
     Duration,
@@ -51,7 +52,6 @@ from reports.requests.sweep_arguments import (
     refuse_empty_lists,
     scene_names,
 )
-from reports.requests.told import told_at_the_call
 from reports.way.way import way_of
 from reports.workers.isolated import checked_limits
 

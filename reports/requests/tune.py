@@ -27,8 +27,7 @@ from reports.plan.singular import refuse_short_tables, refuse_singular
 from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
 from reports.requests.options import argument, output_option
 from reports.tune.attempt import Attempt, Bench, Goal, LostError, Row, times
-from reports.tune.search import Plan, attempts, best_of, plainer, search
-from reports.tune.storage import check_storage, study_in
+from reports.tune.search import Plan, attempts, best_of, check_storage, plainer, search, study_in
 from reports.tune.table import Side, footer, show
 from reports.workers.isolated import Limits
 from reports.workers.progress import progress_bar

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
+from xml.etree.ElementTree import Element
 
 from rich.console import Console
 from rich.progress import Progress
@@ -14,6 +16,8 @@ from models.errors import CrankcheckError
 from models.files import find_scenes
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked
+from reports.judge.frames import cell_frame, error_frame
+from reports.judge.rows import cell_row
 from reports.judge.tolerance import (
     check_names,
     parse,
@@ -21,6 +25,9 @@ from reports.judge.tolerance import (
     refuse_of_other_motion,
 )
 from reports.output.console import say_whole, tell
+from reports.output.frame_file import csv, parquet
+from reports.output.junit import junit
+from reports.output.numbers import finite
 from reports.output.provenance import provenance
 from reports.output.write import Outputs, check_outputs
 from reports.plan.chosen import (
@@ -38,18 +45,16 @@ from reports.plan.free import (
     under_control,
 )
 from reports.plan.singular import gives_forces, silent_note
-from reports.requests.verify_files import IN_FOLDER, contents
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions, refuse_of_models
 from reports.verify.all_cells import check_all
+from reports.verify.junit import suite
 from reports.verify.table import show
 from reports.way.length import Length
 from reports.way.way import driven_by, laid_out, way_of
 from sim.engine import Drive
 from sim.registry import engine
 
-if (
-    TYPE_CHECKING
-):  # what reads stored runs takes half a second to import: where there is one to read
+if TYPE_CHECKING:
     from reports.results.changes.changes import Diff
     from reports.results.changes.runs import StoredRun
 
@@ -210,7 +215,7 @@ def _baseline(
 def _spare_baseline(files: Mapping[str, Path | None], baseline: Path) -> None:
     """Raises CrankcheckError for an output that is a file of the baseline, which ``-o`` may go on
     from."""
-    from reports.requests.stored_files import stored_files
+    from reports.requests.diff import stored_files
 
     check_outputs(files, inputs=stored_files(baseline))
 
@@ -236,3 +241,55 @@ def _changes(
     from reports.results.changes.runs import run_of
 
     return compare(base, run_of(checked, facts, digests), factor)
+
+
+IN_FOLDER = {
+    "verify.csv": "--csv",
+    "verify.json": "--json",
+    "verify.junit.xml": "--junit",
+    "errors.parquet": "",
+}
+
+
+def contents(
+    checked: Sequence[Checked],
+    facts: Mapping[str, str],
+    digests: Mapping[str, str],
+    diff: Diff | None,
+) -> dict[str, Callable[[], bytes | str]]:
+    """What there is to write: of cells, where they come from, the digests of the texts of their
+    scenes, and what changed since the baseline."""
+    return {
+        "verify.csv": lambda: csv(cell_frame(checked)),
+        "verify.json": lambda: _json(checked, facts, digests),
+        "verify.junit.xml": lambda: junit(suite(checked, facts), *_suites(diff)),
+        "errors.parquet": lambda: parquet(error_frame(checked)),
+    }
+
+
+def _suites(diff: Diff | None) -> Iterator[Element]:
+    """The suite of what changed, if that is known."""
+    if diff is not None:
+        from reports.diff.junit import suite as diff_suite
+
+        yield diff_suite(diff)
+
+
+def _json(checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping[str, str]) -> str:
+    """Facts, digests of scenes, and cells with their findings; what is not finite is null."""
+    cells = [
+        cell_row(one)
+        | {
+            "settings": dict(one.settings),
+            "not_reported": list(one.errors.not_reported) if one.errors else [],
+            "notes": list(one.errors.notes) if one.errors else [],
+            "findings": [vars(finding) for finding in one.findings],
+        }
+        for one in checked
+    ]
+    content = {
+        "provenance": dict(facts),
+        "scenes": dict(digests),
+        "cells": cells,
+    }
+    return json.dumps(finite(content), indent=1) + "\n"

@@ -28,10 +28,16 @@ from reports.own_model.running import run_lines
 from reports.own_model.sentences import is_diff, recommended_head
 from reports.own_model.table import show
 from reports.plan.steps import TURNS, positive
-from reports.requests.arguments import is_true, kind_of, path_of, text_of, tolerances_of
+from reports.requests.arguments import (
+    is_true,
+    kind_of,
+    path_of,
+    text_of,
+    told_at_the_call,
+    tolerances_of,
+)
 from reports.requests.options import given
 from reports.requests.shown import Shown
-from reports.requests.told import told_at_the_call
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions
 from reports.verify.junit import suite
 from reports.workers.isolated import LIMIT_S, MEMORY_GB, checked_limits

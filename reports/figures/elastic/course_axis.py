@@ -12,7 +12,7 @@ from matplotlib.ticker import MultipleLocator
 from models.array import Array
 from models.laws import ConstantSpeed
 from reports.describe.elastic_course import ElasticCourse
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law
 from reports.figures.style import QUIET, SMALL
 from reports.output.provenance import crankcheck_version
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from reports.describe.elastic_course import ElasticCourse
-from reports.drawing.magnified import Magnified, magnification
+from reports.drawing.moving import Magnified, magnification
 from reports.drawing.shape import MARGIN, box_of, colours_of, guide_direction, size_of_motion
 from reports.figures.elastic.course_axis import notes
 from reports.figures.sheet import Panels, sheet

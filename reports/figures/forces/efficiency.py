@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from reports.describe.friction import cycle_of, cycle_words, flow_of
+from reports.describe.force_tables import cycle_of, cycle_words, flow_of
 from reports.figures.forces.force_turn import SIDES, ForceTurn
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, FRONT, INK

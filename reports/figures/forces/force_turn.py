@@ -19,7 +19,7 @@ from models.forces import Forces
 from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law
 from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_forces
 from reports.drawing.moving import goes_round
 from reports.drawing.shape import clear_of_locking

@@ -15,8 +15,8 @@ from matplotlib.ticker import MaxNLocator
 from models.array import Array
 from models.driver_shown import driver_shown
 from reports.describe.frame import acted_on
-from reports.drawing.lettering import Label, place
 from reports.drawing.moving import goes_round
+from reports.drawing.names import Label, place
 from reports.drawing.shape import colours_of
 from reports.figures.forces.force_turn import ForceTurn
 from reports.figures.sheet import Panels, sheet

@@ -9,9 +9,8 @@ from matplotlib.figure import Figure
 
 from models.driver_shown import driver_stands
 from reports.drawing.force_arrows import force_arrows
-from reports.drawing.gif import draw_bodies
+from reports.drawing.gif import draw_arrows, draw_bodies, scale_bar
 from reports.drawing.names import Sheet, names
-from reports.drawing.plotted_arrows import draw_arrows, scale_bar
 from reports.drawing.shape import PATH_SAMPLES, turn_of
 from reports.figures.forces.force_turn import ForceTurn
 from reports.figures.mechanism import frame, name_size, write_name

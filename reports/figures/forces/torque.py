@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from models.array import Array
 from models.driver_course import driver_course
-from reports.describe.friction import flow_of
+from reports.describe.force_tables import flow_of
 from reports.figures.forces.force_turn import SIDES, ForceTurn
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, INK, QUIET

@@ -12,7 +12,7 @@ from analytic.free.free_motion import FreeMotion
 from models.array import Array
 from models.motion import LinkMotion
 from models.scene import Scene
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law
 from reports.figures.style import QUIET, SMALL
 from reports.output.numbers import error_text
 from reports.output.provenance import crankcheck_version

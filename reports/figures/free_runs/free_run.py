@@ -11,7 +11,7 @@ from models.array import Array
 from models.scene import Scene
 from reports.compare.free.energy_drift import window_means
 from reports.compare.last_turn import Trace
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law
 from reports.drawing.shape import true_motion
 from reports.figures.marks import Mark, marks
 from reports.output.numbers import duration

@@ -16,7 +16,7 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.files import find_scene, load_scene
 from models.scene import Scene
-from reports.describe.law import angle_at, driver_at
+from reports.describe.facts import angle_at, driver_at
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
 from reports.lectures.drawing.sheets.centre_column import body_numbers, centre_name
 from reports.lectures.drawing.sheets.centre_sheet import CentreSheet, centres_of, draw_centres

@@ -21,8 +21,7 @@ from reports.describe.elastic_course import (
     start_of,
 )
 from reports.describe.elastic_words import certainty, elastic_facts, elastic_warnings, start_words
-from reports.drawing.magnified import magnification
-from reports.drawing.moving import INSTANTS, drawing, moving_points
+from reports.drawing.moving import INSTANTS, drawing, magnification, moving_points
 from reports.drawing.packed import packed
 from reports.drawing.shape import size_of_motion
 from reports.page.sections.motion import scene_words

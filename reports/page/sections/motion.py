@@ -15,8 +15,7 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.describe.facts import facts
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law, facts
 from reports.drawing.moving import (
     displacements,
     drawing,

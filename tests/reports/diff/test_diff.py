@@ -14,8 +14,7 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from reports.diff.junit import suite
-from reports.diff.markdown import markdown
-from reports.diff.terminal import show
+from reports.diff.terminal import markdown, show
 from reports.diff.words import cost_text, left_out, lines
 from reports.output.junit import junit
 from reports.requests.diff import DiffRequest

@@ -10,7 +10,7 @@ from analytic.lectures.synthesis.construction import Circle, Curve, Dot, Element
 from analytic.lectures.synthesis.design import Proposal
 from analytic.lectures.synthesis.examine import Examined
 from models.array import Array
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law
 from reports.drawing.moving import drawing
 from reports.drawing.shape import turn_of
 from reports.lectures.design.constructions.construction_looks import CURVES, curves_of

@@ -4,7 +4,7 @@ them."""
 from __future__ import annotations
 
 from models.scene import Scene
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law
 from reports.figures.saving import saved
 from reports.lectures.drawing.workbook.family_curves import KINDS, FamilyCurves
 from reports.lectures.drawing.workbook.family_figure import draw_family

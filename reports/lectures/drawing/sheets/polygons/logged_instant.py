@@ -22,7 +22,7 @@ from models.motion import Motion, Order
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.compare.series import rate, second_rate
-from reports.describe.law import angle_at
+from reports.describe.facts import angle_at
 from reports.lectures.drawing.sheets.sheet_log import SheetLog
 from reports.logs.channel import OwnLog, Reading
 from reports.logs.log_beside import EVEN

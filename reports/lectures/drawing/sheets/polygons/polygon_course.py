@@ -13,7 +13,7 @@ from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.free.kept_motion import kept_motion
-from reports.drawing.free_instants import instants
+from reports.describe.free_motion import instants
 from reports.drawing.shape import turn_of
 
 

@@ -13,7 +13,7 @@ from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.free.kept_motion import LOOK, kept_motion
-from reports.describe.law import angle_at, driver_at, time_at
+from reports.describe.facts import angle_at, driver_at, time_at
 from reports.drawing.shape import true_motion
 
 AT_DEG = 90.0

@@ -13,7 +13,7 @@ from analytic.lectures.drawings.similarity import link_rates
 from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law
 from reports.drawing.moving import drawing
 from reports.drawing.packed import packed
 from reports.lectures.drawing.sheets.polygons.polygon_course import PolygonCourse
