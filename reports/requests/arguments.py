@@ -1,4 +1,4 @@
-"""The arguments of a call, checked before anything is done, and what is said of mistakes in them."""
+"""The arguments of a call, checked before anything is done; and what is said of mistakes there."""
 
 from __future__ import annotations
 
@@ -178,7 +178,7 @@ def each_of(values: object) -> list[Any]:
 
 Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
-RENAMED: Mapping[str, str] = {
+RENAMED = {
     "--dt": "dt_s",
     "--duration": "duration_s",
     "--tol": "tolerance",
