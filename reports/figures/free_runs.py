@@ -14,8 +14,8 @@ from models.array import Array
 from models.scene import Scene
 from reports.compare.free.drift import window_means
 from reports.compare.last_turn import Trace
-from reports.describe.law import describe_law
-from reports.drawing.true_motion import true_motion
+from reports.describe.facts import describe_law
+from reports.drawing.shape import true_motion
 from reports.figures.grids import corner_words, grid, tenfold
 from reports.figures.marks import Mark, marks
 from reports.figures.sheet import Panels, sheet

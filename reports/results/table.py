@@ -10,7 +10,7 @@ from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.text import Text
 
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.numbers import short
 from reports.results.cost import SHARE, noise, pairs
 from reports.results.lines import called

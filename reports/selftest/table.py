@@ -11,7 +11,7 @@ from rich.text import Text
 
 from reports.judge.cell import Checked
 from reports.judge.rules import RULES
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.selftest.all_faults import GROUPS, RUNS
 from reports.selftest.fault import PROFILE, Fault
 from reports.selftest.trial import FaultTrial, Passed, Verdict, passes

@@ -13,7 +13,7 @@ from typing import Any
 from models.errors import CrankcheckError
 from models.files.inputs import UnreadableError, regular_bytes
 from reports.output.provenance import crankcheck_version
-from reports.plan.key import digest
+from reports.plan.grid import digest
 from reports.store.damage import command, in_line
 from reports.store.schema import FORMAT
 

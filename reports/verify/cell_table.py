@@ -16,7 +16,7 @@ from reports.compare.errors import Error, Errors, largest
 from reports.judge.cell import Checked
 from reports.judge.rules import FORCES
 from reports.judge.rules.rule import Finding
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.quantities import QUANTITIES
 
 Texts = Callable[[Checked], Sequence[str]]

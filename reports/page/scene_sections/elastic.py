@@ -13,12 +13,15 @@ from analytic.elastic.elastic_motion import ElasticHistory
 from models.array import Array
 from models.cut_links import line_of
 from models.laws import ConstantSpeed
-from reports.describe.elastic_certainty import certainty
-from reports.describe.elastic_course import ElasticCourse, elastic_course, start_of
-from reports.describe.elastic_motion import extremes, largest_deflections
-from reports.describe.elastic_words import elastic_facts, elastic_warnings, start_words
-from reports.drawing.magnified import magnification
-from reports.drawing.moving import INSTANTS, drawing, moving_points
+from reports.describe.elastic_course import (
+    ElasticCourse,
+    elastic_course,
+    extremes,
+    largest_deflections,
+    start_of,
+)
+from reports.describe.elastic_words import certainty, elastic_facts, elastic_warnings, start_words
+from reports.drawing.moving import INSTANTS, drawing, magnification, moving_points
 from reports.drawing.packed import packed
 from reports.drawing.shape import size_of_motion
 from reports.page.sections.motion import scene_words

@@ -7,8 +7,7 @@ from collections.abc import Mapping
 
 from models.driver import driver_unit
 from models.scene import Scene
-from reports.describe.force_tables import largest_of
-from reports.describe.friction import friction_words
+from reports.describe.force_tables import friction_words, largest_of
 from reports.describe.with_forces import (
     cleaned_forces,
     force_certainty,

@@ -8,8 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from analytic.free.free_motion import FreeMotion
-from reports.describe.free_motion import free_notes
-from reports.drawing.free_instants import instants
+from reports.describe.free_motion import free_notes, instants
 from reports.drawing.moving import drawing
 from reports.page.sections.motion import scene_words
 from reports.page.sections.section import Section

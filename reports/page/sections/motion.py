@@ -14,8 +14,7 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.describe.facts import facts
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law, facts
 from reports.drawing.moving import (
     displacements,
     drawing,
@@ -128,7 +127,7 @@ class _DrawnScene:
         trace = self.report.stored.trace
         parts = None if body is None else split(line, trace, body, self.scene.longest_m)
         rows = line.cells.set_index("key")
-        scene = line.way.moved(self.scene)
+        scene = self.scene
         return {
             "look": self.report.look(line).number,
             "floor": "" if parts is None else _floor(parts),

@@ -19,7 +19,7 @@ from filelock import FileLock
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.plan.key import digest
+from reports.plan.grid import digest
 from reports.requests.report import ReportRequest
 from reports.store import lock, mending, part
 from reports.store.damage import BUSY
