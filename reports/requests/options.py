@@ -97,7 +97,7 @@ def given(request: Any, *fields: str) -> Iterator[str]:
 
 FAMILY = "lectures.drawing.workbook.solve_family:run_family"
 """`solve --family`."""
-LIVE_SHEET = "lectures.drawing.workbook.beside_values:live_sheet"
+LIVE_SHEET = "lectures.drawing.workbook.live_workbook:live_sheet"
 """Formulas and charts beside the values of `solve -o FILE.xlsx`."""
 
 
