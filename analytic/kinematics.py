@@ -2,28 +2,30 @@
 
 `solve` runs the driver's law through the mechanism's Assur groups in solving order, in chunks that
 stay in cache, and writes what was asked for. With ``bound`` every number carries a bound of its own
-error, propagated from group to group (`analytic.dyads.closure`).
+error, propagated from group to group (`analytic.dyads.parts`).
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from analytic.dyads.chunk import Chunk
-from analytic.dyads.driven import driver_scale
+from analytic.dyads.chunk import Chunk, driver_scale
 from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Real
-from analytic.prepared import Driven, prepared, spans
-from analytic.reach import Range, ranges
+from analytic.prepared import Driven, Range, prepared, ranges, spans
 from analytic.result import Selection
+from analytic.structure.groups import Group, Triad
+from analytic.structure.mobility import Structure, analyse
 from analytic.turns.count import Counter
-from models.array import Array
-from models.errors import CrankcheckError
+from models.array import Array, beside, samples
+from models.errors import CrankcheckError, ReachError, StructureError
+from models.files.names import MOST_ASSEMBLIES
 from models.laws import ConstantSpeed, Law
 from models.motion import Motion
-from models.samples import beside, samples
 from models.scene import Scene
 
 
@@ -56,7 +58,7 @@ def solve(
         are asked for: in (-pi, pi] at time 0, and counted on from there; a link that keeps an angle
         to the ground or to the driver is that much ahead of it. Sliders count from ``through_m``.
         In chains of more than some six dyads whole turns are counted to the nearest angle, which
-        bounds of angles take as right (`analytic.turns.cells.MOST`).
+        bounds of angles take as right (`analytic.turns.count.MOST`).
 
     Raises
     ------
@@ -139,7 +141,7 @@ def counted_angle(chunk: Chunk, link: str) -> Array:
 
 def reach(scene: Scene) -> list[Range]:
     """The driver angles [rad], within a turn, in which the scene can be assembled
-    (`analytic.reach`); of a slider that is driven, its displacements [m]."""
+    (`analytic.prepared`); of a slider that is driven, its displacements [m]."""
     scale, ready = driver_scale(scene), prepared(scene)
     found = ranges(ready.stretched, ready.looked_turns)
     return [(low * scale, high * scale) for low, high in found]
@@ -163,7 +165,7 @@ def _driver_of(scene: Scene, time_s: Array, *, bound: bool) -> Callable[[slice],
 
 
 def _scaled(scene: Scene, driver: Callable[[slice], Driven]) -> Callable[[slice], Driven]:
-    """The driver's coordinate as the reference's driver angle (`analytic.dyads.driven`)."""
+    """The driver's coordinate as the reference's driver angle (`analytic.dyads.chunk`)."""
     scale = driver_scale(scene)
     if scale == 1.0:
         return driver
@@ -203,3 +205,78 @@ def repeats_after(scene: Scene) -> float:
     """The driver angle [rad] after which the positions repeat: a turn, or more of them where the
     mechanism goes through an odd number of change points in one; infinite of a slider."""
     return math.inf if scene.driver.slider is not None else prepared(scene).period
+
+
+SAME = 1e-9
+"""Of the longest length: two places that are one."""
+MOST_SIDES = 8
+"""Assemblies of dyads that are tried in every combination."""
+
+
+def in_assembly(scene: Scene, motion: Motion) -> Scene | None:
+    """The scene with the branch by which its points at time 0 are where those of a motion are at
+    its first sample; None where there is none, or no solution of the scene."""
+    try:
+        structure = analyse(replace(scene, branch={}))
+    except StructureError:
+        return None
+    for branch in branches(structure):
+        held = replace(scene, branch=branch)
+        try:
+            places = solve(held, np.zeros(1), links=(), sliders=(), bound=False).points
+        except (ReachError, StructureError):
+            continue
+        apart = (
+            math.dist(motion.points[p].position[0], at.position[0]) for p, at in places.items()
+        )
+        if max(apart) <= SAME * scene.longest_m:
+            return held
+    return None
+
+
+def chosen_groups(structure: Structure) -> list[Group | Triad]:
+    """The groups that have more than one assembly, in solving order."""
+    return [
+        part
+        for part in structure.order
+        if isinstance(part, Triad) or (isinstance(part, Group) and part.assemblies > 1)
+    ]
+
+
+def choices(scene: Scene, group: Group | Triad) -> tuple[int, ...]:
+    """What the branch of a group may be, first that of the scene; of class III also numbers that
+    there may not be."""
+    own = scene.branch.get(group.branch_key, 1)
+    if isinstance(group, Group):
+        return own, -own
+    return own, *(number for number in range(1, MOST_ASSEMBLIES + 1) if number != own)
+
+
+def branches(structure: Structure) -> Iterator[dict[str, int]]:
+    """Every choice of assemblies; of class III groups also numbers that there may not be."""
+    sides = [group.branch_key for group in structure.groups if group.assemblies == 2][:MOST_SIDES]
+    numbers = [triad.branch_key for triad in structure.triads]
+    choices = [*([1, -1] for _ in sides), *(range(1, MOST_ASSEMBLIES + 1) for _ in numbers)]
+    for chosen in itertools.product(*choices):
+        yield dict(zip([*sides, *numbers], chosen, strict=True))
+
+
+def nearness(scene: Scene, motion: Motion) -> dict[str, Array]:
+    """The distance of every dyad from its nearest singular position at the samples, (T,) by name.
+
+    As ``motion.conditioning`` (1 best, 0 singular); of an RPR dyad times the distance of its two
+    pins over the largest in the motion. The motion is one by `analytic.kinematics`, of ``scene``,
+    with all its points.
+
+    The conditioning of a dyad is the sine of its transmission angle or its like, a pure number for
+    the direction in which its parts lie. That of an RPR dyad whose line goes through the pin of its
+    link is always 1, though nothing says where the link points when the block stands on that pin:
+    what counts there is their distance.
+    """
+    distances = dict(motion.conditioning)
+    for group in analyse(scene).groups:
+        if group.kind == "RPR":
+            ends = (motion.points[pin].position for pin in (group.outer1, group.outer2))
+            apart = np.hypot(*np.subtract(*ends).T)
+            distances[group.branch_key] = distances[group.branch_key] * apart / np.max(apart)
+    return distances

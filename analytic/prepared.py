@@ -13,24 +13,23 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from analytic.assur.group_steps import prepare
 from analytic.change_points.find import passages, passed
 from analytic.change_points.sign import ChangePoints
-from analytic.dyads.chunk import Chunk, Passage
-from analytic.dyads.driven import driver_scale, told
+from analytic.dyads.chunk import Chunk, Passage, driver_scale, told
 from analytic.dyads.parts import OpenError
 from analytic.dyads.plane import AngleError, Real
-from analytic.dyads.steps import FollowedStep, Step, stretched
-from analytic.reach import describe_reach
+from analytic.dyads.redundant import BridgeStep
+from analytic.dyads.riding import Placed
+from analytic.dyads.steps import DYAD_STEPS, FollowedStep, Step, stretched
 from analytic.result import MotionArrays, Selection
-from analytic.structure.mobility import analyse
-from analytic.turns.cells import CellSolver
-from analytic.turns.count import Counter, Turns
-from models.array import Array
+from analytic.structure.groups import Bridge, Group, Triad
+from analytic.structure.mobility import Structure, analyse
+from analytic.turns.count import CellSolver, Counter, Turns
+from models.array import Array, Mask
 from models.errors import ReachError
+from models.files.names import MOST_ASSEMBLIES
 from models.motion import Crossing, Motion
-from models.names import MOST_ASSEMBLIES
-from models.scene import KEPT, Same, Scene
+from models.scene import GROUND, KEPT, Same, Scene
 
 CHUNK = 12288
 """Samples solved at a time: their intermediate arrays fit the second-level cache."""
@@ -78,8 +77,8 @@ class Prepared:
 
     @property
     def looked_turns(self) -> int:
-        """Turns of the driver over which its range is looked for (`analytic.reach.ranges`): what is
-        followed is back after as many as it has assemblies, or ends."""
+        """Turns of the driver over which its range is looked for (`ranges`): what
+        is followed is back after as many as it has assemblies, or ends."""
         return MOST_ASSEMBLIES if self.followed and self.scene.driver.slider is None else 1
 
     @property
@@ -150,3 +149,160 @@ class Prepared:
             f"cannot close at {step.key}, it is open by {float(np.ravel(short_m)[index]):.3g} m. "
             f"{describe_reach(scene, self.stretched, self.looked_turns)}"
         )
+
+
+SCAN = 1440
+"""Angles of the first look at a turn; where it is nearest to closing, or to opening, between two of
+them, it is looked at closer."""
+NARROW = 20 * math.tau / SCAN
+"""A range of fewer looks [rad] is looked at anew."""
+ZOOMS, FINER = 5, 33
+"""How often the smallest shortage between looks is looked for closer, and in how many places."""
+
+Range = tuple[float, float]
+Stretched = Callable[[Array], Chunk]
+
+
+def shortage(stretched: Stretched, theta: Array) -> Array:
+    """By how much the mechanism fails to close at driver angles ``theta`` (T,) [m]; <= 0 closes."""
+    chunk = stretched(theta)
+    short = np.full(theta.shape, -np.inf)
+    for value in chunk.shortage.values():
+        short = np.maximum(short, np.nan_to_num(value, nan=np.inf))
+    return short
+
+
+def ranges(stretched: Stretched, turns: int = 1) -> list[Range]:
+    """The reachable driver angles within a turn, as (from, to) [rad] in increasing order.
+
+    [(-pi, pi)] where the driver turns fully; [] where the mechanism cannot be assembled at all.
+    A range may run beyond pi where it holds that angle. What is followed along the driver may go
+    on for more than a turn and end all the same: it is looked at over so many ``turns`` both ways,
+    and told as it is where it is not alike in each.
+
+    Found by the shortage of closure over a turn of the driver, its sign changes refined by
+    bisection. Source: rotatability of a driver, e.g. Norton, Design of Machinery, section 4.10
+    (limit positions); for the four-bar `analytic.mechanism.fourbar` has the closed form, and a test
+    holds this one to it.
+    """
+    if turns > 1 and (found := _over_turns(stretched, turns)) is not None:
+        return found
+    looks = np.linspace(-math.pi, math.pi, SCAN + 1)
+    grid = with_valleys(lambda theta: shortage(stretched, theta), looks)
+    closes = shortage(stretched, grid) <= 0.0
+    if closes.all():
+        return [(-math.pi, math.pi)]
+    edges = np.flatnonzero(closes[1:] != closes[:-1])
+    if not len(edges):
+        return []
+    borders = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges])
+    opens = [float(a) for a, was in zip(borders, closes[edges], strict=True) if not was]
+    ends = [float(a) for a, was in zip(borders, closes[edges], strict=True) if was]
+    if closes[0]:  # the range that holds the angle pi: its end is a turn after the first
+        ends = [*ends[1:], ends[0] + math.tau]
+    wholes = zip(opens, ends, strict=True)
+    return [part for whole in wholes for part in _closer(stretched, whole)]
+
+
+def _closer(stretched: Stretched, whole: Range) -> list[Range]:
+    """A range that is so narrow that few looks fell into it, looked at anew: it may have gaps."""
+    low, high = whole
+    if high - low > NARROW:
+        return [whole]
+    grid = np.linspace(low, high, SCAN + 1)
+    closes = shortage(stretched, grid) <= 0.0
+    closes[[0, -1]] = True
+    edges = np.flatnonzero(closes[1:] != closes[:-1])
+    borders = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges]).tolist()
+    ends: list[float] = [low, *borders, high]
+    return list(zip(ends[::2], ends[1::2], strict=True))
+
+
+def with_valleys(shortage_at: Callable[[Array], Array], theta: Array) -> Array:
+    """The looks, and closer ones where a mechanism is nearest to closing, or to opening, between
+    two of them, so that no narrow part is passed over, nor one of two beside a look."""
+    short = shortage_at(theta)
+    size = np.abs(short[1:-1])
+    near = (size <= np.abs(short[:-2])) & (size <= np.abs(short[2:]))
+    places = np.flatnonzero(near) + 1
+    if not places.size:
+        return theta
+    low, high, sign = theta[places - 1], theta[places + 1], np.sign(short[places])
+    share, first = np.linspace(0.0, 1.0, FINER), np.zeros(0)
+    for _ in range(ZOOMS):
+        looks = low[:, None] + (high - low)[:, None] * share
+        first = first if first.size else looks.ravel()
+        value = shortage_at(looks.ravel()).reshape(looks.shape) * sign[:, None]
+        best = np.clip(np.argmin(value, axis=1), 1, FINER - 2)
+        rows = np.arange(len(best))
+        low, high, tip = looks[rows, best - 1], looks[rows, best + 1], looks[rows, best]
+    return np.unique(np.concatenate([theta, first, tip]))
+
+
+def _over_turns(stretched: Stretched, turns: int) -> list[Range] | None:
+    """The ranges over several turns both ways; None where each turn is like the next."""
+    grid = np.linspace(-turns * math.tau, turns * math.tau, 2 * turns * SCAN + 1)
+    closes = shortage(stretched, grid) <= 0.0
+    unlike = np.count_nonzero(closes[SCAN:] != closes[:-SCAN])
+    if unlike <= 2 * turns:  # looks beside an end, by rounding
+        return None
+    edges = np.flatnonzero(closes[1:] != closes[:-1])
+    borders = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges]).tolist()
+    ends = [float(grid[0])] * bool(closes[0]) + borders + [float(grid[-1])] * bool(closes[-1])
+    return list(zip(ends[::2], ends[1::2], strict=True))
+
+
+def _bisect(stretched: Stretched, low: Array, high: Array, closes_low: Mask) -> Array:
+    """The angles at which closing begins or ends, each on the side that closes."""
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        same = (shortage(stretched, middle) <= 0.0) == closes_low
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return np.where(closes_low, low, high)
+
+
+def describe_reach(scene: Scene, stretched: Stretched, turns: int = 1) -> str:
+    """The reachable range in words, for a message; ``turns`` as of `ranges`."""
+    reachable, driver = ranges(stretched, turns), scene.driver
+    if not reachable:
+        grid = np.linspace(-math.pi, math.pi, SCAN + 1)
+        short = shortage(stretched, grid)
+        best = int(np.argmin(short))
+        where = "angle" if driver.slider is None else "place"
+        return (
+            f"It cannot be assembled at any {where} of {driver.joint}: it comes nearest at "
+            f"{told(scene, grid[best])}, open by {short[best]:.3g} m; change a length."
+        )
+    slides, scale = driver.slider is not None, driver_scale(scene)
+    unit, by = ("m", scale) if slides else ("deg", math.degrees(1.0))
+    spans = " and ".join(f"{a * by:.6g} to {b * by:.6g} {unit}" for a, b in reachable)
+    more_than_one = any(high - low > math.tau for low, high in reachable)
+    from_there = "" if slides or more_than_one else " (and whole turns from there)"
+    return f"{driver.joint} can stand at {spans}{from_there}."
+
+
+def prepare(scene: Scene, structure: Structure) -> list[Step]:
+    """The steps of all groups, in solving order."""
+    driver, compound = scene.driver, structure.compound
+    known = {GROUND} if compound is not None else {GROUND, driver.link}
+    steps: list[Step] = []
+    for part in structure.order:
+        placed = Placed(scene, structure, frozenset(known))
+        if isinstance(part, Bridge):
+            steps.append(BridgeStep(placed, part))
+        elif isinstance(part, Triad) or (compound is not None and compound.name in part.bodies):
+            steps.append(_step_of_class_three(placed, part, steps))
+        else:
+            steps.append(DYAD_STEPS[part.kind](placed, part))
+        known.update(part.bodies)
+        if compound is not None and compound.name in part.bodies:
+            known.update((compound.base, compound.link))
+    return steps
+
+
+def _step_of_class_three(placed: Placed, part: Group | Triad, before: Sequence[Step]) -> Step:
+    """The step of a triad, or of a dyad with a compound: most scenes have none, nor load it."""
+    from analytic.assur.mounting import Mounting
+    from analytic.assur.step import AssurStep
+
+    return AssurStep(Mounting(placed, part), before)

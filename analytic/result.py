@@ -12,11 +12,11 @@ import numpy as np
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS, BodyKinematics, PointKinematics, Real
 from analytic.dyads.steps import Step
-from analytic.turns.cells import SURE
+from analytic.turns.count import SURE
 from models.array import Array
 from models.errors import CrankcheckError
+from models.files.inputs import names_in
 from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
-from models.one_or_more import names_in
 from models.scene import Scene
 
 

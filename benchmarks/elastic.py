@@ -24,13 +24,13 @@ import numpy as np
 
 from analytic.elastic.discretisation import REFERENCE, Discretisation, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.segment_start import segment_start
+from analytic.elastic.engine_start import segment_start
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
+from models.cut_scenes import SegmentedScene
 from models.elastic import Shape
-from models.files import load_scene, names_of_scenes
+from models.files.reading import load_scene, names_of_scenes
 from models.scene import Scene
-from models.segmented import SegmentedScene
 from reports.output.provenance import processor
 from sim.run import run
 

@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.judge.cell import Cell, examined

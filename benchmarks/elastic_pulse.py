@@ -24,9 +24,9 @@ from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.released import release_elastic
 from analytic.free.release import release
 from models.array import Array
-from models.controlled import Controlled
+from models.driver import Controlled
 from models.elastic import Shape
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.laws import ConstantSpeed
 from models.scene import Scene
 

@@ -28,21 +28,21 @@ if __name__ == "__main__":  # run as a file: the packages are beside this folder
 
 from analytic.elastic.discretisation import Discretisation, Modes, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.linearised import linearise
+from analytic.elastic.engine_start import node_start
 from analytic.elastic.natural import lowest_rad_s
-from analytic.elastic.node_start import node_start
 from analytic.elastic.periodic import (
     FIRST,
     PeriodicMotion,
     instants,
     linear_motion,
+    linearise,
     periodic_motion,
 )
 from analytic.elastic.reduced import ReducedForm
-from analytic.lectures.vibration.any_speed import at_speed
+from analytic.lectures.vibration.steady_vibration import at_speed
 from models.array import Array
-from models.beamed import BeamedScene
-from models.files import load_scene
+from models.cut_scenes import BeamedScene
+from models.files.reading import load_scene
 from models.scene import Scene
 from sim.run import run
 

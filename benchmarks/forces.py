@@ -22,7 +22,7 @@ import numpy as np
 
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.output.provenance import processor
 
 POSITIONS = 100_000

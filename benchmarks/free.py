@@ -29,12 +29,11 @@ from analytic.free.machine import Machine
 from analytic.free.release import release
 from models.array import Array
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.output.provenance import processor
 from sim.registry import engine
-from sim.run import run
-from sim.timing import time_run
+from sim.run import run, time_run
 from tests.second_opinions.baumgarte_table import baumgarte_table
 
 SCENES = ("fourbar-swing", "fourbar-pulse", "slider-crank-spring", "press-motor")

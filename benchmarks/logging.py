@@ -23,7 +23,7 @@ if __name__ == "__main__":  # run as a file: the packages are beside this folder
     sys.path[0] = str(Path(__file__).resolve().parents[1])
 
 from analytic.kinematics import solve
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.output.provenance import processor
 from sim.engine import Engine, Session
 from sim.registry import engine

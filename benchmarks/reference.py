@@ -25,7 +25,7 @@ from importlib.metadata import version
 import numpy as np
 
 from analytic.kinematics import solve
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.output.provenance import processor
 
 POSITIONS = 100_000

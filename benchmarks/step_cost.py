@@ -1,4 +1,4 @@
-"""Measure what the models of `sim.tuning` need: ``python -m benchmarks.step_cost``.
+"""Measure what the models of `sim.offers` need: ``python -m benchmarks.step_cost``.
 
 Every shipped scene at constant speed is timed in all engines, with settings that differ in what
 they ask for; each is timed in several rounds, far apart, and the least time counts. Takes some
@@ -14,7 +14,7 @@ from contextlib import closing
 import numpy as np
 
 from analytic.kinematics import solve
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.laws import ConstantSpeed
 from models.motion import State
 from models.scene import Scene

@@ -26,7 +26,7 @@ from analytic.lectures.synthesis.examine import examine
 from analytic.lectures.synthesis.path.search import generate
 from analytic.lectures.synthesis.path.task import PathTask
 from analytic.lectures.synthesis.solutions import solutions_of
-from models.lectures.tasks.coupler import CouplerTask
+from models.lectures.tasks.positions import CouplerTask
 from reports.output.provenance import provenance
 
 TASKS, SEED = 100, 19

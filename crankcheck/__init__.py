@@ -56,9 +56,8 @@ if TYPE_CHECKING:
         SceneError,
         StructureError,
     )
-    from models.files import load_scene
-    from models.forces import Forces
-    from models.motion import Motion, State
+    from models.files.reading import load_scene
+    from models.motion import Forces, Motion, State
     from models.scene import Scene
     from reports.causes.cause import Cause
     from reports.compare.errors import Error, Errors
@@ -134,10 +133,8 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
             case "CrankcheckError" | "EngineError" | "ReachError" | "SceneError" | "StructureError":
                 from models import errors as home
             case "load_scene":
-                from models import files as home
-            case "Forces":
-                from models import forces as home
-            case "Motion" | "State":
+                from models.files import reading as home
+            case "Forces" | "Motion" | "State":
                 from models import motion as home
             case "Scene":
                 from models import scene as home

@@ -16,11 +16,10 @@ for an engine with joint coordinates, whose motion `body_poses` turns into poses
 """
 
 from models import tree
-from models.beams import Beam
+from models.elastic import Beam
 from models.errors import EngineError
-from models.forces import Forces, SliderForces
-from models.friction import ConstantFriction
 from models.joints import (
+    Frame,
     Joints,
     Pin,
     Prism,
@@ -29,17 +28,19 @@ from models.joints import (
     blocks,
     bodies,
     carriers,
+    centre_of,
+    frames,
     joined_at,
     joints,
+    line_ends,
     local_point,
+    mass_of,
     sliding_angle,
+    whole_turns,
 )
-from models.loads import Load
-from models.motion import State
-from models.poses import Frame, centre_of, frames, mass_of
+from models.loads import ConstantFriction, LineSpring, Load, PinSpring, SlideSpring, Spring
+from models.motion import Forces, SliderForces, State
 from models.scene import GROUND, Point, Scene, Slider
-from models.spring_ends import line_ends, whole_turns
-from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from sim import drive, load_magnitudes
 from sim.engine import (
     BodyPose,

@@ -4,7 +4,7 @@
 
     A o-----@-----@-----@ ... -----o B        n pieces, n - 1 nodes between them and one at each pin
 
-The bodies are the pieces (`models.segmented`) or the nodes (`models.beamed`).
+The bodies are the pieces or the nodes (`models.cut_scenes`).
 """
 
 from __future__ import annotations
@@ -18,14 +18,12 @@ from functools import cached_property
 import numpy as np
 
 from models.array import Array
-from models.beams import Beam
-from models.elastic_line import Line, line_of
+from models.elastic import Beam
 from models.errors import CrankcheckError
-from models.loads import Load
+from models.joints import joined_at, less, turned
+from models.loads import Load, PinSpring, Spring
 from models.motion import ElasticMotion, LinkMotion, Motion
-from models.scene import Link, Point, Scene
-from models.springs import PinSpring, Spring
-from models.start import Start
+from models.scene import Link, Point, Scene, Start
 
 
 @dataclass(frozen=True)
@@ -99,33 +97,29 @@ class CutScene(ABC):
             start=Start(),
         )
 
-    def _carrier(self, link: str, point: str) -> str:
-        """The body that carries a named point of an elastic link."""
-        place = self.scene.links[link].points[point]
-        return self.bodies(link)[self._carried(line_of(self.scene, link), place)[0]]
+    def _carrier(self, body: str, point: str) -> tuple[str, float]:
+        """The body that carries a named point of a body, and by how much it is turned against the
+        frame of that [rad]."""
+        if body not in self.scene.elastic:
+            return body, 0.0
+        line = line_of(self.scene, body)
+        piece, _ = self._carried(line, self.scene.links[body].points[point])
+        return self.bodies(body)[piece], line.lean_rad
 
     def _put(self, load: Load) -> Load:
         """A load on the body that has its point."""
-        if load.body not in self.scene.elastic or load.point is None:
+        if load.point is None:
             return load
-        lean = line_of(self.scene, load.body).lean_rad if load.frame == "body" else 0.0
-        return replace(
-            load,
-            body=self._carrier(load.body, load.point),
-            direction_rad=load.direction_rad - lean,
-        )
+        body, lean = self._carrier(load.body, load.point)
+        turned = load.direction_rad - lean if load.frame == "body" else load.direction_rad
+        return replace(load, body=body, direction_rad=turned)
 
     def _held(self, spring: Spring) -> Spring:
         """A spring in a pin between the bodies that meet there."""
         if not isinstance(spring, PinSpring):
             return spring
-        bodies, ahead = [], []
-        for body in spring.bodies:
-            elastic = body in self.scene.elastic
-            bodies.append(self._carrier(body, spring.point) if elastic else body)
-            ahead.append(line_of(self.scene, body).lean_rad if elastic else 0.0)
-        free = spring.free + ahead[1] - ahead[0]
-        return replace(spring, bodies=(bodies[0], bodies[1]), free=free)
+        (first, lean), (second, other) = (self._carrier(b, spring.point) for b in spring.bodies)
+        return replace(spring, bodies=(first, second), free=spring.free + other - lean)
 
     def folded(self, motion: Motion) -> Motion:
         """A motion of the bodies as one of the scene with its elastic links."""
@@ -177,3 +171,39 @@ class CutScene(ABC):
         nodes = self.nodes(link)
         low, high = nodes[self.count // 2], nodes[(self.count + 1) // 2]
         return 0.5 * (motion.points[low].position + motion.points[high].position)
+
+
+@dataclass(frozen=True)
+class Line:
+    """From the first of two ``pins`` to the second, in the frame of the link: from ``start`` [m],
+    at ``lean_rad``, ``length_m`` long."""
+
+    pins: tuple[str, str]
+    start: Point
+    lean_rad: float
+    length_m: float
+    density_kg_m: float
+
+    def at(self, x: float) -> Point:
+        """The place on it that is x from the first pin [m], in the frame of the link."""
+        c, s = turned((x, 0.0), self.lean_rad)
+        return self.start[0] + c, self.start[1] + s
+
+    def along(self, place: Point) -> Point:
+        """A place in the frame of the link as x along the line from the first pin, and y across."""
+        return turned(less(place, self.start), -self.lean_rad)
+
+
+def line_of(scene: Scene, link: str) -> Line:
+    """The line of a link that has two pins."""
+    own, joined = scene.links[link], joined_at(scene)
+    first, second = (point for point in own.points if link in joined.get(point, ()))
+    (ax, ay), (bx, by) = own.points[first], own.points[second]
+    length = math.hypot(bx - ax, by - ay)
+    lean = math.atan2(by - ay, bx - ax)
+    return Line((first, second), (ax, ay), lean, length, own.mass_kg / length)
+
+
+def with_rigid_links(scene: Scene) -> Scene:
+    """The scene with all its links rigid."""
+    return replace(scene, elastic={}, start=replace(scene.start, shape=None))

@@ -1,14 +1,8 @@
-"""What acts on a mechanism from outside: forces at points and torques on links.
-
-A load has a direction, in the ground's frame or in that of its body, and a magnitude, which is
-constant or follows time, the driver's angle, the displacement or the speed of a slider, or the
-angular velocity of the link that it turns, by a `Characteristic`: a motor pulls by its speed. It
-may act on one stroke of a slider only: a cutting tool works on the way out. Two loads at one point
-add up.
-"""
+"""Loads, springs with dampers beside them, and friction in joints."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
@@ -39,6 +33,12 @@ class Load:
     positive; a positive torque is counter-clockwise. ``slider`` is that whose displacement, speed
     or stroke counts: ``forward`` is where it moves along its direction. Over ``omega`` it follows
     the angular velocity of ``body``.
+
+    A load has a direction, in the ground's frame or in that of its body, and a magnitude, which is
+    constant or follows time, the driver's angle, the displacement or the speed of a slider, or the
+    angular velocity of the link that it turns, by a `Characteristic`: a motor pulls by its speed.
+    It may act on one stroke of a slider only: a cutting tool works on the way out. Two loads at one
+    point add up.
     """
 
     name: str
@@ -121,3 +121,101 @@ class Load:
             return error
         turns = np.abs(speed) <= speed_by  # it may act or not
         return np.where(turns, error + np.abs(own.at(x)), error)
+
+
+@dataclass(frozen=True)
+class _Elastic:
+    """What every spring has: ``rate`` [N/m or N m/rad], ``damping`` [N s/m or N m s], and ``free``,
+    the q [m or rad] at which it is slack.
+
+    With q the distance of the points [m], the angle of the second body against the first [rad], or
+    the displacement of the slider [m], a spring pulls q back with::
+
+        rate (q - free) + damping q'                 [N], or [N m] in a pin
+
+    and keeps the energy rate (q - free)^2 / 2. A rate of 0 leaves a damper, a damping of 0 a
+    spring.
+    """
+
+    name: str
+    rate: float
+    damping: float
+    free: float
+
+    def pull(self, q: float, speed: float) -> float:
+        """What it pulls q back with [N or N m]."""
+        return self.rate * (q - self.free) + self.damping * speed
+
+    def energy(self, q: float) -> float:
+        """What it keeps [J]."""
+        return 0.5 * self.rate * (q - self.free) ** 2
+
+
+@dataclass(frozen=True)
+class LineSpring(_Elastic):
+    """Between two named points. Each end is fixed to one body that has the point: to the ground,
+    else to the first link in the order of the scene, else to a block."""
+
+    points: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class PinSpring(_Elastic):
+    """In a pin, between two of the bodies that meet there; q is the angle of the second less that
+    of the first: at the start within half a turn of ``free``, and counted on from there."""
+
+    point: str
+    bodies: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class SegmentSpring(PinSpring):
+    """In a pin between two segments of an elastic link (`models.cut_scenes`)."""
+
+
+@dataclass(frozen=True)
+class SlideSpring(_Elastic):
+    """Along the line of a slider, between what slides and the body that the line is on."""
+
+    slider: str
+
+
+Spring = LineSpring | PinSpring | SlideSpring
+
+
+@dataclass(frozen=True)
+class CoulombFriction:
+    """Friction of ``mu`` times the normal force in the pin or slider ``joint``; in a pin it acts at
+    ``radius_m`` [m] from its centre, in a slider ``radius_m`` is 0.
+
+    A joint is named as in the scene's file: a slider by its own name, a pin by its point. Where a
+    slider has the name of its point, that name is the slider; another name for the slider leaves
+    that of the point to the pin.
+    """
+
+    joint: str
+    mu: float
+    radius_m: float = 0.0
+
+    @property
+    def arm_m(self) -> float:
+        """The radius of the friction circle [m]: the couple in a pin over its reaction.
+
+        A pin with play touches its bore along one line. The reaction leans from the normal there by
+        the angle of friction, atan(mu), and passes the centre at r sin(atan(mu)): mu r is larger by
+        1/cos of that angle. A couple of mu' r times the reaction, as of pins that are run in, is
+        that of mu = tan(asin(mu')).
+        """
+        return self.radius_m * self.mu / math.hypot(1.0, self.mu)
+
+
+@dataclass(frozen=True)
+class ConstantFriction:
+    """Friction in the pin or slider ``joint`` that is ``size`` against the motion, whatever the
+    joint bears: a torque [N m] in a pin, a force [N] in a slider."""
+
+    joint: str
+    size: float
+
+
+Friction = CoulombFriction | ConstantFriction

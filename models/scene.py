@@ -1,4 +1,4 @@
-"""What a mechanism is: links, pins, sliders, one driver, the assembly branch, loads.
+r"""What a mechanism is: links, pins, sliders, one driver, the assembly branch, loads.
 
 Pins are shared point names: two links, or a link and the ground, that list the same point are
 pinned there. A slider lets a point, or a whole link, run along a line of another body::
@@ -6,7 +6,7 @@ pinned there. A slider lets a point, or a whole link, run along a line of anothe
     block (no `link`)                     sliding link (`link = "yoke"`)
 
       rod                                        |  yoke
-        \\                                        |
+        \                                        |
     -----[C]------  line of `on`          =====[  Y  ]=====  line of `on`
      the block is pinned to the rod        the yoke does not turn against the line
 
@@ -19,15 +19,51 @@ import pickle
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NoReturn, TypeVar
 
-from models.beams import Beam
-from models.elastic import ElasticLink
-from models.fixed import FixedMapping
-from models.friction import CoulombFriction, Friction
+from models.elastic import Beam, ElasticLink, Shape
 from models.laws import Law
-from models.loads import Load
-from models.springs import Spring
-from models.start import Start
+from models.loads import CoulombFriction, Friction, Load, Spring
+
+K = TypeVar("K")
+V = TypeVar("V")
+
+
+class FixedMapping(dict[K, V]):
+    """A dict that cannot be changed; another one is made of it with ``{**old, ...}``."""
+
+    def _refuse(self, *_: object, **__: object) -> NoReturn:
+        raise TypeError("a scene is not changed; make another one with dataclasses.replace")
+
+    __setitem__ = __delitem__ = __ior__ = _refuse
+    clear = pop = popitem = setdefault = update = _refuse
+
+    def __reduce__(self) -> tuple[type[FixedMapping[K, V]], tuple[dict[K, V]]]:
+        return FixedMapping, (dict(self),)
+
+
+@dataclass(frozen=True)
+class Start:
+    """Angles [rad] and angular velocities [rad/s] of links, displacements [m] and speeds [m/s] of
+    sliders at time 0, by name.
+
+    Of a mechanism of mobility 1 they say again what the driver's own angle and speed say already,
+    and are held to it; of one with more freedoms they are the rest of its start.
+    """
+
+    angles_rad: Mapping[str, float] = field(default_factory=dict)
+    rates_rad_s: Mapping[str, float] = field(default_factory=dict)
+    displacements_m: Mapping[str, float] = field(default_factory=dict)
+    speeds_m_s: Mapping[str, float] = field(default_factory=dict)
+    shape: Shape | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("angles_rad", "rates_rad_s", "displacements_m", "speeds_m_s"):
+            object.__setattr__(self, name, FixedMapping(getattr(self, name)))
+
+    def __bool__(self) -> bool:
+        return any(vars(self).values())
+
 
 Point = tuple[float, float]
 GROUND = "ground"
@@ -142,7 +178,7 @@ class Scene:
     scene has it; ``loads`` act from outside, ``friction`` in joints of two bodies, ``springs``
     between bodies. ``start`` says more of the start of free motion than the driver. ``elastic`` are
     the links that bend or stretch, by name; the others are rigid. ``beams`` are what such a link is
-    where an engine is given nodes for it (`models.beamed`).
+    where an engine is given nodes for it (`models.cut_scenes`).
     """
 
     name: str

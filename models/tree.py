@@ -9,16 +9,28 @@ of the lightest bodies come first, so that loops close at heavy ones.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from models.errors import EngineError
-from models.joints import Prism, Slot, bodies, joints, local_point, turned
+from models.files.inputs import names_in
+from models.joints import (
+    Frame,
+    Prism,
+    Slot,
+    along,
+    bodies,
+    frames,
+    joints,
+    local_point,
+    mass_of,
+    mass_ratio,
+    turned,
+)
 from models.motion import State
-from models.one_or_more import names_in
-from models.poses import Frame, along, frames, mass_of, mass_ratio
 from models.scene import GROUND, Point, Scene, Slider
 
 UNEQUAL = 25.0
@@ -120,7 +132,7 @@ def plan(
 ) -> Tree:
     """The tree of a scene at an assembled state, with the loops closed at pins.
 
-    The rates of the coordinates are those of ``delay_s`` later (see `models.poses.frames`).
+    The rates of the coordinates are those of ``delay_s`` later (see `models.joints.frames`).
 
     Raises
     ------
@@ -274,3 +286,51 @@ def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child
     turns = hinge(body.into(place))
     both = (slide, turns) if rides else (turns, slide)
     return Limb(child, parent, offset, angle, both, edge.point, slider)
+
+
+def closings(scene: Scene, state: State) -> Iterator[tuple[str, ...]]:
+    """What ``close`` of `plan` may name to have other pins closed than by default.
+
+    The fewest pins first; each choice of closures once. Raises EngineError as `plan` does.
+    """
+    default = plan(scene, state).closures
+    seen = {frozenset(default)}
+    pins = [pin.point for pin in joints(scene).pins if pin.point != scene.driver_pivot]
+    for count in range(1, len(default) + 1):
+        for close in itertools.combinations(pins, count):
+            try:
+                closures = frozenset(plan(scene, state, close).closures)
+            except EngineError:
+                continue  # no loop closes at all of them
+            if closures not in seen:
+                seen.add(closures)
+                yield close
+
+
+def driven_freedom(scene: Scene, limbs: Sequence[Limb]) -> tuple[str, float]:
+    """Its name, and 1.0 where it reads as the driver's own coordinate, or -1.0 where the driven
+    link carries its base.
+
+    Raises
+    ------
+    EngineError
+        The driven joint is none of the tree's.
+    """
+    driver = scene.driver
+    if driver.is_crank:
+        return f"{driver.link}.{scene.driver_pivot}", 1.0
+    for limb in limbs:
+        slides = limb.slider is not None
+        if slides and limb.slider.name == driver.slider:  # type: ignore[union-attr]  # it has one
+            return next(f.name for f in limb.freedoms if f.kind == "slide"), 1.0
+        if (
+            not slides
+            and limb.point == driver.pin
+            and {limb.body, limb.parent}
+            == {
+                driver.base,
+                driver.link,
+            }
+        ):
+            return limb.freedoms[0].name, 1.0 if limb.body == driver.link else -1.0
+    raise EngineError(f"{scene.name}: the tree closes a loop at {driver.joint}, which is driven")

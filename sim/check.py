@@ -7,13 +7,12 @@ from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
-from models.controlled import Controlled
+from models.driver import Controlled
 from models.errors import EngineError
-from models.joints import bodies
+from models.joints import bodies, centre_of, frames, mass_of
+from models.loads import PinSpring
 from models.motion import State
-from models.poses import centre_of, frames, mass_of
 from models.scene import Scene
-from models.springs import PinSpring
 from sim.drive import pace, start_speed
 from sim.engine import Drive, Engine, Facts
 from sim.measure import gaps
@@ -55,18 +54,16 @@ def refuse_unknown_forces(
     """Raise EngineError for a scene with loads, springs or friction in an engine that would leave
     them out without a word, and for forces of an engine that reports none; of beams it names the
     engines that are ``applying_beams``."""
-    if scene.loads and not engine.applies_loads:
-        names = ", ".join(f"loads.{name}" for name in scene.loads)
-        raise EngineError(
-            f"{scene.name}: {engine.name} is given no loads ({names}); take them out to run it, "
-            "or use the reference alone"
-        )
-    if scene.springs and not engine.applies_springs:
-        names = ", ".join(f"springs.{name}" for name in scene.springs)
-        raise EngineError(
-            f"{scene.name}: {engine.name} is given no springs ({names}); take them out to run it, "
-            "or use the reference alone"
-        )
+    for what, given, applied in (
+        ("loads", scene.loads, engine.applies_loads),
+        ("springs", scene.springs, engine.applies_springs),
+    ):
+        if given and not applied:
+            names = ", ".join(f"{what}.{name}" for name in given)
+            raise EngineError(
+                f"{scene.name}: {engine.name} is given no {what} ({names}); take them out to run "
+                "it, or use the reference alone"
+            )
     if scene.beams and not engine.applies_beams:
         able = " or ".join(applying_beams()) or "no engine here"
         raise EngineError(

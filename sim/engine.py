@@ -11,9 +11,8 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, Protocol
 
 from models.array import Array
-from models.beams import Beam
-from models.forces import Forces
-from models.motion import Motion, State
+from models.elastic import Beam
+from models.motion import Forces, Motion, State
 from models.scene import Point, Scene
 
 Status = Literal["ok", "diverged", "locked", "branch-changed", "timeout", "crashed", "unsupported"]

@@ -1,4 +1,4 @@
-"""From the poses of an engine's bodies to the motion of the mechanism, and its joint gaps."""
+"""From the poses of an engine's bodies to the mechanism's motion, joint gaps and energy."""
 
 from __future__ import annotations
 
@@ -9,10 +9,22 @@ from functools import cached_property, lru_cache, reduce
 import numpy as np
 
 from models.array import Array
-from models.joints import block_name, blocks, carriers, local_point, sliding_angle
+from models.joints import (
+    block_name,
+    blocks,
+    bodies,
+    carriers,
+    centre_of,
+    line_ends,
+    local_point,
+    mass_of,
+    sliding_angle,
+    whole_turns,
+)
+from models.loads import LineSpring, PinSpring
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import GROUND, KEPT, Point, Same, Scene, Slider
-from sim.engine import BodyPose, Poses
+from sim.engine import BodyPose, Energy, Poses
 
 
 @dataclass(frozen=True)
@@ -41,7 +53,7 @@ class PointPath:
 
     @cached_property
     def _across(self) -> Array:
-        return _turned(self._arm)
+        return across(self._arm)
 
     @cached_property
     def position(self) -> Array:
@@ -74,14 +86,14 @@ class _Seen:
     def _drift(self) -> Array:
         """The velocity against the guide, in the plane."""
         omega = self.guide.omega[:, None]
-        return self.track.velocity - self.guide.velocity - omega * _turned(self._place)
+        return self.track.velocity - self.guide.velocity - omega * across(self._place)
 
     @cached_property
     def _axes(self) -> tuple[Array, Array]:
         """Along the line and to the left of it, (T, 2) each."""
         angle = self.guide.theta + self.slider.direction_rad
-        c, s = np.cos(angle), np.sin(angle)
-        return _pairs(c, s), _pairs(-s, c)
+        along = directions(angle)
+        return along, across(along)
 
     @property
     def position(self) -> Array:
@@ -98,17 +110,28 @@ class _Seen:
     def acceleration(self) -> Array:
         omega, alpha = self.guide.omega[:, None], self.guide.alpha[:, None]
         push = self.track.acceleration - self.guide.origin_acceleration
-        turning = alpha * _turned(self._place)
+        turning = alpha * across(self._place)
         return self._split(
-            push - turning + omega**2 * self._place - 2 * omega * _turned(self._drift)
+            push - turning + omega**2 * self._place - 2 * omega * across(self._drift)
         )
 
     def _split(self, vector: Array) -> Array:
-        along, across = self._axes
-        return _pairs((vector * along).sum(axis=1), (vector * across).sum(axis=1))
+        along, left = self._axes
+        return _pairs((vector * along).sum(axis=1), (vector * left).sum(axis=1))
 
 
-def _turned(vector: Array) -> Array:
+def directions(angle_rad: Array) -> Array:
+    """Unit vectors at these angles, (T, 2)."""
+    return _pairs(np.cos(angle_rad), np.sin(angle_rad))
+
+
+def arms(theta: Array, local: Point) -> Array:
+    """A vector of a body's frame over time in the plane, (T, 2)."""
+    c, s = np.cos(theta), np.sin(theta)
+    return _pairs(c * local[0] - s * local[1], s * local[0] + c * local[1])
+
+
+def across(vector: Array) -> Array:
     """The vectors (T, 2) turned by a quarter, counter-clockwise."""
     return _pairs(-vector[:, 1], vector[:, 0])
 
@@ -244,3 +267,48 @@ def _still(samples: int) -> BodyPose:
     """The ground."""
     zero, pair = np.zeros(samples), np.zeros((samples, 2))
     return BodyPose(pair, zero, pair, zero, pair, zero)
+
+
+def spring_lengths(scene: Scene, poses: Poses) -> Mapping[str, Array]:
+    """The q (T,) [m or rad] of each spring at the positions of the poses; see `models.springs`.
+
+    The first sample is taken as the start, from which whole turns in pins are counted.
+    """
+    paths, lengths = body_paths(poses), dict[str, Array]()
+    for name, spring in scene.springs.items():
+        if isinstance(spring, LineSpring):
+            a, b = (PointPath(paths[body], at).position for body, at in line_ends(scene, spring))
+            lengths[name] = np.hypot(*(b - a).T)
+        elif isinstance(spring, PinSpring):
+            first, second = (paths[body].pose.theta for body in spring.bodies)
+            opened = second - first
+            lengths[name] = opened + whole_turns(spring, float(opened[0]))
+        else:
+            seen = motion(scene, replace(poses, lag_s=0.0)).sliders[spring.slider]
+            lengths[name] = seen.displacement
+    return lengths
+
+
+def energy(scene: Scene, poses: Poses) -> Energy:
+    """Kinetic and potential energy [J] of all bodies and springs, both at the instants of the
+    velocities.
+
+    Where velocities lag, the positions are moved on to them, which is good to the second order of
+    the step. Heights count from the origin against gravity. A crank that a drive carries counts
+    with the mass of its link. What loads put in and dampers and friction take out is in neither: of
+    a scene that has any the total changes.
+    """
+    then = at_velocities(poses)
+    kinetic, potential = np.zeros(len(poses.time_s)), np.zeros(len(poses.time_s))
+    gravity = np.array(scene.gravity_m_s2)
+    with np.errstate(all="ignore"):  # what has come apart may overflow
+        for body in bodies(scene):
+            pose, (mass, inertia) = then.bodies[body], mass_of(scene, body)
+            centre = PointPath(BodyPath(pose), centre_of(scene, body))
+            square = (centre.velocity**2).sum(axis=1)
+            kinetic += 0.5 * mass * square + 0.5 * inertia * pose.omega**2
+            potential -= mass * centre.position @ gravity
+        for name, length in spring_lengths(scene, then).items():
+            spring = scene.springs[name]
+            potential += 0.5 * spring.rate * (length - spring.free) ** 2
+    return Energy(kinetic, potential)

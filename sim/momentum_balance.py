@@ -20,8 +20,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from models.joints import Prism, Slot, joints, local_point, riding_body
-from models.scene import GROUND, Point, Scene
+from models.joints import Prism, Slot, block_name, joined_at, joints, less, local_point, riding_body
+from models.motion import Forces, SliderForces
+from models.scene import GROUND, Point, Scene, Slider
+from sim.measure import across, arms, directions
+
+OnBlocks = Mapping[str, Array]
+"""What acts on slider blocks without mass beside their two joints, by slider: (T, 3), a force [N]
+and a torque [N m]."""
+UNDETERMINED = (
+    "redundant links share the load by their stiffness and fit: the momentum of rigid bodies "
+    "leaves the reactions open, and determines the driving torque alone"
+)
 
 
 @dataclass(frozen=True)
@@ -46,9 +56,7 @@ class MomentumGain:
 
     def arm(self, local: Point) -> Array:
         """From ``place`` to a point of the body's frame [m], (T, 2)."""
-        c, s = np.cos(self.theta), np.sin(self.theta)
-        x, y = local[0] - self.centre[0], local[1] - self.centre[1]
-        return np.stack([c * x - s * y, s * x + c * y], axis=1)
+        return arms(self.theta, less(local, self.centre))
 
 
 @dataclass(frozen=True)
@@ -91,7 +99,7 @@ def joint_pushes(
     system = _System(gains)
     for hinge in hinges:
         system.hold(scene, hinge)
-    across = {slide.slider.name: system.carry(scene, slide) for slide in slides}
+    lines = {slide.slider.name: system.carry(scene, slide) for slide in slides}
     for slide in slides:
         if isinstance(slide, Prism):
             system.couple(slide.body, slide.slider.on)
@@ -102,7 +110,7 @@ def joint_pushes(
     pairs, normals, moments, torque = np.split(found, ends, axis=1)
     return JointPushes(
         {hinge: pairs[:, 2 * k : 2 * k + 2] for k, hinge in enumerate(hinges)},
-        across,
+        lines,
         {slide.slider.name: normals[:, k] for k, slide in enumerate(slides)},
         {name: moments[:, k] for k, name in enumerate(prisms)},
         torque[:, 0] if driven else np.zeros(len(found)),
@@ -130,17 +138,9 @@ class _System:
 
     def carry(self, scene: Scene, slide: Prism | Slot) -> Array:
         """A line: a force across it, in one line of action on both bodies; its direction."""
-        slider, rider = slide.slider, riding_body(slide)
-        own = self._gains[rider]
-        arm = own.arm(local_point(scene, rider, slider.point))
-        guide = self._gains.get(slider.on)
-        angle = slider.direction_rad + (np.zeros(self._samples) if guide is None else guide.theta)
-        across = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
-        column = self._column()
-        self._push(column, rider, arm, across)
-        if guide is not None:
-            self._push(column, slider.on, own.place + arm - guide.place, -across)
-        return across
+        direction = across(self._along(slide.slider))
+        self._push_on(scene, slide.slider, riding_body(slide), direction)
+        return direction
 
     def couple(self, body: str, against: str) -> None:
         """A torque on a body, and the opposite on another."""
@@ -155,14 +155,8 @@ class _System:
         if driver.slider is None:
             self.couple(driver.link, driver.base)
             return
-        slider, own = scene.sliders[driver.slider], self._gains[driver.link]
-        arm = own.arm(local_point(scene, driver.link, slider.point))
-        guide = self._gains.get(slider.on)
-        angle = slider.direction_rad + (np.zeros(self._samples) if guide is None else guide.theta)
-        along, column = np.stack([np.cos(angle), np.sin(angle)], axis=1), self._column()
-        self._push(column, driver.link, arm, along)
-        if guide is not None:
-            self._push(column, slider.on, own.place + arm - guide.place, -along)
+        slider = scene.sliders[driver.slider]
+        self._push_on(scene, slider, driver.link, self._along(slider))
 
     def solution(self) -> Array:
         """The unknowns (T, unknowns): NaN where the joints are singular; those of least size where
@@ -181,6 +175,20 @@ class _System:
         found[lost] = np.nan
         return found
 
+    def _along(self, slider: Slider) -> Array:
+        """The direction of a line, (T, 2)."""
+        guide = self._gains.get(slider.on)
+        theta = np.zeros(self._samples) if guide is None else guide.theta
+        return directions(slider.direction_rad + theta)
+
+    def _push_on(self, scene: Scene, slider: Slider, rider: str, direction: Array) -> None:
+        """Have a further unknown push what slides at its point, and the guide back."""
+        own, guide, column = self._gains[rider], self._gains.get(slider.on), self._column()
+        arm = own.arm(local_point(scene, rider, slider.point))
+        self._push(column, rider, arm, direction)
+        if guide is not None:
+            self._push(column, slider.on, own.place + arm - guide.place, -direction)
+
     def _column(self) -> Array:
         """A further unknown, that acts on nothing yet."""
         self._columns.append(np.zeros((self._samples, 3 * len(self._row))))
@@ -191,3 +199,40 @@ class _System:
         row = self._row[body]
         column[:, row : row + 2] += direction
         column[:, row + 2] += arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]
+
+
+def forces_by_body(
+    scene: Scene,
+    pushes: JointPushes,
+    on_blocks: OnBlocks,
+    friction: Mapping[str, Array],
+    time_s: Array,
+) -> Forces:
+    """The forces that ``pushes`` are, at ``time_s``; of redundant links the torque alone.
+
+    A block without mass only passes on what it is given: its pin pushes on it as its guide and
+    what else acts on it do not, and its guide takes its torque.
+    """
+    if pushes.spare:
+        return Forces(time_s, {}, {}, pushes.torque, undetermined=UNDETERMINED, friction=friction)
+    samples = len(time_s)
+    pins = {
+        point: {body: np.zeros((samples, 2)) for body in names}
+        for point, names in joined_at(scene).items()
+    }
+    for hinge, force in pushes.hinges.items():
+        pins[hinge.point][hinge.other] += force
+        pins[hinge.point][hinge.first] -= force
+    moments = dict(pushes.moments)
+    for slot in joints(scene).slots:
+        name, point = slot.slider.name, slot.slider.point
+        block = pins[point]
+        own = on_blocks.get(name, np.zeros((samples, 3)))
+        passed = pushes.normals[name][:, None] * pushes.across[name] + own[:, 0:2]
+        block[riding_body(slot)] += passed
+        block[block_name(slot.slider)] -= passed
+        moments[name] = -own[:, 2]
+        if point in friction and point not in scene.sliders:  # whose second body is the block
+            moments[name] = moments[name] - friction[point]
+    sliders = {name: SliderForces(pushes.normals[name], moments[name]) for name in scene.sliders}
+    return Forces(time_s, pins, sliders, pushes.torque, friction=friction)

@@ -161,15 +161,7 @@ def install_command(name: str) -> str:
 
 def available() -> tuple[Availability, ...]:
     """All engines of ours, installed or not."""
-    engines = []
-    for name in ENGINES:
-        version, broken = None, ""
-        try:
-            version = engine(name).version()
-        except EngineError as error:
-            broken = str(error) if isinstance(error, BrokenEngineError) else ""
-        engines.append(Availability(name, version, install_command(name), broken))
-    return tuple(engines)
+    return tuple(_available(name, install_command(name), BrokenEngineError) for name in ENGINES)
 
 
 def applying_beams() -> list[str]:
@@ -180,12 +172,13 @@ def applying_beams() -> list[str]:
 def brought() -> tuple[Availability, ...]:
     """The engines that other installed packages bring, by their entry points; what is wrong with
     one that can not be used is said."""
-    engines = []
-    for name in dict.fromkeys(point.name for point in installed()):
-        version, broken = None, ""
-        try:
-            version = engine(name).version()
-        except EngineError as error:
-            broken = str(error)
-        engines.append(Availability(name, version, "", broken))
-    return tuple(engines)
+    names = dict.fromkeys(point.name for point in installed())
+    return tuple(_available(name, "", EngineError) for name in names)
+
+
+def _available(name: str, install: str, told: type[EngineError]) -> Availability:
+    """Whether an engine can be used; what is wrong with it is said of errors of these kinds."""
+    try:
+        return Availability(name, engine(name).version(), install)
+    except EngineError as error:
+        return Availability(name, None, install, str(error) if isinstance(error, told) else "")

@@ -1,28 +1,150 @@
-"""Run one scene in one engine."""
+"""Run one scene in one engine, stretch by stretch, and time its stepping."""
 
 from __future__ import annotations
 
+import gc
 import math
-from dataclasses import replace
+import statistics
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from numbers import Real
+from typing import cast
 
 import numpy as np
 
+from models.array import Array
 from models.errors import EngineError, shown
-from models.motion import State
+from models.motion import Forces, State
 from models.scene import Scene
 from sim.check import refuse_other_model, refuse_unknown_forces
 from sim.drive import pace, period
-from sim.engine import Drive, Engine, Run, Settings, Setup
+from sim.engine import (
+    BodyPose,
+    Cost,
+    Drive,
+    Engine,
+    Facts,
+    ForceSession,
+    Log,
+    Poses,
+    Run,
+    Session,
+    Settings,
+    Setup,
+    Status,
+)
+from sim.measure import energy, gaps, motion
 from sim.own_engine.watched import BrokenContractError
-from sim.recording import recorded
 from sim.registry import applying_beams
 from sim.registry import engine as engine_of
 from sim.settings import SettingError, profile_of, resolved
 
+CHUNK_STEPS = 4000
+"""Steps between two looks at whether the run has diverged."""
 LEAST_STEPS_PER_PERIOD = 8
 RUNAWAY = 1e6
 """Angular velocity over the pace of the run (`drive.pace`) that counts as diverged."""
+
+
+def chunks(steps: int, every: int) -> list[int]:
+    """Lengths of the stretches, each a multiple of ``every`` but the last."""
+    chunk = max(CHUNK_STEPS // every, 1) * every
+    return [min(chunk, steps - done) for done in range(0, steps, chunk)]
+
+
+def recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway: float) -> Run:
+    """The run, chunk by chunk, until its end or until it comes apart."""
+    every = blank.every
+    logs: list[Poses] = []
+    acting: list[Forces] = []
+    record = cast(ForceSession, session).record_forces if blank.with_forces else session.record
+    opened: list[Mapping[str, Array]] = []
+    warnings: list[str] = []
+    wall, done = 0.0, 0
+    status: Status = "ok"
+    reason = ""
+    for count in chunks(blank.steps, every):
+        try:
+            log = record(count, every)
+        except BrokenContractError:
+            raise
+        except Exception as error:  # whatever an engine throws is a row of the result
+            status, reason = "crashed", f"{type(error).__name__}: {error}"
+            break
+        wall, done = wall + log.wall_s, done + count
+        warnings += [w for w in log.warnings if w not in warnings]
+        apart_m = gaps(scene, log.poses)
+        sound, fault = _sound(scene, log, apart_m, runaway)
+        kept = slice(1 if logs else 0, sound)  # a stretch begins where the one before it ended
+        opened.append({name: gap[kept] for name, gap in apart_m.items()})
+        logs.append(stretch(log.poses, kept))
+        if log.forces is not None:
+            acting.append(log.forces.stretch(kept))
+        if fault:
+            status, reason = "diverged", fault
+            break
+    if not logs:
+        logs, opened = [facts.start], [gaps(scene, facts.start)]
+    poses = joined(logs)
+    forces = None
+    if acting:
+        forces = replace(Forces.joined(acting), drive_unit=scene.driver.effort_unit)
+    return replace(
+        blank,
+        status=status,
+        reason=reason,
+        motion=replace(motion(scene, poses), forces=forces),
+        gaps={name: np.concatenate([each[name] for each in opened]) for name in opened[0]},
+        energy=energy(scene, poses) if blank.drive == "free" else None,
+        velocity_time_s=poses.time_s + facts.velocity_shift * blank.dt_s,
+        acceleration_time_s=poses.time_s + facts.acceleration_shift * blank.dt_s,
+        stopped_at_s=float(poses.time_s[-1]),
+        warnings=tuple(warnings),
+        cost=Cost(wall, done, logged=True),
+    )
+
+
+def _sound(scene: Scene, log: Log, apart_m: Mapping[str, Array], runaway: float) -> tuple[int, str]:
+    """How many samples of a log hold together, and what came apart after them.
+
+    A joint that is open by more than the longest link, or a link that spins faster than
+    ``runaway`` [rad/s], a million times the pace of the run, is not a mechanism any more.
+    """
+    poses = log.poses
+    joints_hold = [gap <= scene.longest_m for gap in apart_m.values()]  # not where it is NaN
+    links_hold = [np.abs(poses.bodies[link].omega) <= runaway for link in scene.links]
+    bad = ~np.logical_and.reduce([*joints_hold, *links_hold])
+    count = int(np.argmax(bad)) if bad.any() else len(bad)
+    if count == len(bad) and not log.diverged:
+        return count, ""
+    when = float(poses.time_s[min(count, len(bad) - 1)])
+    if log.stopped and count == len(bad):
+        return count, f"stopped after {when:.6g} s: {log.stopped}"
+    return max(count, 1), f"came apart at {when:.6g} s"
+
+
+def stretch(poses: Poses, kept: slice) -> Poses:
+    """Some of the samples, one after the other."""
+
+    def cut(body: BodyPose) -> BodyPose:
+        return BodyPose(**{name: array[kept] for name, array in vars(body).items()})
+
+    return replace(poses.changed(cut), time_s=poses.time_s[kept])
+
+
+def joined(logs: Sequence[Poses]) -> Poses:
+    """Stretches of samples one after the other."""
+    if len(logs) == 1:
+        return logs[0]
+
+    def join(bodies: Sequence[BodyPose]) -> BodyPose:
+        return BodyPose(
+            **{name: np.concatenate([vars(b)[name] for b in bodies]) for name in vars(bodies[0])}
+        )
+
+    bodies = {name: join([log.bodies[name] for log in logs]) for name in logs[0].bodies}
+    return replace(logs[0], time_s=np.concatenate([log.time_s for log in logs]), bodies=bodies)
 
 
 def run(
@@ -71,16 +193,11 @@ def run(
         with_forces=with_forces,
     )
     check_steps(scene, period(scene, state, drive), dt_s, steps, every)
-    blank = Run(
-        **vars(told),
-        status="ok",
-        reason="",
-        settings=told.asked,
-    )
+    blank = Run(**vars(told), status="ok", reason="", settings=told.asked)
     if scene.elastic:
         raise EngineError(
             f"{scene.name}: {', '.join(scene.elastic)} bends, and an engine is given rigid "
-            "segments for it: `models.segmented.SegmentedScene(scene, count).rigid`"
+            "segments for it: `models.cut_scenes.SegmentedScene(scene, count).rigid`"
         )
     try:
         refuse_unknown_forces(scene, chosen, with_forces=with_forces, applying_beams=applying_beams)
@@ -150,3 +267,67 @@ def check_steps(scene: Scene, period: float, dt_s: float, steps: int, every: int
         )
     if steps < 1 or every < 1:
         raise EngineError(f"steps: found {steps}, logged every {every}; both are at least 1")
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Wall times [s] of several repeats of the same ``steps``; logging is part when ``logged``."""
+
+    walls_s: tuple[float, ...]
+    steps: int
+    logged: bool
+
+    @property
+    def best(self) -> Cost:
+        """The fastest repeat: the one that was disturbed least."""
+        return Cost(min(self.walls_s), self.steps, self.logged)
+
+    @property
+    def median(self) -> Cost:
+        """The middle repeat."""
+        return Cost(statistics.median(self.walls_s), self.steps, self.logged)
+
+
+def time_run(
+    scene: Scene,
+    state: State,
+    engine: str | Engine,
+    profile: str = "tuned",
+    *,
+    dt_s: float,
+    steps: int,
+    every: int = 0,
+    repeats: int = 5,
+    drive: Drive = "prescribed",
+    settings: Settings | None = None,
+) -> Timing:
+    """Time the stepping alone, or with logging where ``every`` is above 0.
+
+    Each repeat opens a new session and steps it warm first; the collector is off meanwhile.
+    Raises EngineError as `run` does, and for a scene that the engine cannot hold.
+    """
+    chosen = engine_of(engine) if isinstance(engine, str) else engine
+    asked = resolved(profile_of(chosen, profile), settings)
+    check_steps(scene, period(scene, state, drive), dt_s, steps, max(every, 1))
+    refuse_unknown_forces(scene, chosen, with_forces=False, applying_beams=applying_beams)
+    walls = []
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        for _ in range(repeats):
+            session = chosen.open(scene, state, asked, dt_s, drive)
+            session.step(max(steps // 10, 1))
+            walls.append(_wall(session, steps, every))
+    finally:
+        if collecting:
+            gc.enable()
+    return Timing(tuple(walls), steps, logged=every > 0)
+
+
+def _wall(session: Session, steps: int, every: int) -> float:
+    """Wall time of the steps [s]."""
+    if every:
+        return sum(session.record(n, every).wall_s for n in chunks(steps, every))
+    began = time.perf_counter()
+    session.step(steps)
+    return time.perf_counter() - began

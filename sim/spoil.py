@@ -18,8 +18,8 @@ from models.array import Array
 from models.motion import State
 from models.scene import Point, Scene
 from sim.engine import Drive, Engine, Facts, Log, Poses, Session, Settings
-from sim.recording import joined, stretch
 from sim.registry import capability
+from sim.run import joined, stretch
 
 WrongSetting = Literal["few-iterations", "first-order", "light-drive", "semi-implicit"]
 """What settings alone can spoil: an iterative solver ends after one over the size, errors shrink as

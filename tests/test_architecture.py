@@ -46,11 +46,11 @@ FLOORS: Mapping[str, str] = {
         lectures
         elastic
         free
-        circuits mechanism forces in_assembly
-        nearness kinematics
+        circuits mechanism forces
+        kinematics
         prepared
         assur
-        change_points reach result
+        change_points result
         turns
         dyads
         structure multibody
@@ -58,12 +58,9 @@ FLOORS: Mapping[str, str] = {
     "sim": f"""
         {" ".join(ENGINES)}
         spoil
-        timing
-        remedies run snippets tuning viewing own_models force_recipes
-        recording
-        check energy registry forces_by_body
-        spring_lengths
-        measure drive tree_poses settings own_engine load_magnitudes momentum_balance
+        run offers own_models
+        check registry momentum_balance
+        measure drive tree_poses settings own_engine load_magnitudes
         engine
     """,
 }

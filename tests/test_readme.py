@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from reports.selftest.all_faults import FAULTS
-from reports.stability.catalogue import CATALOGUE
+from reports.stability.all_cases import CATALOGUE
 from tests.worlds.command import PYTHON
 from tests.worlds.pages import blocks, commands, follows, ran, same, threads, words
 from tests.worlds.tiers import slowly
@@ -74,7 +74,7 @@ def test_every_command_of_the_readme_is_tried_once() -> None:
 def test_the_readme_counts_all_faults_that_are_planted_and_hard_cases_that_run_unnamed() -> None:
     of = Counter(fault.kind for fault in FAULTS.values())
     motions = of["motion"]
-    driven = sum(not case.free and not case.elastic for case in CATALOGUE.values())
+    driven = sum(case.way == "driven" for case in CATALOGUE.values())
     counts = (
         f"plants {motions} faults",
         f" {motions} of {motions} faults caught by the named rule ",

@@ -254,7 +254,7 @@ def test_an_engine_that_pip_installs_beside_the_wheel_holds_the_contract(
     assert "penalty 1.0" in (mine / "page.html").read_text(encoding="utf-8")
 
 
-MOVED = {"analytic", "analytic.reach", "analytic.dyads", "analytic.dyads.rrr", "sim", "sim.run"}
+MOVED = {"analytic", "analytic.prepared", "analytic.dyads", "analytic.dyads.rrr", "sim", "sim.run"}
 
 
 @pytest.mark.parametrize(
@@ -265,7 +265,7 @@ MOVED = {"analytic", "analytic.reach", "analytic.dyads", "analytic.dyads.rrr", "
         ("HOME = 'sim.run'", "sim.run in a string: take the name"),
         ("HOMES = {'a': ('sim',)}", "sim in a string: take the name"),
         ("START = f'import sys; from sim.run import {name}; run()'", "sim.run in a string"),
-        ("START = '''\nimport analytic.reach\n'''", "analytic.reach in a string"),
+        ("START = '''\nimport analytic.prepared\n'''", "analytic.prepared in a string"),
         ("from  sim.run import run", "write `from sim.run import` in one line"),
     ],
 )
@@ -283,7 +283,7 @@ if True: from sim import run; from analytic.dyads.rrr import (  # from sim impor
 )\r
 from simple import sim
 from . import near
-TEXT = "a floating base, see analytic.reach"
+TEXT = "a floating base, see analytic.prepared"
 """from sim.run import run"""
 '''
     moved = code.replace("True: from sim", "True: from crankcheck.sim")

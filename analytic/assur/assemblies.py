@@ -13,15 +13,19 @@ from dataclasses import dataclass, replace
 from flint import acb, arb, ctx, fmpq, fmpq_poly
 
 from analytic.assur.eliminant import (
+    ContinuumError,
     Eliminant,
+    Place,
+    Root,
     Turn,
     eliminant,
     is_zero,
+    places_on_line,
     rational,
     row_polynomial,
+    value,
 )
 from analytic.assur.leg_rows import AngleRow, LegRows
-from analytic.assur.shared_line import ContinuumError, Place, Root, places_on_line, value
 from models.errors import CrankcheckError
 from models.scene import Point
 

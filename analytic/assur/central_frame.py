@@ -12,8 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.assur.sampled_rows import LocalPoint
-from analytic.dyads.chunk import Chunk
-from analytic.dyads.driven import SINES, driver_scale
+from analytic.dyads.chunk import SINES, Chunk, driver_scale
 from analytic.dyads.plane import (
     EPS,
     EXACT_ANGLE,
@@ -23,9 +22,9 @@ from analytic.dyads.plane import (
     Real,
     Vec,
     direction,
+    rounding_of_angles,
 )
-from analytic.dyads.rounding import rounding_of_angles
-from analytic.structure.compound import Compound
+from analytic.structure.groups import Compound
 from models.joints import less, local_point, sliding_angle
 from models.scene import Point, Scene
 

@@ -1,7 +1,7 @@
 """The central link in and beside a change point of its group, where the rows say 0/0.
 
 As through the change points of dyads: what goes on smoothly is an analytic function of the driver's
-angle, and interpolated from both sides (`analytic.change_points.smooth`).
+angle, and interpolated from both sides (`analytic.change_points.sign`).
 """
 
 from __future__ import annotations
@@ -12,8 +12,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.change_points.sign import HALVES, LEAST_CERTAIN
-from analytic.change_points.smooth import COUNT, FEWER, WINDOW, Index, Interpolant, Rates, nodes
+from analytic.change_points.sign import (
+    COUNT,
+    FEWER,
+    HALVES,
+    LEAST_CERTAIN,
+    WINDOW,
+    Index,
+    Interpolant,
+    Rates,
+    nodes,
+)
 from analytic.dyads.chunk import DrivenCoordinate
 from analytic.dyads.plane import (
     EPS,

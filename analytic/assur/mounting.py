@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from analytic.assur.central_frame import CentralFrame
-from analytic.assur.driven_leg import DrivenBarLeg
 from analytic.assur.legs import (
     BarLeg,
     DoublySlidingLeg,
@@ -17,14 +18,22 @@ from analytic.assur.legs import (
     SlidingLeg,
     SlidingThere,
 )
-from analytic.assur.sampled_rows import SampledRow
+from analytic.assur.sampled_rows import Circle, LocalPoint, SampledRow
 from analytic.dyads.chunk import Chunk
-from analytic.dyads.plane import BodyKinematics
+from analytic.dyads.plane import (
+    EPS,
+    AngleError,
+    BodyKinematics,
+    PointError,
+    PointKinematics,
+    Real,
+    Vec,
+)
 from analytic.dyads.riding import Placed
-from analytic.structure.compound import Compound, as_triad
-from analytic.structure.groups import Group, JointKey, Triad
+from analytic.structure.groups import Compound, Group, JointKey, Triad, as_triad
 from analytic.structure.groups import Leg as LegOfGroup
 from models.errors import StructureError
+from models.joints import local_point
 from models.scene import Point, Scene, span
 
 
@@ -122,3 +131,120 @@ def _size(scene: Scene, frame: CentralFrame, points: Sequence[Point]) -> float:
     spans = [span(scene.links[body].points) for body in frame.bodies if body in scene.links]
     spans += [2.0 * math.dist(frame.origin, point) for point in points]
     return max(spans, default=0.0) or scene.longest_m
+
+
+@dataclass(frozen=True)
+class DrivenBarLeg:
+    """RR: ``own`` is the frame of the leg's two bodies.
+
+    ::
+
+          o---[cylinder]==[rod]---o       between a pin to a known body and one to the central link
+    """
+
+    frame: CentralFrame
+    placed: Placed
+    part: str
+    own: CentralFrame
+    outer: str
+    inner: str
+
+    def locals(self) -> list[tuple[str, Point]]:
+        return [(self.part, self.placed.local(self.part, self.inner))]
+
+    def _end(self, chunk: Chunk, pin: str) -> LocalPoint:
+        """A pin in the frame of the leg."""
+        body = self.body_of(pin)
+        return self.own.local(chunk, body, local_point(self.placed.scene, body, pin))
+
+    def body_of(self, pin: str) -> str:
+        """The body of the leg that carries a pin."""
+        return next(b for b in self.own.bodies if b in self.placed.structure.pins[pin])
+
+    def span(self, chunk: Chunk) -> LocalPoint:
+        """From the outer pin to the inner one, in the frame of the leg."""
+        near, far = self._end(chunk, self.outer), self._end(chunk, self.inner)
+        e, f = near.error, far.error
+        error = PointError(
+            e.position + f.position, e.velocity + f.velocity, e.acceleration + f.acceleration
+        )
+        return LocalPoint(far.p - near.p, far.v - near.v, far.a - near.a, error, True)
+
+    def _known(self, chunk: Chunk) -> PointKinematics:
+        return chunk.point(self.placed.holder(self.outer), self.outer)
+
+    def rows(self, chunk: Chunk) -> list[SampledRow]:
+        d = self.span(chunk)
+        length = d.p.norm()
+        rate = d.p.dot(d.v) / length
+        across = d.v.square() - rate * rate
+        second = (d.p.dot(d.a) + across) / length
+        e, speed = d.error, d.v.norm()
+        off = (
+            e.position + 2 * EPS * length,
+            e.velocity + 2.0 * speed * e.position / length + 4 * EPS * speed,
+            e.acceleration
+            + 2.0 * d.a.norm() * e.position / length
+            + (4.0 * speed * e.velocity + 4.0 * speed * speed * e.position / length) / length
+            + 8 * EPS * (d.a.norm() + speed * speed / length),
+        )
+        at = self.frame.local(chunk, *self.locals()[0])
+        return [Circle(at, self._known(chunk), length, rate, second, off)]
+
+    def place(self, chunk: Chunk, body: BodyKinematics) -> None:
+        near = self._known(chunk)
+        far = self.frame.local(chunk, *self.locals()[0]).on(body)
+        turn, omega, alpha, error = _turned(near, far, self.span(chunk))
+        anchor = _beside(self._end(chunk, self.outer), near, turn, omega, alpha, error)
+        self.own.place(chunk, BodyKinematics((0.0, 0.0), anchor, turn, omega, alpha, error))
+
+
+def _turned(
+    near: PointKinematics, far: PointKinematics, d: LocalPoint
+) -> tuple[Vec, Real, Real, AngleError | None]:
+    """The rotation of a frame in which the way between two points is ``d``."""
+    span, drift, pull = far.p - near.p, far.v - near.v, far.a - near.a
+    square = 1.0 / d.p.square()
+    turn = span.turned(Vec(d.p.x, -d.p.y)) * square
+    turn = turn * (1.0 / turn.norm())
+    own = drift - d.v.turned(turn)
+    omega = span.cross(own) * square
+    rest = pull - d.a.turned(turn) - d.v.turned(turn).perp(2.0 * omega)
+    alpha = span.cross(rest) * square
+    if near.error is None or far.error is None:
+        return turn, omega, alpha, None
+    length = d.p.norm()
+    e, f, g = near.error, far.error, d.error
+    lean = (e.position + f.position + g.position) / length + 4 * EPS
+    theta = np.where(lean < 0.5, 1.2 * lean, np.pi)
+    slip, speed = d.v.norm() / length, own.norm() / length
+    w = (e.velocity + f.velocity + g.velocity) / length + slip * theta
+    w = w * (1.0 + lean) + 2.0 * (lean + 4 * EPS) * speed
+    shift = d.a.norm() / length
+    a = (e.acceleration + f.acceleration + g.acceleration) / length + shift * theta
+    a = a + 2.0 * (slip * w + np.abs(omega) * (g.velocity / length + slip * theta))
+    a = a * (1.0 + lean) + 2.0 * (lean + 6 * EPS) * rest.norm() / length
+    return turn, omega, alpha, AngleError(theta, w, a)
+
+
+def _beside(
+    local: LocalPoint,
+    at: PointKinematics,
+    turn: Vec,
+    omega: Real,
+    alpha: Real,
+    error: AngleError | None,
+) -> PointKinematics:
+    """The origin of a frame one of whose points, which may move in it, is at a known place."""
+    still = PointKinematics(Vec(0.0, 0.0), Vec(0.0, 0.0), Vec(0.0, 0.0), PointError(0.0, 0.0, 0.0))
+    frame = BodyKinematics((0.0, 0.0), still, turn, omega, alpha, error)
+    way = replace(local, moves=True).on(frame)
+    bounds = None
+    if at.error is not None and way.error is not None:
+        e, f = at.error, way.error
+        bounds = PointError(
+            e.position + f.position + EPS * at.p.norm(),
+            e.velocity + f.velocity + EPS * at.v.norm(),
+            e.acceleration + f.acceleration + EPS * at.a.norm(),
+        )
+    return PointKinematics(at.p - way.p, at.v - way.v, at.a - way.a, bounds)

@@ -1,7 +1,7 @@
 """The central link of a triad over a chunk of samples, from a guess: place, rates, bounds.
 
 Three rows, linear in each level of motion by one and the same matrix of wrenches: place by Newton's
-method, rates and second rates directly. The certificate is that of `analytic.dyads.closure` in
+method, rates and second rates directly. The certificate is that of `analytic.dyads.parts` in
 three unknowns: residuals and errors of what is known, through the inverse of the matrix, bound the
 unknowns to first order, and up to twice that bounds them fully where the matrix changes little over
 that distance (Newton-Kantorovich). Then the assembly there is the only one nearby. Where that fails
@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -238,3 +239,61 @@ def _dot(a: Three, b: Three) -> Real:
 def place_of(local: Point) -> Vec:
     """A point of a link's frame as a vector."""
     return Vec(*local)
+
+
+class RowsAt(Protocol):
+    """The rows at driver angles [rad], (T,), each uncertain by ``half``; the driver at 1 rad/s."""
+
+    def __call__(self, theta: Array, half: Array) -> Sequence[SampledRow]: ...
+
+
+@dataclass(frozen=True)
+class Pose:
+    """The central link at a driver angle: place of its anchor [m], angle [rad], rates by it."""
+
+    theta: float
+    place: tuple[float, float]
+    angle: float
+    rate: tuple[float, float]
+    omega: float
+    second: tuple[float, float]
+    alpha: float
+    det: float
+
+
+def pose_at(rows: RowsAt, theta: float, place: Vec, turn: Vec, size_m: float) -> Pose | None:
+    """The assembly nearest to a guess, one sample; None where there is none that is certain."""
+    at = np.array([theta])
+    own = rows(at, 8 * EPS * np.abs(at))
+    solved = solve_platform(own, place, turn, size_m, certified=True)
+    if not (solved.closed[0] and solved.sure[0]):
+        return None
+    return pose_of(solved.body, solved.det, theta, 0, math.atan2(turn.y[0], turn.x[0]))
+
+
+def pose_of(body: BodyKinematics, det: Array, theta: float, k: int, near: float) -> Pose:
+    """One sample as a pose, the angle that which is nearest to another."""
+
+    def one(value: object) -> float:
+        flat = np.ravel(np.asarray(value))
+        return float(flat[k if flat.size > 1 else 0])
+
+    turned = math.atan2(one(body.turn.y), one(body.turn.x))
+    angle = turned + math.tau * round((near - turned) / math.tau)
+    at = body.anchor
+    return Pose(
+        theta, (one(at.p.x), one(at.p.y)), angle, (one(at.v.x), one(at.v.y)), one(body.omega),
+        (one(at.a.x), one(at.a.y)), one(body.alpha), one(det),
+    )  # fmt: skip
+
+
+def ahead(pose: Pose, theta: Array) -> tuple[Vec, Vec]:
+    """Where a pose leads to at driver angles, to the second order."""
+    d = theta - pose.theta
+    half = 0.5 * d * d
+    place = Vec(
+        pose.place[0] + pose.rate[0] * d + pose.second[0] * half,
+        pose.place[1] + pose.rate[1] * d + pose.second[1] * half,
+    )
+    angle = pose.angle + pose.omega * d + pose.alpha * half
+    return place, Vec(np.cos(angle), np.sin(angle))

@@ -11,13 +11,11 @@ import numpy as np
 
 from analytic.assur.crossing import CrossingPiece
 from analytic.assur.mounting import Mounting
-from analytic.assur.platform import SolvedPlatform, solve_platform
-from analytic.assur.pose import pose_at
+from analytic.assur.platform import SolvedPlatform, pose_at, solve_platform
 from analytic.assur.sampled_rows import SampledRow
 from analytic.assur.track import Track
 from analytic.change_points.sign import AT_START, HALVES, whole_turns_off
-from analytic.dyads.chunk import Chunk, Passage
-from analytic.dyads.driven import driver_scale, told
+from analytic.dyads.chunk import Chunk, Passage, driver_scale, told
 from analytic.dyads.parts import Closure, OpenError
 from analytic.dyads.plane import STEADY, AngleError, BodyKinematics, Vec
 from analytic.dyads.steps import FollowedStep, Step

@@ -26,9 +26,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.assur.ends import End
-from analytic.assur.following import Piece, follow
-from analytic.assur.pose import Pose, RowsAt
+from analytic.assur.following import End, Piece, follow
+from analytic.assur.platform import Pose, RowsAt
 from analytic.dyads.plane import Vec
 from models.array import Array, Mask
 

@@ -26,7 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.change_points.sign import AT_START, SIDE, ChangePoints, whole_turns_off
-from analytic.dyads.driven import driver_scale, told
+from analytic.dyads.chunk import driver_scale, told
 from analytic.dyads.parts import CLOSED
 from analytic.dyads.plane import Real
 from analytic.dyads.steps import FollowedStep, Step, stretched

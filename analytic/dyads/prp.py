@@ -13,8 +13,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.dyads.closure import Certificate, Curvature, Jacobian, certify
-from analytic.dyads.parts import Closure, Dyad, MovingLine, OpenError, SlideError, Sliding
+from analytic.dyads.parts import (
+    Certificate,
+    Closure,
+    Curvature,
+    Dyad,
+    Jacobian,
+    MovingLine,
+    OpenError,
+    SlideError,
+    Sliding,
+    certify,
+)
 from analytic.dyads.plane import EPS
 
 

@@ -21,8 +21,8 @@ from analytic.dyads.plane import (
     PointKinematics,
     Vec,
     direction,
+    rounding_of_angles,
 )
-from analytic.dyads.rounding import rounding_of_angles
 from analytic.structure.mobility import Structure
 from models.joints import less, local_point, sliding_body, turned
 from models.scene import Point, Scene

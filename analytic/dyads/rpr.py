@@ -14,8 +14,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.dyads.closure import Certificate, Curvature, Jacobian, certify
-from analytic.dyads.parts import Dyad, SlideError, Sliding, Turning, closing_root, uncertain
+from analytic.dyads.parts import (
+    Certificate,
+    Curvature,
+    Dyad,
+    Jacobian,
+    SlideError,
+    Sliding,
+    Turning,
+    certify,
+    closing_root,
+    uncertain,
+)
 from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real
 
 

@@ -14,13 +14,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.dyads.closure import Certificate, Curvature, Jacobian, certify
 from analytic.dyads.parts import (
+    Certificate,
+    Curvature,
     Dyad,
+    Jacobian,
     MovingLine,
     SlideError,
     Sliding,
     Turning,
+    certify,
     closing_root,
     uncertain,
 )

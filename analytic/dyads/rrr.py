@@ -15,8 +15,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.dyads.closure import Certificate, Curvature, Jacobian, certify
-from analytic.dyads.parts import Dyad, Turning, closing_root, uncertain
+from analytic.dyads.parts import (
+    Certificate,
+    Curvature,
+    Dyad,
+    Jacobian,
+    Turning,
+    certify,
+    closing_root,
+    uncertain,
+)
 from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real, Vec
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from analytic.dyads import prp, rpp, rpr, rrp, rrr
 from analytic.dyads.chunk import Chunk, Passage
-from analytic.dyads.plane import direction
+from analytic.dyads.plane import direction, rounding_of_angles
 from analytic.dyads.riding import (
     Bar,
     Placed,
@@ -23,7 +23,6 @@ from analytic.dyads.riding import (
     turning_body,
     without_lead,
 )
-from analytic.dyads.rounding import rounding_of_angles
 from analytic.structure.groups import Group
 from models.array import Array
 from models.joints import less, sliding_body, turned

@@ -21,10 +21,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.elastic.shapes import Shapes, places, shortening
-from analytic.multibody.body_set import Marker, Markers
+from analytic.multibody.bodies import Marker, Markers
 from models.array import Array
+from models.cut_links import Line
 from models.elastic import ElasticLink
-from models.elastic_line import Line
 from models.joints import turned
 from models.scene import Point
 

@@ -1,4 +1,4 @@
-"""Elastic links of a mechanism whose driver is controlled (`models.controlled`).
+"""Elastic links of a mechanism whose driver is controlled (`models.driver`).
 
 Nothing tells the driver's angle: it is one of the freedoms, as in what is let go, with the torque
 of the controller on it. What the rigid mechanism needs comes from its kinetostatics.
@@ -12,18 +12,45 @@ from functools import lru_cache
 import numpy as np
 
 from analytic.elastic.discretisation import Discretisation
-from analytic.elastic.released import Method, ReleasedElasticMotion, follow
+from analytic.elastic.elastic_motion import DrivenElasticMotion, ElasticHistory
+from analytic.elastic.released import Method, ReleasedElasticMotion, follow, release_elastic
 from analytic.forces.kinetostatics import forces
 from analytic.multibody.assembly import Assembly
-from analytic.multibody.configuration import Configuration
+from analytic.multibody.bodies import Configuration
 from analytic.multibody.generalised_forces import GeneralisedForces, Strokes
 from models.array import Array
-from models.controlled import Controlled
+from models.characteristics import FourierSum
+from models.cut_links import with_rigid_links
+from models.driver import Controlled, Released, check_duration, let_go
+from models.elastic import Shape
 from models.errors import CrankcheckError
-from models.released import check_duration, let_go
-from models.rigid import with_rigid_links
 from models.scene import Same, Scene
-from models.waves import FourierSum
+
+
+def elastic_history(
+    scene: Scene,
+    until_s: float,
+    by: Discretisation,
+    start: Shape,
+    *,
+    stiffened: bool = True,
+    tolerance: float | None = None,
+) -> ElasticHistory:
+    """The motion from time 0 to ``until_s`` [s], which starts with a shape.
+
+    ``tolerance`` is that of `release_elastic`, for what gives way. Raises CrankcheckError as that,
+    and as `DrivenElasticMotion` where it is asked for anything.
+    """
+    match scene.driver.law:
+        case Controlled():
+            follow = control_elastic
+        case Released():
+            follow = release_elastic
+        case _:
+            return DrivenElasticMotion(scene, until_s, by, start, stiffened)
+    begun = replace(scene, start=replace(scene.start, shape=start))
+    return follow(begun, until_s, by, stiffened=stiffened, tolerance=tolerance)
+
 
 TURN_SAMPLES = (64, 128, 256, 512, 1024)
 """Of the torque that the rigid mechanism needs, tried one after the other."""

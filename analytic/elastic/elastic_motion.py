@@ -8,31 +8,31 @@ result is to be trusted is seen from the next finer description.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
-from analytic.elastic.coordinates import coordinates
-from analytic.elastic.discretisation import Discretisation, Segments, flexible_links
-from analytic.elastic.drive_check import check_drive
-from analytic.elastic.elastic_doubt import ElasticDoubt
+from analytic.elastic.discretisation import Discretisation, ElasticDoubt, Segments, flexible_links
 from analytic.elastic.natural import link_modes
 from analytic.elastic.periodic import FEWEST, OTHERS, PeriodicMotion, periodic_motion
-from analytic.elastic.reduced import Instant, ReducedForm, quasi_static_start
+from analytic.elastic.reduced import Instant, ReducedForm, coordinates, quasi_static_start
+from analytic.elastic.released import ReleasedElasticMotion, release_elastic
 from analytic.elastic.vibration import VibrationHistory, vibrate
 from analytic.kinematics import solve
 from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly
-from analytic.multibody.configuration import Configuration
+from analytic.multibody.bodies import Configuration, EnergyBalance
+from analytic.multibody.dynamics import joint_forces
 from analytic.multibody.generalised_forces import GeneralisedForces
-from analytic.multibody.joint_forces import joint_forces
-from models.array import Array
+from analytic.structure.mobility import refuse_other_than_cranked
+from models.array import Array, samples
 from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.motion import ElasticMotion as LinkShape
 from models.motion import Motion
-from models.samples import samples
 from models.scene import Scene
 
 PER_TURN, PER_CYCLE = 24, 6
@@ -196,3 +196,106 @@ class DrivenElasticMotion:
                     "stiffer, or drive slower"
                 )
         return found
+
+
+JUMP = 1e-6
+"""Of the peak speed: what more it changes by at once is a jump."""
+
+
+def check_drive(scene: Scene, until_s: float) -> None:
+    """Refuse what elastic links can not be followed through from time 0 to ``until_s``.
+
+    Raises
+    ------
+    CrankcheckError
+        No elastic link; a driver other than a crank; a change point on the way, where a bent link
+        takes the other branch as well; a speed of the driver that jumps, which is a blow.
+    """
+    if not scene.elastic:
+        raise CrankcheckError(
+            f"{scene.name}: no link of it is elastic; give one a table [elastic.LINK]"
+        )
+    refuse_other_than_cranked(scene, "the motion of elastic links")
+    for crossing in solve(scene, np.array([0.0, until_s])).crossings:
+        raise CrankcheckError(
+            f"{scene.name}: with its driver at {math.degrees(crossing.driver_rad):.6g} deg the "
+            f"dyad of {crossing.dyad} goes through a change point, from which links that bend go "
+            "on in either branch; change a length"
+        )
+    law = scene.driver.law
+    for kink in law.kinks_s:
+        beside = np.nextafter(kink, [-np.inf, np.inf])
+        omega = law.at(beside)[1]
+        if kink < until_s and abs(omega[1] - omega[0]) > JUMP * law.peak_speed_rad_s:
+            raise CrankcheckError(
+                f"{scene.name}: at {kink:g} s the driver's speed jumps from {omega[0]:g} to "
+                f"{omega[1]:g} rad/s, which is a blow to elastic links; give it a rise_s above 0"
+            )
+
+
+ElasticHistory = DrivenElasticMotion | ReleasedElasticMotion
+"""What follows a law, and what is let go."""
+TOGETHER = 2000
+"""Instants: some 100 MB."""
+
+
+def sampled(motion: ElasticHistory, time_s: Array) -> Motion:
+    """The motion at times [s], (T,), in any order."""
+    order = np.argsort(time_s, kind="stable")
+    whole = Motion.joined([motion.at(time_s[part]) for part in _parts(order)])
+    if np.array_equal(order, np.arange(order.size)):
+        return whole
+    back = np.argsort(order)
+    asked = replace(whole, time_s=time_s, forces=None).each_series(lambda series: series[back])
+    return replace(asked, forces=whole.forces and whole.forces.stretch(back))
+
+
+def bent(motion: ElasticHistory, time_s: Array, shares: Array) -> dict[str, Array]:
+    """How far elastic links are from the line between their pins, by name [m], (T, K), at times [s]
+    (T,) in ascending order, and at shares (K,) of the length from the first pin to the second."""
+    found: dict[str, list[Array]] = {}
+    for part in _parts(np.arange(time_s.size)):
+        q = motion.coordinates_at(time_s[part])
+        for name, (body, own) in motion.assembly.elastic.items():
+            places = body.deflections(q[:, own], shares * body.length_m)
+            found.setdefault(name, []).append(places)
+    return {name: np.concatenate(each) for name, each in found.items()}
+
+
+def energies(motion: ReleasedElasticMotion, time_s: Array) -> EnergyBalance:
+    """Of what is let go, at times [s], (T,) in ascending order."""
+    parts = [motion.energy(time_s[part]) for part in _parts(np.arange(time_s.size))]
+    return EnergyBalance.joined(parts)
+
+
+def _parts(order: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:
+    yield from np.array_split(order, max(1, -(-order.size // TOGETHER)))
+
+
+def fastest_rad_s(scene: Scene, by: Discretisation) -> float:
+    """The highest angular frequency of the links in the position of the start, unloaded, or what
+    dies off the fastest where damping_s makes that faster still."""
+    by_place, by_rate = _of_released(scene, by) if scene.is_free else _of_driven(scene, by)
+    highest = math.sqrt(float(np.linalg.eigvals(-by_place).real.max()))
+    if not any(own.damping_s for own in scene.elastic.values()):
+        return highest
+    still, one = np.zeros_like(by_place), np.eye(len(by_place))
+    whole = np.block([[still, one], [by_place, by_rate]])
+    return max(highest, float(np.abs(np.linalg.eigvals(whole)).max()))
+
+
+def _of_driven(scene: Scene, by: Discretisation) -> tuple[Array, Array]:
+    """What accelerations of the coefficients are by these and by their rates, (m, m) each."""
+    motion = DrivenElasticMotion(scene, 1.0, by, "straight", stiffened=True)
+    form, mass = motion.form, motion.first.mass[0]
+    return -np.linalg.solve(mass, form.stiffness), -np.linalg.solve(mass, form.damping)
+
+
+def _of_released(scene: Scene, by: Discretisation) -> tuple[Array, Array]:
+    """The same where nothing holds the driver, of its angle too."""
+    straight = replace(scene, start=replace(scene.start, shape="straight"))
+    motion = release_elastic(straight, 1.0, by)
+    form, tangent = motion.form, motion.form.tangent(motion.start[0])
+    still = np.zeros(tangent.free.shape[1])
+    derived = form.derivatives(0.0, tangent, still, still)
+    return derived[:, : still.size], derived[:, still.size :]

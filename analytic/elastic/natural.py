@@ -7,12 +7,17 @@ moving mechanism are near to.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
+from analytic.elastic.reduced import ReducedForm
 from models.array import Array
-from models.elastic_line import line_of
+from models.cut_links import line_of
+from models.elastic import ElasticLink
+from models.laws import ConstantSpeed
 from models.scene import Scene
 
 SHOWN = 3
@@ -73,3 +78,96 @@ def natural_modes(mass: Array, stiffness: Array) -> NaturalModes:
     even = 0.5 * (stiffness + np.swapaxes(stiffness, 1, 2))
     squares, shapes = np.linalg.eigh(inverse @ even @ onto)
     return NaturalModes(np.sqrt(np.maximum(squares, 0.0)), onto @ shapes)
+
+
+MOST = 30.0
+"""A sensitivity from which on there is no motion to be told: a modulus that is off by one percent
+changes it by a third."""
+MODES = 20
+"""Modes of a link among which one is looked for that an order resonates with."""
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """``size`` is the share of the largest deflection that changes, over the share by which all
+    links are stiffer; most of it is at an ``order`` of the driver's turns, in a ``link``."""
+
+    size: float
+    order: int
+    link: str
+
+    @property
+    def resonates(self) -> bool:
+        return not self.size < MOST
+
+
+def sensitivity(form: ReducedForm, z: Array, change: Array) -> Sensitivity:
+    """Of coefficients at N instants of a period, (N, m), that change so for a stiffness of twice
+    its size.
+
+    A whole frequency ratio alone says little: next to 10 the driver hardly excites what would
+    resonate, next to 5 it does. So the motion itself is asked: all links stiffer by a small share,
+    what share of its deflection changes? Far below the first natural frequency that is 1; where a
+    natural frequency is a whole multiple of the driver's, and not damped, there is no end to it.
+    """
+    whole, largest = float(np.abs(change).max(initial=0.0)), float(np.abs(z).max(initial=0.0))
+    size = whole / largest if largest else 0.0
+    orders = np.abs(np.fft.rfft(change, axis=0))
+    order, coefficient = np.unravel_index(int(orders.argmax()), orders.shape)
+    return Sensitivity(size, int(order), links_of(form)[int(coefficient)])
+
+
+def links_of(form: ReducedForm) -> list[str]:
+    """The link of every coefficient, (m,)."""
+    every = form.assembly.elastic.items()
+    return [name for name, (_, own) in every for _ in range(own.start + 3, own.stop)]
+
+
+def resonance_text(form: ReducedForm, found: Sensitivity) -> str:
+    """What resonates, and what would work."""
+    scene = form.assembly.scene
+    turning = math.tau / form.period_s
+    mode = nearest_mode(form, found.link, found.order * turning)
+    text = f"{scene.name}: a resonance: elastic.{found.link} vibrates at order {found.order} of the"
+    text += f" driver, {turning:.6g} rad/s"
+    if mode is not None:
+        kind, number, frequency = mode
+        text += (
+            f"; its mode {number} {kind} has {frequency:.6g} rad/s, {frequency / turning:.4g} "
+            "times that"
+        )
+    text += f". One percent of stiffness changes its deflection by {_percent(found.size)}: "
+    return (
+        text + "take another speed" + _speed(form, found, mode) + _damping(scene.elastic.values())
+    )
+
+
+def nearest_mode(form: ReducedForm, link: str, rad_s: float) -> tuple[str, int, float] | None:
+    """The mode of a link, between its pins alone, whose frequency is the nearest: across or along,
+    its number and its frequency [rad/s]. None for an order of 0."""
+    if not rad_s:
+        return None
+    own, line = form.assembly.scene.elastic[link], line_of(form.assembly.scene, link)
+    modes: list[tuple[str, int, float]] = []
+    for k in range(1, MODES + 1):
+        if own.bends:
+            modes.append(("across", k, own.bending_rad_s(line.length_m, line.density_kg_m, k)))
+        if own.stretches:
+            modes.append(("along", k, own.axial_rad_s(line.length_m, line.density_kg_m, k)))
+    return min(modes, key=lambda mode: abs(math.log(mode[2] / rad_s)))
+
+
+def _percent(size: float) -> str:
+    return f"{size:.0f} %" if size < 1e4 else "any amount"
+
+
+def _speed(form: ReducedForm, found: Sensitivity, mode: tuple[str, int, float] | None) -> str:
+    """A speed half-way to the next resonance of the same mode."""
+    if mode is None or not isinstance(form.law, ConstantSpeed):
+        return ""
+    return f" ({mode[2] / (found.order + 0.5):.4g} rad/s is half-way to the next)"
+
+
+def _damping(links: Iterable[ElasticLink]) -> str:
+    damped = any(own.damping_s for own in links)
+    return f", or give elastic links {'more ' * damped}damping_s"

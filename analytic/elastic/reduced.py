@@ -20,16 +20,17 @@ from functools import cached_property
 
 import numpy as np
 
-from analytic.elastic.coordinates import coordinates
 from analytic.kinematics import solve
 from analytic.multibody.assembly import Assembly
-from analytic.multibody.body_set import FlexibleBody
-from analytic.multibody.configuration import Configuration
+from analytic.multibody.bodies import Configuration, FlexibleBody
 from analytic.multibody.generalised_forces import GeneralisedForces
 from models.array import Array
-from models.controlled import Controlled
+from models.driver import Controlled
 from models.errors import CrankcheckError
+from models.joints import block_name, sliding_angle
 from models.laws import Law
+from models.motion import Motion
+from models.scene import GROUND
 
 MOST_STEPS = 20
 CLOSED = 1e-13
@@ -227,3 +228,24 @@ def quasi_static_start(form: ReducedForm) -> tuple[Array, Array]:
     still = [quasi_static(form, k * apart_s) for k in range(5)]
     weights = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / (12.0 * apart_s)
     return still[0], np.asarray(weights @ np.array(still))
+
+
+def coordinates(assembly: Assembly, motion: Motion) -> Array:
+    """The coordinates (T, n) of an assembly where a motion has its links; 0 for all that is not of
+    a frame."""
+    scene = assembly.scene
+    q = np.zeros((len(motion.time_s), assembly.size))
+    for name, link in scene.links.items():
+        at, theta = assembly.at[name], motion.links[name].theta
+        point, (x, y) = next(iter(link.points.items()))
+        place, c, s = motion.points[point].position, np.cos(theta), np.sin(theta)
+        q[:, at] = place[:, 0] - c * x + s * y
+        q[:, at + 1] = place[:, 1] - s * x - c * y
+        q[:, at + 2] = theta
+    for slider in scene.sliders.values():
+        if slider.link is None:
+            at = assembly.at[block_name(slider)]
+            guide = 0.0 if slider.on == GROUND else motion.links[slider.on].theta
+            q[:, at : at + 2] = motion.points[slider.point].position
+            q[:, at + 2] = guide + sliding_angle(slider)
+    return q

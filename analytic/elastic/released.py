@@ -14,26 +14,26 @@ from typing import Literal
 
 import numpy as np
 
-from analytic.elastic.discretisation import Discretisation, Modes, Segments, flexible_links
-from analytic.elastic.elastic_doubt import ElasticDoubt
-from analytic.elastic.free_by_library import by_library
-from analytic.elastic.free_windows import FreePiece, by_collocation, check_smooth
+from analytic.elastic.discretisation import (
+    Discretisation,
+    ElasticDoubt,
+    Modes,
+    Segments,
+    flexible_links,
+)
+from analytic.elastic.free_windows import FreePiece, by_collocation, by_library, check_smooth
 from analytic.elastic.tangent_form import FreeInstant, TangentForm
 from analytic.kinematics import solve
 from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly
-from analytic.multibody.configuration import Configuration
-from analytic.multibody.dynamics import Dynamics
-from analytic.multibody.energy_balance import EnergyBalance
-from analytic.multibody.generalised_forces import GeneralisedForces
-from analytic.multibody.joint_forces import joint_forces
+from analytic.multibody.bodies import Configuration, EnergyBalance
+from analytic.multibody.dynamics import Dynamics, joint_forces
+from analytic.multibody.generalised_forces import GeneralisedForces, edges
 from analytic.multibody.release_multibody import Acting, ready
-from analytic.multibody.switches import edges
-from models.array import Array
-from models.errors import CrankcheckError, StructureError
+from models.array import Array, samples
+from models.driver import check_duration, check_within
+from models.errors import StructureError
 from models.motion import Motion, State
-from models.released import check_duration
-from models.samples import samples
 from models.scene import Scene
 
 Method = Literal["collocation", "library"]
@@ -168,11 +168,7 @@ class ReleasedElasticMotion:
     def _instants(self, time_s: Array) -> Iterator[PieceInstants]:
         """Those of all pieces, one after the other."""
         instants = samples(time_s, "time_s")
-        if instants.min() < 0.0 or instants.max() > self.until_s * (1.0 + 1e-12):
-            raise CrankcheckError(
-                f"{self.scene.name}: times from {instants.min():g} to {instants.max():g} s; it was "
-                f"let go at 0, and integrated up to {self.until_s:g} s"
-            )
+        check_within(self.scene, instants, self.until_s)
         ends = np.array([piece.end_s for piece in self.pieces[:-1]])
         number = np.searchsorted(ends, instants, side="right")
         for k in np.unique(number):

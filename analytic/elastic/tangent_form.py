@@ -21,7 +21,7 @@ from functools import cached_property
 
 import numpy as np
 
-from analytic.multibody.configuration import Configuration
+from analytic.multibody.bodies import Configuration
 from analytic.multibody.dynamics import Dynamics
 from models.array import Array
 from models.errors import CrankcheckError

@@ -142,3 +142,25 @@ def _product(value: Real, one: BoundedVec, other: BoundedVec) -> Bounded:
 
 NOWHERE = BoundedVec(ZERO, 0.0, 0.0)
 """The vector that costs nothing to add; compare by identity."""
+
+Three = tuple[Bounded, Bounded, Bounded]
+
+
+def solved_three(columns: tuple[Three, Three, Three], given: Three) -> Three:
+    """The x with columns x = -given, by Cramer's rule."""
+    a, b, c = columns
+    bc, ca, ab = _cross(b, c), _cross(c, a), _cross(a, b)
+    inverse = -_dot(a, bc).inverse()
+    return (_dot(given, bc) * inverse, _dot(given, ca) * inverse, _dot(given, ab) * inverse)
+
+
+def _cross(a: Three, b: Three) -> Three:
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+def _dot(a: Three, b: Three) -> Bounded:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -15,15 +15,13 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from analytic.dyads.plane import Vec
-from analytic.forces.balance import Balance, PrismaticPair
-from analytic.forces.bounded import NOUGHT, NOWHERE, Bounded, BoundedVec
-from analytic.structure.compound import as_triad
-from analytic.structure.groups import Group, JointKey, Leg, Triad
+from analytic.forces.bounded import NOUGHT, NOWHERE, Bounded, BoundedVec, Three, solved_three
+from analytic.forces.free_body import Balance, PrismaticPair
+from analytic.structure.groups import Group, JointKey, Leg, Triad, as_triad
 from models.joints import local_point
 from models.scene import Point
 
 ONE = Bounded(1.0)
-Three = tuple[Bounded, Bounded, Bounded]
 
 
 @dataclass(frozen=True)
@@ -336,35 +334,12 @@ def balance_central(on: Balance, part: Triad | Group) -> None:
         holds.append(PinHold(central, joint) if joint[0] == "R" else SliderHold(central, joint))
     given = central.given().three
     for hold in holds:
-        given = _sum(given, hold.known().three)
+        known = hold.known().three
+        given = given[0] + known[0], given[1] + known[1], given[2] + known[2]
     columns = [wrench.three for hold in holds for wrench in hold.unknown()]
-    found = iter(_solved((columns[0], columns[1], columns[2]), given))
+    found = iter(solved_three((columns[0], columns[1], columns[2]), given))
     for hold in holds:
         hold.settle(found)
-
-
-def _solved(columns: tuple[Three, Three, Three], given: Three) -> Three:
-    """The x with columns x = -given, by Cramer's rule."""
-    a, b, c = columns
-    bc, ca, ab = _cross(b, c), _cross(c, a), _cross(a, b)
-    inverse = -_dot(a, bc).inverse()
-    return (_dot(given, bc) * inverse, _dot(given, ca) * inverse, _dot(given, ab) * inverse)
-
-
-def _cross(a: Three, b: Three) -> Three:
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
-
-
-def _dot(a: Three, b: Three) -> Bounded:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _sum(a: Three, b: Three) -> Three:
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
 def _axes() -> tuple[BoundedVec, BoundedVec]:

@@ -14,9 +14,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from analytic.forces.balance import Balance, PrismaticPair
 from analytic.forces.bounded import Bounded, BoundedVec
 from analytic.forces.central_balance import balance_central
+from analytic.forces.free_body import Balance, PrismaticPair
 from analytic.structure.groups import Bridge, Group, Triad
 
 

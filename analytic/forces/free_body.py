@@ -3,6 +3,8 @@
 By d'Alembert's principle that is its weight, its loads, and its inertia::
 
     P = m (g - a_S) in the centre of mass S        M = -J alpha
+
+Letters: e along a line, n = e turned by +90 deg.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.dyads.chunk import Chunk
+from analytic.dyads.chunk import Chunk, driver_scale
 from analytic.dyads.plane import (
     EPS,
     STEADY,
@@ -22,10 +24,16 @@ from analytic.dyads.plane import (
     BodyKinematics,
     PointKinematics,
     Vec,
+    rounding_of_angles,
 )
 from analytic.forces.bounded import NOUGHT, NOWHERE, Bounded, BoundedVec
-from models.joints import block_name
-from models.scene import GROUND, Point, Scene
+from analytic.structure.groups import Group
+from analytic.structure.mobility import Structure
+from models.array import Array
+from models.errors import CrankcheckError, few
+from models.joints import block_name, local_point, sliding_body
+from models.loads import Load
+from models.scene import GROUND, Point, Scene, Slider
 
 ROUGH = 4 * EPS
 """What turning a vector of a body rounds off, over its length."""
@@ -119,3 +127,184 @@ def _weigh(
     error = body.body.error
     lost = None if error is None else inertia * (error.alpha + EPS * np.abs(alpha))
     body.moment = Bounded(alpha * -inertia, lost)
+
+
+def apply_loads(scene: Scene, chunk: Chunk, time_s: Array, free: Mapping[str, FreeBody]) -> None:
+    """Put all loads of a scene on its bodies.
+
+    Raises CrankcheckError for a load on, at or over what the scene has not, and as
+    `Load.magnitude`.
+    """
+    for load in scene.loads.values():
+        _check_there(scene, load, free)
+        body, magnitude = free[load.body], _magnitude(load, chunk, time_s)
+        if load.point is None:
+            body.moment = body.moment + magnitude
+            continue
+        frame = body if load.frame == "body" else free[GROUND]
+        along = frame.unit(load.direction_rad, rounding_of_angles(load.direction_rad))
+        place = local_point(scene, load.body, load.point)
+        body.push(body.vector(body.centre, place), along * magnitude)
+
+
+def _check_there(scene: Scene, load: Load, free: Mapping[str, FreeBody]) -> None:
+    """Files are checked when they are read; a scene may be made otherwise."""
+    bodies = [name for name in free if name != GROUND]
+    if load.body not in bodies:
+        what, found, have = "body", load.body, bodies
+    elif load.slider is not None and load.slider not in scene.sliders:
+        what, found, have = "slider", load.slider, list(scene.sliders)
+    elif load.slider is None and (load.over in ("displacement", "speed") or load.stroke != "both"):
+        what, found, have = "slider", "none", list(scene.sliders)
+    elif load.point is not None and load.body in scene.links:
+        what, found, have = "point", load.point, list(scene.links[load.body].points)
+    else:
+        return
+    if found not in have:
+        names = few(have, 12) or "nothing: the scene has none"
+        raise CrankcheckError(
+            f"{scene.name}: loads.{load.name}.{what}: found {found}; use one of {names}"
+        )
+
+
+def _magnitude(load: Load, chunk: Chunk, time_s: Array) -> Bounded:
+    """The force or torque at every sample of a chunk."""
+    x, by, speed, speed_by = time_s, 0.0, None, 0.0
+    sliding = None if load.slider is None else chunk.sliders[load.slider]
+    error = chunk.driver.error
+    if load.over == "angle":
+        scale = driver_scale(chunk.scene)
+        x, by = chunk.theta * scale, 0.0 if error is None else error.theta * scale
+    if load.over == "omega":
+        body = chunk.bodies[load.body]
+        x, by = _as_samples(body.omega, time_s), 0.0 if body.error is None else body.error.omega
+    if sliding is not None:
+        speed = _as_samples(sliding.speed, time_s)
+        if load.over == "displacement":
+            x = _as_samples(sliding.s, time_s)
+        if sliding.error is not None:
+            speed_by = sliding.error.speed
+            by = sliding.error.displacement if load.over == "displacement" else by
+        if load.over == "speed":
+            x, by = speed, speed_by
+    value = load.magnitude(x, speed)
+    if error is None:
+        return Bounded(value, None)
+    return Bounded(value, load.uncertain(x, by, speed, speed_by))
+
+
+def _as_samples(values: Array | float, like: Array) -> Array:
+    return np.broadcast_to(np.asarray(values, dtype=np.float64), like.shape)
+
+
+Displaced = Mapping[str, Bounded]
+"""The displacement of each slider [m]."""
+
+
+class PrismaticPair:
+    """A prismatic pair: its directions, and the way to its point from the centre of each body."""
+
+    def __init__(self, slider: Slider, scene: Scene, free: Mapping[str, FreeBody], s: Bounded):
+        self.name, self.body, self.guide = slider.name, sliding_body(slider), slider.on
+        guide, body = free[self.guide], free[self.body]
+        angle = slider.direction_rad
+        self.along = guide.unit(angle, rounding_of_angles(angle))
+        self.across = self.along.perp()
+        tip = local_point(scene, self.body, slider.point)
+        self.arms = {
+            self.body: body.vector(body.centre, tip),
+            self.guide: guide.vector(guide.centre, slider.through_m) + self.along * s,
+        }
+
+    def other(self, body: str) -> str:
+        return self.guide if body == self.body else self.body
+
+
+class Balance:
+    """The bodies of a chunk that still stand, and the reactions found so far.
+
+    ``pins`` holds the force of each pin on each of its bodies, ``sliders`` what each guide exerts
+    on what slides: the force along n, and the moment about the slider's point.
+    """
+
+    def __init__(
+        self, scene: Scene, structure: Structure, free: dict[str, FreeBody], displaced: Displaced
+    ) -> None:
+        self.scene, self.structure, self.free = scene, structure, free
+        self.displaced = displaced
+        self.standing = {GROUND, *structure.bodies}
+        self.pins = {
+            point: dict.fromkeys(bodies, NOWHERE) for point, bodies in structure.pins.items()
+        }
+        self.sliders: dict[str, tuple[Bounded, Bounded]] = {}
+
+    def drive(self) -> Bounded:
+        """The driven joint bears what is left on its link; the torque, or the force along a line,
+        that this takes."""
+        driver = self.scene.driver
+        if driver.slider is not None:
+            line = self.pair(driver.slider)
+            force = -line.along.dot(self.free[driver.link].force)
+            self.rest(driver.slider, driver.link)
+            return force
+        link, pivot = driver.link, self.scene.driver_pivot
+        body = self.free[link]
+        self.on_pin(pivot, link, -body.force)
+        self.on_pin(pivot, driver.base, body.force)
+        return -body.moment_about(self.arm(link, pivot))
+
+    def arm(self, body: str, point: str) -> BoundedVec:
+        """From the centre of a body to one of its points."""
+        own = self.free[body]
+        return own.vector(own.centre, local_point(self.scene, body, point))
+
+    def span(self, body: str, start: str, end: str) -> BoundedVec:
+        """From one point of a body to another."""
+        return self.free[body].vector(
+            local_point(self.scene, body, start), local_point(self.scene, body, end)
+        )
+
+    def moment(self, body: str, point: str) -> Bounded:
+        """The moment of what acts on a body about one of its points."""
+        return self.free[body].moment_about(self.arm(body, point))
+
+    def pair(self, slider: str) -> PrismaticPair:
+        return PrismaticPair(
+            self.scene.sliders[slider], self.scene, self.free, self.displaced[slider]
+        )
+
+    def push(self, body: str, point: str, force: BoundedVec) -> None:
+        """A force of an inner pin on a body that needs it for its other pair."""
+        self.free[body].push(self.arm(body, point), force)
+
+    def on_pin(self, point: str, body: str, force: BoundedVec) -> None:
+        """A pin exerts a force on a body."""
+        self.pins[point][body] = self.pins[point][body] + force
+
+    def inner(self, group: Group, force: BoundedVec) -> None:
+        """The inner pin of a group exerts the force on its first body."""
+        self.on_pin(group.inner, group.first, force)
+        self.on_pin(group.inner, group.second, -force)
+
+    def hold(self, point: str, body: str, force: BoundedVec) -> None:
+        """An outer pin exerts the force on a body of a group, and the opposite on what holds it."""
+        holder = next(name for name in self.structure.pins[point] if name in self.standing)
+        self.on_pin(point, body, force)
+        self.on_pin(point, holder, -force)
+        if holder != GROUND:
+            self.push(holder, point, -force)
+
+    def slide(self, pair: PrismaticPair, body: str, normal: Bounded, moment: Bounded) -> None:
+        """A prismatic pair exerts a force along n and a moment on a body, and the opposite on the
+        other."""
+        other = self.free[pair.other(body)]
+        if pair.other(body) != GROUND:
+            other.push(pair.arms[pair.other(body)], -(pair.across * normal))
+            other.moment = other.moment - moment
+        slides = body == pair.body
+        self.sliders[pair.name] = (normal, moment) if slides else (-normal, -moment)
+
+    def rest(self, slider: str, body: str) -> None:
+        """A prismatic pair takes over all that acts on a body: along its line nothing is left."""
+        pair, own = self.pair(slider), self.free[body]
+        self.slide(pair, body, -pair.across.dot(own.force), -own.moment_about(pair.arms[body]))

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.dyads.chunk import Chunk, DrivenCoordinate
-from analytic.dyads.driven import SINES, driver_scale
+from analytic.dyads.chunk import SINES, Chunk, DrivenCoordinate, driver_scale
 from analytic.dyads.parts import SlideError, Sliding
 from analytic.dyads.plane import (
     AngleError,
@@ -18,10 +17,10 @@ from analytic.dyads.plane import (
     Vec,
     direction,
     fixed_body,
+    rounding_of_angles,
 )
-from analytic.dyads.rounding import rounding_of_angles
 from analytic.prepared import CHUNK
-from models.driver_course import driver_course
+from models.driver import driver_course
 from models.errors import CrankcheckError
 from models.joints import block_name
 from models.motion import Motion

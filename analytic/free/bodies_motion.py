@@ -12,15 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.dyads.plane import EPS
-from analytic.free.free_motion import LimitPassage
-from analytic.free.integrated_law import IntegratedLaw
-from analytic.multibody.as_motion import as_motion
-from analytic.multibody.energy_balance import EnergyBalance
-from analytic.multibody.logged_places import logged_places
+from analytic.free.free_motion import IntegratedLaw, LimitPassage
+from analytic.multibody.as_motion import as_motion, logged_places
+from analytic.multibody.bodies import EnergyBalance
 from analytic.multibody.multibody_motion import MultibodyMotion, Projection
-from models.array import Array
+from models.array import Array, samples
 from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
-from models.samples import samples
 from models.scene import Scene
 
 COARSER = Projection(1e-12)

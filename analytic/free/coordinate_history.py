@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,8 +10,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.dyads.plane import EPS
 from analytic.free.chart import Chart
-from analytic.free.gauss import sums
+from analytic.free.window import gauss, sums
 from models.array import Array
 
 MOST = 1.001
@@ -105,3 +107,126 @@ def _table(series: list[Array]) -> Array:
     for row, one in zip(table, series, strict=True):
         row[: len(one)] = one
     return table
+
+
+SAFETY = 8.0
+"""How much more than the largest difference so far the error may be."""
+SHARES = (0.13, 0.5, 0.87)
+"""Where windows are looked at: not at their ends, where what acts may jump."""
+
+
+@dataclass(frozen=True, eq=False)
+class Doubt:
+    """What u, u' and u'' may be off by until the times ``time_s``: rows of ``off`` (3, T)."""
+
+    time_s: Array
+    off: Array
+
+    @staticmethod
+    def between(history: CoordinateHistory, other: CoordinateHistory) -> Doubt:
+        """What two integrations of one motion leave in doubt of the first."""
+        starts = np.repeat(history.starts_s, len(SHARES))
+        ends = np.repeat([window.end_s for window in history.windows], len(SHARES))
+        time_s = starts + np.tile(SHARES, len(history.windows)) * (ends - starts)
+        own = np.array(history.state(time_s))
+        off = np.zeros((3, len(time_s)))
+        seen = np.array(other.state(time_s))
+        window = other.windows_at(time_s)
+        for chart, first, last in history.legs():
+            span = slice(first * len(SHARES), last * len(SHARES))
+            for k in np.unique(window[span]):
+                at = np.arange(span.start, span.stop)[window[span] == k]
+                there = _moved(other.windows[k].chart, chart, seen[:, at], own[0, at])
+                off[:, at] = np.abs(there - own[:, at])
+        sizes = np.abs(own) + np.abs(own).max(axis=1)[:, None]
+        off = np.maximum.accumulate(off, axis=1)
+        return Doubt(time_s, SAFETY * off + 4 * EPS * sizes)
+
+    def at(self, time_s: Array) -> Array:
+        """What u, u' and u'' may be off by, (3, T)."""
+        # That of the next look: the differences before a time hold up to there.
+        k = np.clip(np.searchsorted(self.time_s, time_s), 0, len(self.time_s) - 1)
+        return np.asarray(self.off[:, k])
+
+
+def _moved(of: Chart, to: Chart, state: Array, near: Array) -> Array:
+    """A state (3, T) of one chart in another, next to coordinates ``near``: by the driver's angle
+    where they are about different limits, which is away from both."""
+    if of is to or to.limit is None:
+        return state
+    u, v, a = state
+    assert of.limit is not None
+    if of.limit.driver_rad == to.limit.driver_rad:
+        sign = np.where(np.abs(u - near) <= np.abs(u + near), 1.0, -1.0)
+        return np.asarray(state * sign)
+    phi, first, second = of.driver(u)
+    size = np.sqrt(np.maximum(0.0, to.limit.side * (to.limit.driver_rad - phi)))
+    moved = np.where(near < 0.0, -size, size)
+    _, slope, bend = to.driver(moved)
+    rate = first * v / slope
+    return np.stack([moved, rate, (second * v * v + first * a - bend * rate * rate) / slope])
+
+
+STEEP = 0.1
+"""Nearer to a limit of the driver than where its angle changes by this per unit of the coordinate,
+a start is changed in the coordinate, as the angle is at its end there."""
+
+AT_REST = 1e-10
+"""Of the rates in a window: what is slower at its end has come to rest."""
+
+
+def growth(history: CoordinateHistory, omega: float) -> tuple[Array, Array]:
+    """Times [s], and by how much a small change of the start has grown until then at most.
+
+    What has grown is the change of the driver's angle. It is the larger one of what comes of a
+    changed angle, per rad, and of a changed speed, per ``omega`` [rad/s]; at least 1.
+
+    Each window knows the derivative of its end by its start; their product is that of the motion.
+    Where the acceleration jumps at a place, whoever comes there later is pushed later; where it
+    jumps as the machine comes to rest, the rates before and after are as the accelerations. Source:
+    M. di Bernardo et al., Piecewise-smooth Dynamical Systems, section 2.5 (saltation matrices).
+    """
+    chart = history.windows[0].chart
+    u0, v0 = (float(row[0]) for row in history.state(np.zeros(1))[:2])
+    _, first, second = (float(row[0]) for row in chart.driver(np.array([u0])))
+    steep = math.copysign(max(abs(first), STEEP), first)
+    # The angle changed by 1 at the same speed; the speed changed by omega.
+    change = np.array([[1.0 / steep, 0.0], [-second * v0 / steep**2, omega / steep]])
+    times, sizes = [np.zeros(1)], [np.ones(1)]
+    for k, window in enumerate(history.windows):
+        at = window.start_s + window.long_s * gauss(window.swing.shape[1]).places
+        turned = window.chart.driver(history.state(at)[0])[1]
+        sizes.append(np.abs(turned * (window.swing.T @ change).T).max(axis=0))
+        times.append(at)
+        change = window.change @ change
+        if k + 1 < len(history.windows):
+            change = _across(window, history.windows[k + 1]) @ change
+    time_s, size = np.concatenate(times), np.concatenate(sizes)
+    return time_s, np.maximum.accumulate(np.maximum(size, 1.0))
+
+
+def _across(before: Window, after: Window) -> Array:
+    """The derivative from the end of a window to the start of the next one."""
+    matrix = np.eye(2)
+    v = float(before.v.sum())
+    if before.bends and before.chart is after.chart:
+        start = (-1.0) ** np.arange(max(len(after.v), len(after.a)))
+        a, b = float(before.a.sum()), float(after.a @ start[: len(after.a)])
+        v = float(after.v @ start[: len(after.v)])
+        if abs(v) > AT_REST * float(np.abs(before.v).sum() + np.abs(after.v).sum()):
+            matrix[1, 0] = (b - a) / v
+        elif a:
+            matrix[1, 1] = b / a
+    if before.chart is not after.chart:
+        matrix = _between(before.chart, after.chart, float(before.u.sum()), v) @ matrix
+    return matrix
+
+
+def _between(old: Chart, new: Chart, u: float, v: float) -> Array:
+    """The derivative of the coordinate and the rate of one chart by those of another."""
+    phi, first, second = (float(row[0]) for row in old.driver(np.array([u])))
+    assert new.limit is not None
+    x = np.array([new.limit.coordinate(phi)])
+    _, own, bent = (float(row[0]) for row in new.driver(x))
+    ratio = first / own
+    return np.array([[ratio, 0.0], [(second - ratio * ratio * bent) * v / own, ratio]])

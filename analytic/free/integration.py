@@ -8,21 +8,18 @@ solved again until it ends there. At rest friction may hold the machine.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from analytic.free.coordinate_history import CoordinateHistory, Window
-from analytic.free.gauss import Gauss, sums
-from analytic.free.kinks import heeds_direction, is_kinked
+from analytic.free.kinks import BEYOND, SHORT_OF, WindowKinks, heeds_direction, is_kinked
 from analytic.free.machine import Machine
-from analytic.free.rest import TINY, rest_until, way_out
-from analytic.free.window import Scale, WindowSolution, solve_window
-from analytic.free.window_count import check_count
-from analytic.free.window_kinks import BEYOND, SHORT_OF, WindowKinks
-from analytic.multibody.runaway import Pace
-from analytic.multibody.switches import edges
+from analytic.free.window import Acceleration, Gauss, Scale, WindowSolution, solve_window, sums
+from analytic.multibody.generalised_forces import edges
+from analytic.multibody.steps import Pace
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
@@ -241,3 +238,59 @@ class Integration:
         if chart.left(self.u) is not None:
             chart, self.u, self.v = chart.next(self.u, self.v)
             self.machine = Machine(self.scene, chart)
+
+
+LOOKS, LOOKED = 257, 7
+"""Instants at which an end of rest is looked for, and how often between two of them."""
+TINY = 1e-150
+"""A rate that only says which way the machine is about to move."""
+
+
+def way_out(acceleration: Acceleration, at: float, time_s: Array) -> Array:
+    """Which way a machine leaves its rest at a coordinate, 0 where it is held, at times [s], (T,).
+
+    Where a load on one stroke lets it leave both ways, that in which it is pushed without: at
+    rest no stroke has begun.
+    """
+    u, v = np.full_like(time_s, at), np.full_like(time_s, TINY)
+    ahead = acceleration(time_s, u, v)
+    back = acceleration(time_s, u, -v)
+    way = np.where(ahead > 0.0, 1.0, np.where(back < 0.0, -1.0, 0.0))
+    either = (ahead > 0.0) & (back < 0.0)
+    if either.any():
+        still = acceleration(time_s, u, np.zeros_like(v))
+        way[either & (still < 0.0)] = -1.0
+    return way
+
+
+def rest_until(way: Callable[[Array], Array], low: float, high: float) -> float:
+    """When the rest since ``low`` ends, ``high`` at the latest [s]."""
+    for _ in range(LOOKED):
+        looks = np.linspace(low, high, LOOKS)
+        moved = np.flatnonzero(way(looks[1:]) != 0.0)
+        if not moved.size:
+            break
+        k = int(moved[0])
+        low, high = float(looks[k]), float(looks[k + 1])
+    return high
+
+
+MOST_WINDOWS = 50_000
+"""A thousand seconds of a crank's length of a tenth of a metre take half of them, and minutes."""
+FIRST_WINDOWS, FAR = 300, 4.0
+"""After so many it is told how many all take, and refused where they are so many times too many."""
+
+
+def check_count(scene: Scene, until_s: float, pace: Pace) -> None:
+    """Raises CrankcheckError where the time takes more windows than can be worked out."""
+    made, now_s = pace.made, pace.times_s[-1]
+    lasted_s = pace.lasted_s(FIRST_WINDOWS)
+    if (until_s - now_s) * FIRST_WINDOWS > FAR * MOST_WINDOWS * lasted_s:
+        pace.check_runaway(scene, now_s)
+    ahead = made * until_s / now_s
+    if made >= MOST_WINDOWS or (made >= FIRST_WINDOWS and ahead > FAR * MOST_WINDOWS):
+        raise CrankcheckError(
+            f"{scene.name}: free for {until_s:g} s, of which {now_s:.3g} s took "
+            f"{made} windows of the integration; at most {MOST_WINDOWS} are made: give a time "
+            f"of {now_s * MOST_WINDOWS / made:.2g} s or less"
+        )

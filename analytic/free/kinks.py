@@ -9,18 +9,22 @@ another: it turns over.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
+from numpy.polynomial import legendre
 
 from analytic.dyads.chunk import Chunk
-from analytic.forces.springs import spring_lengths
+from analytic.forces.force_elements import spring_lengths
+from analytic.free.coordinate_history import MOST
 from analytic.free.machine import Machine
+from analytic.free.window import Gauss, WindowSolution, gauss
 from models.array import Array
+from models.errors import CrankcheckError
+from models.loads import LineSpring, Spring
 from models.scene import Scene
-from models.springs import LineSpring, Spring
 
 
 def heeds_direction(scene: Scene) -> bool:
@@ -122,3 +126,132 @@ def _turning_over(scene: Scene, unit: Chunk, u: Array) -> Iterator[Kinked]:
         reach = np.nanmax(np.abs(rate), initial=0.0) * np.abs(np.diff(u)).max(initial=0.0)
         if _turns_over(spring) and not length.min() > reach:
             yield Kinked(np.nan_to_num(length * rate), np.zeros(1), sign=True)
+
+
+LEAST_AHEAD = 0.02
+"""The share of a window from which on a change of formula is foretold before it is solved."""
+PRECISELY = 4e-14
+"""To what share of a window a change of formula is found: to rounding of what its formula goes
+over, some hundred times that of the time."""
+SHORT_OF, BEYOND = 1.0 - 2e-4, MOST
+"""Windows are solved to a little before it, and used up to it."""
+
+
+@dataclass(frozen=True)
+class WindowKinks:
+    """The changes of formula in a window; ``smooth`` says that it does not start in one."""
+
+    machine: Machine
+    rule: Gauss
+    smooth: bool
+
+    def ahead(self, long_s: float, start: tuple[float, float, float]) -> float | None:
+        """When a formula first gives way in a window that starts with u, u' and u'', as far as
+        these tell [s after the start]."""
+        u, v, a = start
+        if not math.isfinite(a):
+            return None
+        looks = long_s * looked_at(self.rule.count, 1.0, smooth=self.smooth)[0]
+        try:
+            rows = kinked(self.machine, u + looks * (v + 0.5 * a * looks), v + a * looks)
+        except CrankcheckError:  # out of its reach, where the motion itself does not come
+            return None
+        change = first_crossing(rows, looks)
+        return change.at_s if change and change.at_s > LEAST_AHEAD * long_s else None
+
+    def within(self, solved: WindowSolution, *, beyond: bool) -> FormulaChange | None:
+        """Where in a window, or a little beyond it, a formula first gives way to another."""
+        end = BEYOND if beyond else 1.0
+        shares, polynomials = looked_at(self.rule.count, end, smooth=self.smooth)
+        u, v, _ = solved.series
+        rows = kinked(self.machine, polynomials[:, : u.size] @ u, polynomials[:, : v.size] @ v)
+        return first_crossing(rows, shares * solved.long_s)
+
+    def landing(self, solved: WindowSolution, change: FormulaChange) -> float:
+        """How long after the start of a window a formula has just given way [s]."""
+
+        def formulas(after_s: Array) -> list[Kinked]:
+            return kinked(self.machine, *solved.at(after_s))
+
+        shares, _ = looked_at(self.rule.count, 1.0, smooth=self.smooth)
+        first, least_s = float(shares[0]) * solved.long_s, PRECISELY * solved.long_s
+        return precisely(formulas, change, first, least_s)
+
+
+@lru_cache(maxsize=32)
+def looked_at(count: int, end: float, *, smooth: bool) -> tuple[Array, Array]:
+    """The shares of a window at which formulas are looked at, (T,): its nodes and ``end``, and its
+    start if it is not between two formulas; and Legendre's polynomials there, (T, count + 2)."""
+    shares = np.append(gauss(count).places, end)
+    if smooth:
+        shares = np.append(0.0, shares)
+    return shares, np.asarray(legendre.legvander(2.0 * shares - 1.0, count + 1), dtype=np.float64)
+
+
+Formulas = Callable[[Array], list[Kinked]]
+"""The formulas with kinks at times after the start of a window [s], (T,)."""
+NEIGHBOURS = 3
+"""Looks on either side that a crossing is foretold from."""
+AROUND = np.concatenate(
+    [-(10.0 ** np.arange(-3.0, -17.5, -0.5)), [0.0], 10.0 ** np.arange(-17.0, -2.5, 0.5)]
+)
+"""Looks about a crossing, over the time that is looked over."""
+ROUNDS = 8
+"""Of looking closer, each of which about doubles the digits."""
+
+
+@dataclass(frozen=True)
+class FormulaChange:
+    """A first change of formula: between ``low_s`` and ``high_s``, and foretold at ``at_s`` [s]."""
+
+    low_s: float
+    high_s: float
+    at_s: float
+
+
+def first_crossing(rows: list[Kinked], looks: Array) -> FormulaChange | None:
+    """The first one in formulas at looks [s], (T,); None where all are as at the first look."""
+    if not rows:
+        return None
+    pieces = np.array([row.pieces for row in rows])
+    changed = pieces != pieces[:, :1]
+    if not changed.any():
+        return None
+    k = int(np.argmax(changed.any(axis=0)))
+    low, high = float(looks[k - 1]), float(looks[k])
+    at = min(_foretold(row, looks, k) for row, own in zip(rows, changed, strict=True) if own[k])
+    return FormulaChange(low, high, min(max(at, low), high))
+
+
+def precisely(formulas: Formulas, crossing: FormulaChange, first: float, least_s: float) -> float:
+    """The time [s] at which the formulas of time ``first`` have just given way, to ``least_s``."""
+    long_s = crossing.high_s
+    for _ in range(ROUNDS):
+        low, high = crossing.low_s, crossing.high_s
+        if high - low <= least_s or np.nextafter(low, high) >= high:
+            break
+        near = crossing.at_s + long_s * AROUND
+        near = near[(low < near) & (near < high)]
+        looks = np.concatenate([[first], [low] if low > first else [], near, [high]])
+        closer = first_crossing(formulas(looks), looks)
+        if closer is None:  # within rounding of it
+            break
+        crossing = closer
+    return crossing.high_s
+
+
+def _foretold(row: Kinked, looks: Array, k: int) -> float:
+    """When a formula comes to its kink, from the looks about: the time as a polynomial of what it
+    goes over, where that goes one way, else by a straight line."""
+    off = row.x - row.border(k)
+    some = slice(max(k - NEIGHBOURS, 0), k + NEIGHBOURS)
+    x, t = off[some], looks[some]
+    steps = np.diff(x)
+    if not (np.all(steps > 0.0) or np.all(steps < 0.0)):
+        x, t = off[k - 1 : k + 1], looks[k - 1 : k + 1]
+        if x[0] == x[1]:
+            return float(t[1])
+    values = t.copy()
+    for n in range(1, len(x)):  # Neville's scheme at 0
+        values = (x[n:] * values[:-1] - x[:-n] * values[1:]) / (x[n:] - x[:-n])
+    return float(values[0])

@@ -12,7 +12,7 @@
 The root of the dyad, which is 0 there, is the difference of nearly the same numbers beside it; it
 is taken as u times what it is over u, a smooth function. In u = 0 the formulas of the dyad say 0/0:
 there its unknowns come of interpolation from both sides, as in a change point
-(`analytic.change_points.smooth`). Source: limit positions, e.g. Norton, Design of Machinery,
+(`analytic.change_points.sign`). Source: limit positions, e.g. Norton, Design of Machinery,
 section 4.10; u is the local coordinate of a fold.
 """
 
@@ -25,8 +25,7 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from analytic.change_points.sign import HALVES, LEAST_CERTAIN
-from analytic.change_points.smooth import Index, Piece, Rates, Unknown, put
+from analytic.change_points.sign import HALVES, LEAST_CERTAIN, Index, Piece, Rates, Unknown, put
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import Dyad, First, OpenError, Second
 from analytic.dyads.plane import EPS, EXACT_ANGLE, AngleError

@@ -21,18 +21,15 @@ import numpy as np
 
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import Real
-from analytic.forces.reduced_machine import inertia_and_slope, loaded_bodies
-from analytic.forces.springs import spring_lengths
-from analytic.forces.virtual_power import torque_by_power
-from analytic.free.arc import Arc
-from analytic.free.chart import Chart
+from analytic.forces.force_elements import spring_lengths
+from analytic.forces.virtual_power import inertia_and_slope, loaded_bodies, torque_by_power
+from analytic.free.chart import Arc, Chart
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
-from models.friction import ConstantFriction
 from models.joints import block_name
+from models.loads import ConstantFriction, PinSpring, Spring
 from models.scene import Scene
-from models.springs import PinSpring, Spring
 
 Wound = Mapping[str, Real]
 """Of each spring in a pin an angle q that its own is within half a turn of [rad]."""

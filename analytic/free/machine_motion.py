@@ -9,20 +9,16 @@ from functools import cached_property
 import numpy as np
 
 from analytic.forces.kinetostatics import forces
-from analytic.free.coordinate_history import CoordinateHistory
-from analytic.free.doubt import Doubt
-from analytic.free.free_motion import LimitPassage
-from analytic.free.growth import growth
-from analytic.free.history_energy import history_energy
-from analytic.free.integrated_law import IntegratedLaw
-from analytic.free.motion_along import motion_along
-from analytic.free.places_beside import places_beside
+from analytic.free.coordinate_history import MOST, CoordinateHistory, Doubt, growth
+from analytic.free.free_motion import IntegratedLaw, LimitPassage
+from analytic.free.machine import Machine
+from analytic.free.motion_along import motion_along, places_beside
+from analytic.free.window import gauss, sums
 from analytic.kinematics import solve_driven
-from analytic.multibody.energy_balance import EnergyBalance
-from models.array import Array
-from models.errors import CrankcheckError
+from analytic.multibody.bodies import EnergyBalance
+from models.array import Array, from_end, samples
+from models.driver import check_within
 from models.motion import Motion
-from models.samples import from_end, samples
 from models.scene import Scene
 
 
@@ -69,7 +65,7 @@ class MachineMotion:
         """The motion at times [s], (T,), from 0 to ``until_s``; bounds hold what the integration
         may be off by as well. Raises CrankcheckError for times beyond."""
         instants = samples(time_s, "time_s")
-        self._check_within(instants)
+        check_within(self.scene, instants, self.until_s)
         return motion_along(self.scene, self.history, self.doubt if bound else None, instants)
 
     def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
@@ -99,7 +95,7 @@ class MachineMotion:
     def energy(self, time_s: Array) -> EnergyBalance:
         """The energies at times [s], (T,). Raises CrankcheckError for times beyond."""
         instants = samples(time_s, "time_s")
-        self._check_within(instants)
+        check_within(self.scene, instants, self.until_s)
         return history_energy(self.scene, self.history, instants)
 
     def sensitivity(self, time_s: Array) -> Array:
@@ -146,9 +142,40 @@ class MachineMotion:
         reach = min(2.0 * np.pi, self.range_rad)
         return growth(self.history, self.peak_speed_rad_s / reach if reach > 0.0 else 0.0)
 
-    def _check_within(self, time_s: Array) -> None:
-        if time_s.min() < 0.0 or time_s.max() > self.until_s * (1.0 + 1e-12):
-            raise CrankcheckError(
-                f"{self.scene.name}: times from {time_s.min():g} to {time_s.max():g} s; it was let "
-                f"go at 0, and integrated up to {self.until_s:g} s"
-            )
+
+def history_energy(scene: Scene, history: CoordinateHistory, time_s: Array) -> EnergyBalance:
+    """The energies of an integrated motion at times [s], (T,)."""
+    u, v, _ = history.state(time_s)
+    window = history.windows_at(time_s)
+    series, before = _work(scene, history)
+    share = (time_s - history.starts_s[window]) / np.array([w.long_s for w in history.windows])[
+        window
+    ]
+    work = before[window] + sums(series[window], np.clip(share, 0.0, MOST))
+    kinetic, potential = np.empty_like(u), np.empty_like(u)
+    for chart, first, last in history.legs():
+        at = (window >= first) & (window < last)
+        if at.any():
+            machine = Machine(scene, chart)
+            wound = history.wound_at(window[at])
+            kinetic[at] = machine.kinetic(u[at], v[at])
+            potential[at] = machine.potential(u[at], wound)
+    return EnergyBalance(kinetic, potential, np.asarray(work))
+
+
+def _work(scene: Scene, history: CoordinateHistory) -> tuple[Array, Array]:
+    """The series of the work in each window, and the work before it [J]."""
+    n = history.windows[0].swing.shape[1]
+    rule = gauss(n)
+    long_s = np.array([window.long_s for window in history.windows])
+    power = np.empty((len(long_s), n))
+    for chart, first, last in history.legs():
+        times = history.starts_s[first:last, None] + long_s[first:last, None] * rule.places
+        numbers = np.repeat(np.arange(first, last), n)
+        share = np.tile(rule.places, last - first)
+        u, v, _ = history.at(numbers, share)
+        power[first:last] = Machine(scene, chart).power(times.ravel(), u, v).reshape(-1, n)
+    series = power @ rule.series.T @ rule.lift_once.T * long_s[:, None]
+    lasts_s = np.array([window.end_s for window in history.windows]) - history.starts_s
+    gained = sums(series, lasts_s / long_s)
+    return series, np.concatenate([[0.0], np.cumsum(gained)[:-1]])

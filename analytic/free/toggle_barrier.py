@@ -19,15 +19,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.free.arc import Arc
-from analytic.free.chart import Chart
+from analytic.free.chart import Arc, Chart
 from analytic.free.free_motion import LimitPassage
 from analytic.free.machine import Machine
 from analytic.kinematics import solve_driven
 from models.array import Array
+from models.driver import Released
 from models.errors import CrankcheckError
 from models.motion import State
-from models.released import Released
 from models.scene import Scene
 
 GRAVITY_M_S2 = 9.81

@@ -1,4 +1,4 @@
-"""Free motion of a chain of windows, in closed form: the truth of `models.window_chain`.
+"""Free motion of a chain of windows, in closed form: the truth of `models.hard`.
 
 While all rockers turn together, theta being their angle and l, m length and mass of a rod, the
 N + 1 rockers have the kinetic energy (N + 1) m l^2 theta'^2 / 6, and the N couplers, which only
@@ -21,10 +21,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from models.array import Array
+from models.array import Array, samples
+from models.hard import UPRIGHT, Chain
 from models.motion import LinkMotion, Motion, PointMotion
-from models.samples import samples
-from models.window_chain import UPRIGHT, Chain
 
 
 @dataclass(frozen=True)

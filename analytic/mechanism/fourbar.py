@@ -1,15 +1,30 @@
-"""The four-bar in closed form: Grashof class, limits, transmission angle, swing, time ratio.
+r"""The four-bar in closed form: Grashof class, limits, transmission angle, swing, time ratio.
 
 Lengths by their place in the loop, as in the figure; the driver turns about A, the rocker about D::
 
             C
-      b   /  \\  c           a driver AB, b coupler BC, c rocker CD, d ground AD
-        B     \\
-     a /       \\
+      b   /  \  c           a driver AB, b coupler BC, c rocker CD, d ground AD
+        B     \
+     a /       \
       A ------- D
            d
 
 Source: R. L. Norton, Design of Machinery, chapters 2 (Grashof), 3 (time ratio) and 4 (limits).
+
+A pin of a loop turns fully if the two links beside it can stand in line both ways. Of a four-bar a
+link turns fully against the others if s + l <= p + q; of a slider-crank (a crank r, a rod l, the
+line e beside the crank's pin) if the shorter of r and l, and e, are no longer together than the
+longer one; so it is of the inversion, a guide that turns about D, with the crank a and ground d::
+
+      slider-crank                     inverted slider-crank
+
+            B                               B =====  guide, e beside D
+        r  /  \  l                       a  /
+          A     [C]  line, e beside A      A ------- D
+                                               d
+
+Source: R. L. Norton, Design of Machinery, sections 2.13 to 2.15 (Grashof, and with a slider); the
+names of special four-bars are those of that book.
 """
 
 from __future__ import annotations
@@ -18,9 +33,10 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from analytic.structure.groups import Group
 from analytic.structure.mobility import analyse
 from models.errors import StructureError
-from models.scene import Scene
+from models.scene import GROUND, Point, Scene, Slider
 
 GrashofClass = Literal[
     "crank-rocker", "double-crank", "double-rocker", "triple-rocker", "change point"
@@ -59,21 +75,21 @@ class FourBar:
         group = groups[0]
         links = {name: link.points for name, link in scene.links.items()}
         first, second = group.first, group.second
-        held, free = group.outer1, group.outer2
-        if held in scene.ground:
-            first, second, held, free = second, first, free, held
+        crank_pin, rocker_pivot = group.outer1, group.outer2
+        if crank_pin in scene.ground:
+            first, second, crank_pin, rocker_pivot = second, first, rocker_pivot, crank_pin
         pivot = scene.driver_pivot
         driver = links[scene.driver.link]
-        if held not in driver or free not in scene.ground:
+        if crank_pin not in driver or rocker_pivot not in scene.ground:
             raise StructureError(
                 f"{scene.name}: not a four-bar; {group.first} and {group.second} hang between "
                 "pins of one body"
             )
         lengths = (
-            math.dist(driver[pivot], driver[held]),
-            math.dist(links[first][held], links[first][group.inner]),
-            math.dist(links[second][free], links[second][group.inner]),
-            math.dist(scene.ground[pivot], scene.ground[free]),
+            math.dist(driver[pivot], driver[crank_pin]),
+            math.dist(links[first][crank_pin], links[first][group.inner]),
+            math.dist(links[second][rocker_pivot], links[second][group.inner]),
+            math.dist(scene.ground[pivot], scene.ground[rocker_pivot]),
         )
         try:
             return FourBar(*lengths)
@@ -164,3 +180,162 @@ def _angle(p: float, q: float, opposite: float) -> float:
     above = (opposite - (p - q)) * (opposite + (p - q))
     below = ((p + q) - opposite) * ((p + q) + opposite)
     return 2.0 * math.atan2(math.sqrt(max(above, 0.0)), math.sqrt(max(below, 0.0)))
+
+
+@dataclass(frozen=True)
+class GrashofType:
+    """What a chain is called; ``margin_m`` is what it is a Grashof chain by [m]: negative where
+    it is none, 0 within rounding at a change point. ``driver_turns`` and ``follower_turns`` say
+    whether these turn fully against the ground (a block never does)."""
+
+    name: str
+    margin_m: float
+    driver_turns: bool
+    follower_turns: bool
+
+    @property
+    def is_grashof(self) -> bool:
+        """Whether some link turns fully; a change point counts."""
+        return self.margin_m >= 0.0
+
+
+def four_bar_type(bar: FourBar) -> GrashofType:
+    """The type of a four-bar by its driver, the first of its four lengths."""
+    a, b, c, d = lengths = (bar.driver, bar.coupler, bar.rocker, bar.ground)
+    excess, small = bar.excess_m, SAME * sum(lengths)
+    turns, back = bar.driver_turns_fully, FourBar(c, b, a, d).driver_turns_fully
+    if abs(excess) <= small:
+        return GrashofType(f"change point, {_special(a, b, c, d, small)}", 0.0, turns, back)
+    if excess > 0.0:
+        longest = ("driver", "coupler", "rocker", "ground")[lengths.index(max(lengths))]
+        name = f"non-Grashof triple-rocker (longest: {longest})"
+        return GrashofType(name, -excess, turns, back)
+    name = {
+        a: "Grashof crank-rocker",
+        b: "Grashof double-rocker",
+        c: "Grashof rocker-crank",
+        d: "Grashof double-crank (drag link)",
+    }[min(lengths)]
+    return GrashofType(name, -excess, turns, back)
+
+
+def _special(a: float, b: float, c: float, d: float, small: float) -> str:
+    """What a four-bar in which all links come to lie in line is called."""
+
+    def same(one: float, other: float) -> bool:
+        return abs(one - other) <= small
+
+    if same(a, b) and same(b, c) and same(c, d):
+        return "rhombus"
+    if same(a, c) and same(b, d):
+        return "parallelogram or antiparallelogram"
+    if (same(a, b) and same(c, d)) or (same(a, d) and same(b, c)):
+        return "kite (deltoid)"
+    kinds = {a: "crank-rocker", b: "double-rocker", c: "rocker-crank", d: "double-crank"}
+    return f"between {kinds[min(a, b, c, d)]} and triple-rocker"
+
+
+def slider_crank_type(crank: float, rod: float, offset: float) -> GrashofType:
+    """The type of a slider-crank driven at its crank: lengths and offset [m].
+
+    Raises
+    ------
+    ValueError
+        Lengths that are not above 0, or with which the loop can not close.
+    """
+    offset = abs(offset)
+    if not (crank > 0.0 and rod > 0.0 and crank + rod >= offset):
+        raise ValueError(
+            f"crank {crank:g} m, rod {rod:g} m, offset {offset:g} m: lengths above 0 that reach "
+            "the line together make a slider-crank"
+        )
+    margin, small = abs(rod - crank) - offset, SAME * (crank + rod + offset)
+    place = "central" if offset <= small else "offset"
+    if abs(rod - crank) <= small and offset <= small:
+        return GrashofType("change point, isosceles central slider-crank", 0.0, True, True)
+    if abs(margin) <= small:
+        return GrashofType(f"change point, {place} slider-crank", 0.0, crank < rod, crank > rod)
+    if margin < 0.0:
+        return GrashofType(f"non-Grashof {place} slider-crank", margin, False, False)
+    shortest = "crank" if crank < rod else "rod"
+    name = f"Grashof {place} slider-crank ({shortest} turns fully)"
+    return GrashofType(name, margin, crank < rod, crank > rod)
+
+
+def inverted_slider_crank_type(crank: float, ground: float, offset: float) -> GrashofType:
+    """The type of an inverted slider-crank, its guide ``offset`` [m] beside the guide's pin.
+
+    The block pinned to the crank reaches the guide where it is no nearer to the guide's pin than
+    the offset. The guide turns fully (Whitworth) where the crank goes round its pin, and swings
+    (slotted lever) where the crank does not.
+
+    Raises
+    ------
+    ValueError
+        Lengths that are not above 0, or with which the loop can not close.
+    """
+    offset = abs(offset)
+    if not (crank > 0.0 and ground > 0.0 and crank + ground >= offset):
+        raise ValueError(
+            f"crank {crank:g} m, ground {ground:g} m, offset {offset:g} m: lengths above 0 that "
+            "reach the guide together make an inverted slider-crank"
+        )
+    margin, small = abs(ground - crank) - offset, SAME * (crank + ground + offset)
+    if abs(margin) <= small:
+        return GrashofType("change point, inverted slider-crank", 0.0, True, crank >= ground)
+    if margin < 0.0:
+        name = "non-Grashof inverted slider-crank (crank and guide swing)"
+        return GrashofType(name, margin, False, False)
+    if crank < ground:
+        return GrashofType("Grashof crank and swinging guide (slotted lever)", margin, True, False)
+    return GrashofType("Grashof crank and turning guide (Whitworth)", margin, True, True)
+
+
+def grashof_of(scene: Scene) -> GrashofType | None:
+    """What a scene is called; None of one that is no such chain. Raises StructureError."""
+    structure = analyse(scene)
+    if len(structure.order) != 1 or len(structure.groups) != 1 or not scene.driver.is_crank:
+        return None
+    group = structure.groups[0]
+    try:
+        if group.kind == "RRR":
+            return four_bar_type(FourBar.of(scene))
+        if group.kind == "RRP":
+            return _slider_crank(scene, group, scene.sliders[group.outer2])
+        if group.kind == "RPR":
+            return _inverted(scene, group, scene.sliders[group.inner])
+    except (ValueError, StructureError):
+        return None  # one body holds both ends, or it closes nowhere
+    return None
+
+
+def _slider_crank(scene: Scene, group: Group, slider: Slider) -> GrashofType | None:
+    """Of a crank, a rod and a block on the ground."""
+    crank, rod = scene.links[scene.driver.link].points, scene.links[group.first].points
+    if slider.link is not None or slider.on != GROUND or group.outer1 not in crank:
+        return None
+    pivot = scene.driver_pivot
+    offset = _beside(scene.ground[pivot], slider)
+    crank_m = math.dist(crank[pivot], crank[group.outer1])
+    return slider_crank_type(crank_m, math.dist(rod[group.outer1], rod[group.inner]), offset)
+
+
+def _inverted(scene: Scene, group: Group, slider: Slider) -> GrashofType | None:
+    """Of a crank, a block pinned to it, and a guide pinned to the ground."""
+    crank, pivot = scene.links[scene.driver.link].points, scene.driver_pivot
+    pins = (group.outer1, group.outer2)
+    held = next((pin for pin in pins if pin in scene.ground), None)
+    if slider.link is not None or slider.on not in scene.links or held is None:
+        return None
+    guide = scene.links[slider.on].points
+    if held not in guide or slider.point not in crank:
+        return None
+    crank_m = math.dist(crank[pivot], crank[slider.point])
+    ground_m = math.dist(scene.ground[pivot], scene.ground[held])
+    return inverted_slider_crank_type(crank_m, ground_m, _beside(guide[held], slider))
+
+
+def _beside(point: Point, slider: Slider) -> float:
+    """How far a point of the slider's guide is from its line [m]."""
+    x, y = point[0] - slider.through_m[0], point[1] - slider.through_m[1]
+    return abs(y * math.cos(slider.direction_rad) - x * math.sin(slider.direction_rad))

@@ -16,7 +16,8 @@ import numpy as np
 from analytic.mechanism.cycle import Cycle, Output, series, zeros
 from models.array import Array
 from models.errors import CrankcheckError
-from models.scene import Scene
+from models.motion import Motion
+from models.scene import GROUND, Scene
 
 SAME = 1e-9
 """Limit positions that are nearer to each other than this part of the stroke are one place."""
@@ -117,3 +118,49 @@ def _extremes(cycle: Cycle, limits: Mapping[Output, Array]) -> dict[Output, Trav
 def _next(at: Array, after: float, cycle: Cycle) -> float:
     """The first of the phases that follows another in the cycle."""
     return float(at[np.argmin((at - after) % cycle.period_rad)])
+
+
+@dataclass(frozen=True)
+class ExtremeSpeed:
+    """A largest or smallest speed within a cycle.
+
+    ``driver_rad`` is the driver's angle (of one that turns, 0 to ``period_rad`` of its cycle),
+    ``rate`` the speed over that of the driver's phase: [1] for a link, [m] for all else.
+    """
+
+    driver_rad: float
+    rate: float
+
+
+def extreme_speeds(
+    scene: Scene, outputs: Sequence[Output]
+) -> dict[Output, tuple[ExtremeSpeed, ...]]:
+    """By output, its extreme speeds in the order of the phase, under a driver of constant speed or
+    one that swings: where its acceleration changes sign, found on the closed form to rounding.
+
+    None of an output that has one speed. Raises as `analytic.mechanism.cycle.zeros`.
+    """
+    cycle = Cycle.of(scene)
+    found = {}
+    for output, at in zeros(cycle, outputs, 2).items():
+        rates = series(cycle.at([output], at), output)[1] if at.size else at
+        angles = cycle.driver(at)
+        found[output] = tuple(
+            ExtremeSpeed(float(angle), float(rate))
+            for angle, rate in zip(angles, rates, strict=True)
+        )
+    return found
+
+
+def coriolis(scene: Scene, motion: Motion) -> Mapping[str, Array]:
+    """2 omega v [m/s^2], (T,), of every slider on a moving guide: omega of the guide, v along it.
+
+    Positive to the left of the slider's line, a quarter turn counter-clockwise from its direction:
+    v turned in the sense of omega. The guides must be among the motion's links. Its rounding is
+    that of the two factors (``motion.bound``).
+    """
+    return {
+        name: 2.0 * motion.links[slider.on].omega * motion.sliders[name].speed
+        for name, slider in scene.sliders.items()
+        if slider.on != GROUND
+    }

@@ -17,20 +17,26 @@ from scipy.integrate import DOP853  # type: ignore[import-untyped]  # ships no s
 from scipy.optimize import brentq  # type: ignore[import-untyped]
 
 from analytic.multibody.dynamics import Dynamics
-from analytic.multibody.generalised_forces import Strokes
-from analytic.multibody.runaway import Pace
-from analytic.multibody.singular_passage import (
+from analytic.multibody.generalised_forces import (
+    Strokes,
+    Switch,
+    edges,
+    state_cells,
+    strokes,
+    switches,
+)
+from analytic.multibody.steps import (
     CLOSE,
     LEAST,
     NEAR,
     SHORT,
+    Pace,
+    StateHistory,
+    Steps,
     passage_ahead,
     singular_at,
     smallest_singular,
 )
-from analytic.multibody.state_history import StateHistory
-from analytic.multibody.steps import Steps
-from analytic.multibody.switches import Switch, edges, state_cells, strokes, switches
 from models.array import Array
 from models.errors import CrankcheckError
 

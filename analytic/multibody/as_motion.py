@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.multibody.assembly import Assembly
-from analytic.multibody.configuration import Configuration
+from analytic.multibody.bodies import Configuration
 from models.array import Array
+from models.joints import sliding_angle, sliding_body
 from models.motion import ElasticMotion, LinkMotion, Motion, PointMotion, SliderMotion
 
 
@@ -61,3 +63,97 @@ def _slider(assembly: Assembly, name: str, now: Configuration, gained: Array) ->
         - omega**2 * far
     )
     return SliderMotion(far, speed, acceleration)
+
+
+ROUNDS = 8
+"""Of Newton's method, from joints that are open by what an engine leaves."""
+FAR = 0.5
+"""The largest step of it, in radians or longest links: one that is larger has lost the run."""
+CLOSED = 1e-10
+"""What joints may be open by in the end, over the longest link."""
+LOST = 1e-7
+"""A singular value over the largest that counts as 0."""
+TELLING = 1e-2
+"""The part of the motion that is free from which on an angle says a position."""
+AT_ONCE = 2000
+
+
+def logged_places(assembly: Assembly, logged: Motion, freedoms: int) -> Array:
+    """Coordinates (T, n) with closed joints, at the run's own values of as many coordinates as
+    there are ``freedoms``; NaN where there are none next to what was logged.
+
+    Those that are kept are angles of links where these say the position, and are at each instant
+    those that say it best: in a chain of pendulums all angles are, and all pins are placed anew.
+    """
+    rough = _coordinates(assembly, logged)
+    found = np.full_like(rough, np.nan)
+    whole = np.flatnonzero(np.isfinite(rough).all(axis=1))
+    for first in range(0, len(whole), AT_ONCE):
+        index = whole[first : first + AT_ONCE]
+        found[index] = _closed(assembly, rough[index], freedoms)
+    return found
+
+
+def _coordinates(assembly: Assembly, logged: Motion) -> Array:
+    """Those of the bodies by their logged angles and one logged point of each."""
+    scene = assembly.scene
+    q = np.full((logged.time_s.size, assembly.size), np.nan)
+    for name, link in scene.links.items():
+        theta, at = logged.links[name].theta, assembly.at[name]
+        point = next((p for p in link.points if p in logged.points or p in scene.ground), None)
+        if point is None:
+            continue
+        x, y = link.points[point]
+        place = logged.points[point].position if point in logged.points else scene.ground[point]
+        c, s = np.cos(theta), np.sin(theta)
+        q[:, at : at + 2] = place - np.stack([c * x - s * y, s * x + c * y], axis=1)
+        q[:, at + 2] = theta
+    for slider in scene.sliders.values():
+        if slider.link is None and slider.point in logged.points:
+            at = assembly.at[sliding_body(slider)]
+            guide = logged.links[slider.on].theta if slider.on in logged.links else 0.0
+            q[:, at : at + 2] = logged.points[slider.point].position
+            q[:, at + 2] = guide + sliding_angle(slider)
+    return q
+
+
+def _closed(assembly: Assembly, rough: Array, freedoms: int) -> Array:
+    """Newton's method for the joints, with some coordinates as they are."""
+    units, q = assembly.units, rough.copy()
+    kept = _kept(assembly, q, freedoms)
+    hold = np.zeros((len(q), freedoms, assembly.size))
+    np.put_along_axis(hold, kept[:, :, None], 1.0, axis=2)
+    still, lost = np.zeros((len(q), freedoms)), np.zeros(len(q), dtype=bool)
+    for _ in range(ROUNDS):
+        now = assembly.at_rest(q)
+        rows = np.concatenate([assembly.joints.jacobian(now) * units, hold], axis=1)
+        left = np.concatenate([-assembly.joints.gaps(now), still], axis=1)
+        step = (np.linalg.pinv(rows, rcond=LOST) @ left[:, :, None])[:, :, 0]
+        size = np.abs(step).max(axis=1)
+        lost |= ~(size < FAR)
+        q = q + np.where(lost[:, None], 0.0, step * units)
+        if np.all(lost | (size < 1e-15)):
+            break
+    gaps = np.abs(assembly.joints.gaps(assembly.at_rest(q))).max(axis=1, initial=0.0)
+    lost |= gaps > CLOSED * max(1.0, assembly.scene.longest_m)
+    return np.where(lost[:, None], np.nan, q)
+
+
+def _kept(assembly: Assembly, q: Array, freedoms: int) -> NDArray[np.intp]:
+    """The coordinates that say each position best, (T, f): each the one that what the ones before
+    it leave free moves most, angles of links first."""
+    jacobian = assembly.joints.jacobian(assembly.at_rest(q)) * assembly.units
+    _, _, directions = np.linalg.svd(jacobian)
+    free = directions[:, assembly.size - freedoms :, :].copy()  # (T, f, n)
+    turning = np.zeros(assembly.size, dtype=bool)
+    turning[[assembly.at[name] + 2 for name in assembly.scene.links]] = True
+    kept, sample = np.empty((len(q), freedoms), dtype=np.intp), np.arange(len(q))
+    for k in range(freedoms):
+        moved = np.linalg.norm(free, axis=1)
+        angles = np.where(turning, moved, 0.0)
+        by_angle = angles.max(axis=1) > TELLING
+        kept[:, k] = np.where(by_angle, angles.argmax(axis=1), moved.argmax(axis=1))
+        along = free[sample, :, kept[:, k]]
+        along /= np.linalg.norm(along, axis=1, keepdims=True)
+        free -= along[:, :, None] * np.einsum("tf,tfn->tn", along, free)[:, None]
+    return kept

@@ -12,19 +12,15 @@ from scipy.linalg import qr  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.multibody.adaptive import Adaptive
 from analytic.multibody.as_motion import as_motion
-from analytic.multibody.configuration import Configuration
-from analytic.multibody.dynamics import Dynamics
-from analytic.multibody.energy_balance import EnergyBalance
-from analytic.multibody.fixed_steps import FixedSteps
-from analytic.multibody.joint_forces import joint_forces
+from analytic.multibody.bodies import Configuration, EnergyBalance
+from analytic.multibody.dynamics import Dynamics, joint_forces
+from analytic.multibody.generalised_forces import edges
 from analytic.multibody.outset import Outset
-from analytic.multibody.singular_passage import SingularPassage
-from analytic.multibody.state_history import StateHistory
-from analytic.multibody.switches import edges
-from models.array import Array, Mask
+from analytic.multibody.steps import FixedSteps, SingularPassage, StateHistory
+from models.array import Array, Mask, from_end, samples
+from models.driver import check_within
 from models.errors import CrankcheckError
 from models.motion import Motion
-from models.samples import from_end, samples
 from models.scene import Scene
 
 TOLERANCE = 1e-13
@@ -189,11 +185,7 @@ class MultibodyMotion:
 
     def _configurations(self, time_s: Array) -> Iterator[tuple[Array, Configuration, Array]]:
         """Times, all markers then, and the work until then, some times after the other."""
-        if time_s.min() < 0.0 or time_s.max() > self.until_s * (1.0 + 1e-12):
-            raise CrankcheckError(
-                f"{self.scene.name}: times from {time_s.min():g} to {time_s.max():g} s; it was let "
-                f"go at 0, and integrated up to {self.until_s:g} s"
-            )
+        check_within(self.scene, time_s, self.until_s)
         assembly = self.dynamics.assembly
         n = assembly.size
         at_once = max(1, MOST_NUMBERS // (3 * n * assembly.markers))

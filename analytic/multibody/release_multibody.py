@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import RIGID, Assembly
-from analytic.multibody.bent_start import bent_start
-from analytic.multibody.body_set import Flexible
-from analytic.multibody.dynamics import Dynamics
+from analytic.multibody.bodies import Flexible
+from analytic.multibody.dynamics import Dynamics, Saddle
 from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.multibody.multibody_motion import Method, MultibodyMotion, Projection
-from analytic.multibody.outset import Outset
+from analytic.multibody.outset import INDEPENDENT, Outset
 from models.array import Array
+from models.driver import check_duration
 from models.errors import CrankcheckError, few
 from models.motion import State
-from models.released import check_duration
 from models.scene import Scene
 
 Acting = Callable[[Assembly, Array], GeneralisedForces]
@@ -119,13 +119,13 @@ def _check_elastic(scene: Scene, flexible: Mapping[str, Flexible]) -> None:
         )
 
 
-def _check_start(dynamics: Dynamics, q: Array, free: Array) -> None:
+def _check_start(dynamics: Dynamics, q: Array, directions: Array) -> None:
     """Raises CrankcheckError for a start in a change point, and for a freedom without mass."""
-    assembly, count = dynamics.assembly, len(free)
+    assembly, count = dynamics.assembly, len(directions)
     if count == 0:
         raise CrankcheckError(f"{assembly.scene.name}: nothing of it can move; it has no freedom")
     mass = assembly.mass(q[None])[0]
-    masses = np.linalg.eigvalsh(free @ mass @ free.T)
+    masses = np.linalg.eigvalsh(directions @ mass @ directions.T)
     # In the units of coordinates: small mechanisms have small moments of inertia.
     heaviest = np.abs(mass * np.outer(assembly.units, assembly.units)).max()
     if masses[0] <= LIGHT * max(masses[-1], heaviest):
@@ -133,18 +133,98 @@ def _check_start(dynamics: Dynamics, q: Array, free: Array) -> None:
             f"{assembly.scene.name}: {int((masses <= LIGHT * masses[-1]).sum()) or 1} of its "
             f"{count} freedoms moves nothing that has a mass; give links or sliders a mass"
         )
-    if dynamics.redundant and _freer(dynamics, q, free):
+    if dynamics.redundant and _freer(dynamics, q, directions):
         raise CrankcheckError(
             f"{assembly.scene.name}: it starts in a change point, where it is free to go on in "
             "several ways, and its accelerations are not determined; let it go beside it"
         )
 
 
-def _freer(dynamics: Dynamics, q: Array, free: Array) -> bool:
+def _freer(dynamics: Dynamics, q: Array, directions: Array) -> bool:
     """Whether a position has more freedoms than those next to it."""
     outset = Outset(dynamics.assembly)
-    for direction in free:
+    for direction in directions:
         beside, _ = dynamics.closed(q + 1e-3 * direction, np.zeros_like(q))
-        if len(outset.freedoms(beside)) < len(free):
+        if len(outset.freedoms(beside)) < len(directions):
             return True
     return False
+
+
+MOST_ROUNDS = 100
+CLOSE = 1e-15
+"""What a round may change a coefficient by, over the longest link, after which none is made."""
+
+
+def bent_start(dynamics: Dynamics, near: State | None) -> tuple[Array, Array]:
+    """Coordinates and rates (n,) of the start with links in their quasi-static shape.
+
+    Raises
+    ------
+    CrankcheckError
+        As `Outset.find`; links that are so soft that no such shape is found; links that the joints
+        hold as they are.
+
+    Straight ones begin to ring at once. In the quasi-static shape the forces of elasticity are what
+    the links need to go along with the motion as if they were rigid: the second derivatives of all
+    their coefficients are 0 at the start, as their rates are.
+    """
+    assembly, outset = dynamics.assembly, Outset(dynamics.assembly)
+    free, inverse = assembly.coefficients, np.linalg.inv(elastic_stiffness(assembly))
+    q, rates = outset.find(near)
+    _check_free(dynamics, q)
+    last = np.inf
+    for _ in range(MOST_ROUNDS):
+        step = inverse @ _held(dynamics, free, q, rates)
+        size = float(np.abs(step).max())
+        if not size < assembly.scene.longest_m:
+            break
+        bent = q.copy()
+        bent[free] += step
+        q, rates = outset.find(near, bent)
+        # Rounding of the forces over the stiffness is the least that a step is.
+        floor = CLOSE * assembly.scene.longest_m
+        if size <= floor or (size <= 1e3 * floor and size >= 0.5 * last):
+            return q, rates
+        last = size
+    raise CrankcheckError(
+        f"{assembly.scene.name}: its elastic links are too soft for a quasi-static shape to start "
+        'with; give them shape = "straight" in [start]'
+    )
+
+
+def _check_free(dynamics: Dynamics, q: Array) -> None:
+    """Raises CrankcheckError where the joints leave elastic links no shape to choose: more links
+    than the motion needs, whose lengths say those of each other."""
+    assembly = dynamics.assembly
+    rows = assembly.joints.jacobian(assembly.at_rest(q[None]))[0]
+    rows[:, assembly.coefficients] = 0.0
+    if np.linalg.matrix_rank(assembly.scaled(rows), tol=INDEPENDENT) < dynamics.rank:
+        raise CrankcheckError(
+            f"{assembly.scene.name}: its joints hold {few(assembly.elastic, 6)} in shape, which is "
+            'then not quasi-static of its own; give shape = "straight" in [start]'
+        )
+
+
+def _held(dynamics: Dynamics, free: NDArray[np.intp], q: Array, rates: Array) -> Array:
+    """The forces on coefficients (k,) that keep their second derivatives 0."""
+    assembly, at = dynamics.assembly, np.zeros(1)
+    now = assembly.at_rates(q[None], rates[None])
+    mass, right = assembly.weigh(now.q, now.rates)
+    right += dynamics.forces.on(at, now)
+    rows = np.zeros((assembly.joints.count + len(free), assembly.size))
+    rows[: assembly.joints.count] = assembly.joints.jacobian(now)[0]
+    rows[range(assembly.joints.count, len(rows)), free] = 1.0
+    saddle = Saddle(mass[0], rows, redundant=dynamics.redundant)
+    bottom = np.concatenate([assembly.joints.gamma(now)[0], np.zeros(len(free))])
+    return saddle.solve(right[0], bottom)[1][assembly.joints.count :]
+
+
+def elastic_stiffness(assembly: Assembly) -> Array:
+    """Of all elastic links, for their coefficients, (k, k)."""
+    each = [body.stiffness for body, _ in assembly.elastic.values()]
+    whole, first = np.zeros((sum(map(len, each)),) * 2), 0
+    for own in each:
+        last = first + len(own)
+        whole[first:last, first:last] = own
+        first = last
+    return whole

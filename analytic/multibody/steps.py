@@ -1,17 +1,286 @@
-"""The steps that an integration has made."""
+"""The steps of an integration, passages through change points, and the state that they give."""
 
 from __future__ import annotations
 
+import itertools
 import math
+from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import numpy as np
+from numpy.polynomial import Chebyshev
 from scipy.integrate import OdeSolution  # type: ignore[import-untyped]  # ships no stubs
+from scipy.interpolate import CubicHermiteSpline  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.multibody.runaway import Pace
-from analytic.multibody.singular_passage import SingularPassage
+from analytic.multibody.dynamics import Dynamics
+from analytic.multibody.generalised_forces import Strokes, edges, state_cells, strokes, switches
 from models.array import Array
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, few
+from models.scene import Scene
+
+NEAR = 1e-2
+"""The smallest singular value, of rows of the largest entry 1, from which on rounding tells: steps
+become short for it, unless their tolerance grows with its inverse square as what is lost does."""
+LEAST = 2e-3
+"""That at which a passage begins at the latest; from `NEAR` on it does where steps are short."""
+CLOSE = 1.1
+"""A singular value over that one, from which on it counts as it."""
+SHORT = 0.1
+"""A step that is short, over the time up to the change point."""
+WINDOWS = {25.0: 12, 12.0: 12, 6.0: 12, 3.0: 8, 1.5: 6}
+"""For how long the motion before may count, over the duration of the passage, and the degree of the
+polynomials: a long time spreads what accelerations are off by, a short one follows fast changes,
+and is all there is where something has just jumped."""
+LONG = 6.0
+"""Shorter ones are taken where none of the others will do."""
+SAMPLES = 24
+OFF = 1e-9
+"""What coordinates may have to be moved by on the other side, in their units."""
+
+
+@dataclass(frozen=True)
+class SingularPassage:
+    """From ``begin_s`` to ``end_s`` through a change point at ``at_s`` [s].
+
+    In a change point the rows of the Jacobian depend on each other, and next to it what the
+    equations say is lost in rounding, by eps over the square of the smallest singular value. The
+    motion itself is smooth there: polynomials through what its accelerations have been for a while
+    before carry them over the gap, where they are integrated from the state at its begin. On the
+    other side the motion has to be on the constraints again, to rounding, as only one through the
+    change point itself is: one that misses it by a little turns off, however shortly, into the
+    other branch.
+    """
+
+    begin_s: float
+    at_s: float
+    end_s: float
+    course: tuple[Chebyshev, ...]
+
+    def state(self, time_s: Array) -> Array:
+        """The state at times [s], (2 n + 1, T)."""
+        return np.array([one(np.asarray(time_s)) for one in self.course])
+
+    def slope(self, time_s: Array) -> Array:
+        """Its derivative by time."""
+        return np.array([one.deriv()(np.asarray(time_s)) for one in self.course])
+
+
+def singular_at(
+    dynamics: Dynamics, within: Callable[[Array], Array], now_s: float, back_s: float
+) -> float:
+    """When the smallest singular value is 0, as it falls now [s]; infinite where it grows.
+
+    ``within`` says the state at times up to now, at least as far as ``back_s`` [s].
+    """
+    states = within(np.array([now_s - back_s, now_s]))[: dynamics.assembly.size]
+    before, now = (smallest_singular(dynamics, q) for q in states.T)
+    return now_s + back_s * now / (before - now) if now < before else math.inf
+
+
+def passage_ahead(
+    dynamics: Dynamics,
+    solution: Callable[[Array], Array],
+    clear_s: float,
+    now_s: float,
+    at_s: float,
+    strokes: Strokes,
+) -> SingularPassage | None:
+    """The passage that begins now, if the motion goes through a change point.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+        The mechanism.
+    solution : Callable
+        The state at times up to now.
+    clear_s, now_s, at_s : float
+        Since when nothing has jumped, now, and when the change point is expected [s].
+    strokes : Strokes
+        Which loads of one stroke act.
+    """
+    width_s = 2.0 * (at_s - now_s)
+    least, best = OFF, None
+    for window, degree in WINDOWS.items():
+        if window * width_s > now_s - clear_s or (best and window < LONG):
+            continue
+        course = _course(dynamics, solution, now_s, window * width_s, degree, strokes)
+        passage = SingularPassage(now_s, at_s, now_s + width_s, course)
+        if (off := _open(dynamics, passage)) <= least:
+            least, best = off, passage
+    return best
+
+
+def _course(
+    dynamics: Dynamics,
+    solution: Callable[[Array], Array],
+    now_s: float,
+    window_s: float,
+    degree: int,
+    strokes: Strokes,
+) -> tuple[Chebyshev, ...]:
+    """The state from now on [s], by what its slopes have been for a while."""
+    # Points that lie closer towards both ends, where polynomials swing.
+    lean = np.cos(np.pi * (np.arange(SAMPLES) + 0.5) / SAMPLES)
+    times = now_s - 0.5 * window_s * (1.0 + lean)
+    slopes = []
+    for time_s, state in zip(times, solution(times).T, strict=True):
+        slopes.append(dynamics.rates(time_s, dynamics.closed_state(state), strokes))
+    begin, n = solution(np.array([now_s]))[:, 0], dynamics.assembly.size
+
+    def integrated(slope: Chebyshev, value: float) -> Chebyshev:
+        return slope.integ(lbnd=now_s, k=value)
+
+    domain = [now_s - window_s, now_s]
+    fits = [Chebyshev.fit(times, own, degree, domain=domain) for own in np.array(slopes).T[n:]]
+    last = [integrated(fit, value) for fit, value in zip(fits, begin[n:], strict=True)]
+    places = [integrated(rate, value) for rate, value in zip(last, begin[:n], strict=False)]
+    return (*places, *last)
+
+
+def smallest_singular(dynamics: Dynamics, q: Array) -> float:
+    """The smallest singular value of the constraints that count at coordinates (n,)."""
+    assembly = dynamics.assembly
+    rows = assembly.scaled(assembly.joints.jacobian(assembly.at_rest(q[None]))[0])
+    return float(np.linalg.svd(rows, compute_uv=False)[dynamics.rank - 1])
+
+
+def _open(dynamics: Dynamics, passage: SingularPassage) -> float:
+    """How far off the constraints the other end is, in the units of coordinates."""
+    n = dynamics.assembly.size
+    state = passage.state(np.array([passage.end_s]))[:, 0]
+    off = (dynamics.closed_state(state) - state)[:n] / dynamics.assembly.units
+    return float(np.abs(off).max())
+
+
+@dataclass(frozen=True)
+class StateHistory:
+    """The ``state`` at times [s], (2 n + 1, T); ``passages`` are the change points on the way."""
+
+    state: Callable[[Array], Array]
+    steps: int
+    passages: tuple[SingularPassage, ...] = ()
+
+
+LARGEST = 1e12
+"""Of a coordinate or rate, over what it counts as one of: beyond it a motion has come apart."""
+
+
+@dataclass(frozen=True)
+class FixedSteps:
+    """The method of Runge and Kutta of order 4 with steps of one size, as the thesis on elastic
+    mechanisms has it; in between cubics, of the same order. Edges over time are at steps."""
+
+    dynamics: Dynamics
+    step_s: float
+
+    def history(self, q: Array, rates: Array, until_s: float) -> StateHistory:
+        """The motion from a state to a time [s]. Raises CrankcheckError where it comes apart."""
+        own = switches(self.dynamics.forces)
+        state = np.concatenate([q, rates, [0.0]])
+        times, states, slopes = [], [], []
+        edge = edges(self.dynamics.assembly.scene, until_s)
+        for begin, end in itertools.pairwise(edge):
+            count = max(1, math.ceil((end - begin) / self.step_s * (1.0 - 1e-9)))
+            h, last = (end - begin) / count, math.nextafter(end, begin)
+            for i in range(count):
+                at_s = begin + i * h
+                held = strokes(own, state_cells(own, self.dynamics.forces, state))
+                slope, state_after = self._step(at_s, h, last, state, held)
+                times.append(at_s)
+                states.append(state)
+                slopes.append(slope)
+                state = state_after
+                self._check(state, at_s + h)
+        held = strokes(own, state_cells(own, self.dynamics.forces, state))
+        times.append(until_s)
+        states.append(state)
+        slopes.append(self.dynamics.rates(until_s, state, held))
+        spline = CubicHermiteSpline(np.array(times), np.array(states), np.array(slopes))
+        return StateHistory(lambda time_s: np.asarray(spline(time_s).T), len(times) - 1)
+
+    def _step(
+        self, at_s: float, h: float, last: float, state: Array, held: Strokes
+    ) -> tuple[Array, Array]:
+        """The slope at the begin of a step, and the state at its end."""
+        rates = self.dynamics.rates
+        with np.errstate(all="ignore"):
+            k1 = rates(at_s, state, held)
+            k2 = rates(min(at_s + 0.5 * h, last), state + 0.5 * h * k1, held)
+            k3 = rates(min(at_s + 0.5 * h, last), state + 0.5 * h * k2, held)
+            k4 = rates(min(at_s + h, last), state + h * k3, held)
+        return k1, state + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+
+    def _check(self, state: Array, time_s: float) -> None:
+        if not np.abs(state).max() < LARGEST:
+            raise CrankcheckError(
+                f"{self.dynamics.assembly.scene.name}: with steps of {self.step_s:g} s the motion "
+                f"comes apart at {time_s:g} s; take smaller ones, or a smaller alpha and beta"
+            )
+
+
+SHARE = 0.9
+"""Of the time of a motion that is lost: what is faster after it is held against what was before."""
+MANY = 100.0
+"""That over which its speed has grown since then, where it grows without bound."""
+FEW = 0.05
+"""Edges over time in so many steps are not why they are short."""
+
+
+@dataclass
+class Pace:
+    """How fast a motion was at the ends of its steps: the largest up to each of them, and the
+    last; ``edges`` are the numbers of steps that edges over time end."""
+
+    times_s: list[float] = field(default_factory=list)
+    largest: list[float] = field(default_factory=list)
+    last: float = 0.0
+    edges: list[int] = field(default_factory=list)
+
+    def note(self, time_s: float, speed: float) -> None:
+        """The start of the motion, or the end of a step."""
+        self.times_s.append(time_s)
+        self.largest.append(max(speed, self.largest[-1]) if self.largest else speed)
+        self.last = speed
+
+    def end_at_edge(self) -> None:
+        """Say that the last step ended at an edge over time."""
+        self.edges.append(self.made)
+
+    @property
+    def made(self) -> int:
+        """How many steps there are."""
+        return len(self.times_s) - 1
+
+    def lasted_s(self, count: int) -> float:
+        """How long the last ``count`` steps took [s]; infinite where there are not so many, or
+        where it is edges over time that made them short."""
+        first = self.made - count
+        if first < 0 or len(self.edges) - bisect_right(self.edges, first) > FEW * count:
+            return math.inf
+        return self.times_s[-1] - self.times_s[first]
+
+    def check_runaway(self, scene: Scene, lost_s: float) -> None:
+        """Raises CrankcheckError for a motion that is lost at ``lost_s`` [s], if that is because
+        its speed goes to infinity.
+
+        It is held against the largest speed before: a motion that turns back is slow for a while.
+
+        A load that grows with the square of the speed that it drives, v' = c v^2, has v = 1 / (c
+        (t* - t)): no step leads to t*, whatever its size.
+        """
+        before = self.largest[bisect_right(self.times_s, SHARE * lost_s) - 1]
+        if not self.last > MANY * before:
+            return
+        over = [load for load in scene.loads.values() if load.over != "time"]
+        named = few([f"loads.{load.name} over {load.over}" for load in over], 6) or "what acts"
+        raise CrankcheckError(
+            f"{scene.name}: it runs away: at about {lost_s:.4g} s its speed goes to infinity, and "
+            f"is over {MANY:g} times what it was up to {SHARE * lost_s:.3g} s; {named} drives it "
+            f"ever faster: give a time of {SHARE * lost_s:.2g} s or less, or a load that does not "
+            "grow faster than the speed or the way that it goes by"
+        )
+
 
 MOST_STEPS = 1_000_000
 FIRST_STEPS, FAR = 2_000, 2.0

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from models.files import parse_scene
+from models.files.assemble import Table, toml_value
+from models.files.reading import parse_scene
 from models.scene import Scene
-from models.scene_text import Table, toml_value
 
 SPEED_RAD_S = 10.0
 """Of a driver of which nothing is asked but angles."""

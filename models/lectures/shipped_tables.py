@@ -8,9 +8,8 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from models.errors import CrankcheckError, SceneError, cut, nearest, shown
-from models.files import is_there
-from models.regular import UnreadableError, regular_text
-from models.toml_text import tables
+from models.files.inputs import UnreadableError, regular_text, tables
+from models.files.reading import is_there
 
 M = TypeVar("M", bound=BaseModel)
 

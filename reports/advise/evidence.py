@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from models.errors import EngineError
-from models.files import parse_scene
-from models.friction import ConstantFriction
+from models.files.reading import parse_scene
 from models.laws import ConstantSpeed
+from models.loads import ConstantFriction
 from models.scene import Scene
 from reports.advise.demand import Choice, Demand, key_of
 from reports.plan.grid import shape_digest

@@ -16,8 +16,7 @@ from reports.compare.beside import Truth
 from reports.judge.cell import Cell
 from reports.plan.coarsest import coarsest
 from reports.stability.error_series import ErrorSeries, error_series
-from reports.workers.isolated import Isolated, Limits, Lost
-from reports.workers.scheduler import as_they_end
+from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
 from sim.run import run
 
 GROWS = 1.05

@@ -8,12 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from models.errors import CrankcheckError
-from reports.causes.account import CAUSE, NUMBER, Account
+from reports.causes.account import CAUSE, NUMBER, Account, chosen, sentence
 from reports.causes.cause import Case, Cause
-from reports.causes.choice import chosen
 from reports.causes.hypotheses import OF_CHANNELS, OF_LOGS, OF_SAMPLES, Hypothesis
 from reports.causes.inquiry import Inquiry
-from reports.causes.words import sentence
 
 FEWEST_ROWS = 8
 MOSTLY = 0.5

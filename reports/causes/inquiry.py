@@ -12,8 +12,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from reports.causes.account import CAUSE, NUMBER, Account
-from reports.causes.cause import Case
-from reports.causes.excerpt import EXPLAINED, MOST, Excerpt, Rows, Size, picked
+from reports.causes.cause import EXPLAINED, MOST, Case, Excerpt, Rows, Size, picked
 from reports.causes.world import World
 from reports.logs.channel import Channel
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import ClassVar
@@ -12,14 +12,12 @@ import numpy as np
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve, solve_driven
 from models.array import Array
-from models.driver_course import driver_place
+from models.driver import driver_place
 from models.motion import Motion, State
 from models.scene import Same, Scene
-from reports.compare.completeness import incomplete
-from reports.compare.series import angle_error
-from reports.compare.tracks import Track, fitting, lacking, tracks
+from reports.compare.tracks import Track, angle_error, fitting, lacking, tracks
 from reports.quantities import named
-from sim.engine import Run
+from sim.engine import Energy, Run
 
 SETTLING = 40
 """Samples in which an engine that starts with closed pins comes to its steady error: rates of these
@@ -107,8 +105,8 @@ class Beside:
     share ``truth``. What is worked out raises CrankcheckError where there is no reference.
     """
 
-    bends: ClassVar[bool] = False
-    """Whether it is an `ElasticBeside`, which is loaded where links bend alone."""
+    compared_by: ClassVar[tuple[str, ...]] = (".driven_errors",)
+    """The modules that compare it, from `reports.compare` (`reports.compare.compare`)."""
     truth: Truth
     run: Run
     motion: Motion
@@ -212,3 +210,59 @@ class Beside:
             if name not in kept:
                 kept[name] = tuple(tracks(self.scene, self.run, reference, (name,)))
         return tuple(track for name in quantities for track in kept[name])
+
+
+ROUNDINGS = 4
+"""Roundings of the largest time that a stamp may be off by: start + dt * k is two operations."""
+EPSILON = float(np.finfo(np.float64).eps)
+
+
+def incomplete(run: Run) -> str:
+    """What the log lacks of the commanded samples, start + k * every * dt; "" where it is whole.
+
+    A run that did not end well has a short log by its nature: its status says so already.
+    """
+    if run.motion is None:
+        return "nothing was logged"
+    stamps = run.motion.time_s
+    commanded = run.start_s + run.dt_s * (run.every * np.arange(run.steps // run.every + 1.0))
+    if stamps.shape != commanded.shape:
+        return (
+            f"{stamps.size} samples, not the {commanded.size} of {run.steps} steps logged every "
+            f"{run.every}"
+        )
+    off = np.abs(stamps - commanded)
+    room = ROUNDINGS * EPSILON * float(np.max(np.abs(commanded)))
+    bad = np.flatnonzero(~(off <= room))
+    if bad.size:
+        first = int(bad[0])
+        return (
+            f"sample {first} is stamped {stamps[first]:.9g} s, not {commanded[first]:.9g} s "
+            f"({bad.size} of {stamps.size} are off the commanded times)"
+        )
+    return ""
+
+
+def first_samples(run: Run, number: int) -> Run:
+    """The run with its first samples alone, of all that it logged at each; itself where these are
+    all."""
+    motion = run.motion
+    if motion is None or number >= motion.time_s.size:
+        return run
+    return each_at(run, lambda series: series[:number])
+
+
+def each_at(run: Run, chosen: Callable[[Array], Array]) -> Run:
+    """The run at some of its samples, of all that it logged at each."""
+    assert run.motion is not None
+    energy = run.energy
+    return replace(
+        run,
+        motion=replace(run.motion.each_series(chosen), time_s=chosen(run.motion.time_s)),
+        gaps={name: chosen(gap) for name, gap in run.gaps.items()},
+        velocity_time_s=None if run.velocity_time_s is None else chosen(run.velocity_time_s),
+        acceleration_time_s=(
+            None if run.acceleration_time_s is None else chosen(run.acceleration_time_s)
+        ),
+        energy=energy and Energy(chosen(energy.kinetic_j), chosen(energy.potential_j)),
+    )

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from analytic.in_assembly import choices, chosen_groups
-from analytic.kinematics import solve
+from analytic.kinematics import choices, chosen_groups, solve, solve_driven
 from analytic.structure.mobility import analyse
-from models.array import Mask
+from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.motion import LinkMotion, Motion
 from reports.compare.beside import Beside
 from reports.compare.errors import Departure
+from reports.compare.free.free_truth import FreeBeside
+from reports.quantities.free import GEOMETRY
 
 AWAY_RAD = 0.5
 """A link that is off by so much, in a loop that is closed, may stand in the other assembly."""
@@ -35,24 +36,33 @@ def departure(beside: Beside) -> Departure | None:
     A link that is far off in a loop that is closed has left its branch if the mechanism stands in
     another assembly at that or a later sample; else it is off its place, and on its way.
     """
-    driver_rad = beside.driver_rad
-    closed = np.ones(driver_rad.shape, dtype=bool)
+    tracks = beside.tracks(("angle",), beside.reference)
+    far, left = _far_off(beside, ((track.body, track.error) for track in tracks))
+    if left is None or not _elsewhere(beside, far):
+        return None
+    index, link = left
+    time_s, driver = float(beside.motion.time_s[index]), float(beside.driver_rad[index])
+    return Departure(link, time_s, driver, beside.scene.driver.unit)
+
+
+def _far_off(
+    beside: Beside, errors: Iterable[tuple[str, Array]]
+) -> tuple[Mask, tuple[int, str] | None]:
+    """The samples at which links are far off while the loop is closed, by the ``errors`` of their
+    angles; and where the first of them began to be, and which it is."""
+    closed = np.ones(beside.motion.time_s.shape, dtype=bool)
     for gap in beside.run.gaps.values():
         closed &= np.abs(gap) < CLOSED * beside.scene.longest_m
     left: list[tuple[int, str]] = []
     far = np.zeros_like(closed)
-    for track in beside.tracks(("angle",), beside.reference):
-        off = np.abs(track.error)
+    for link, error in errors:
+        off = np.abs(error)
         away = np.flatnonzero(closed & (off > AWAY_RAD))
         far[away] = True
         if away.size:
             here = np.flatnonzero(off[: away[0]] < HERE_RAD)
-            left.append((int(here[-1]) if here.size else 0, track.body))
-    if not left or not _elsewhere(beside, far):
-        return None
-    index, link = min(left)
-    time_s, driver = float(beside.motion.time_s[index]), float(driver_rad[index])
-    return Departure(link, time_s, driver, beside.scene.driver.unit)
+            left.append((int(here[-1]) if here.size else 0, link))
+    return far, min(left, default=None)
 
 
 def _elsewhere(beside: Beside, far: Mask) -> bool:
@@ -97,5 +107,53 @@ def stay(there: Mask, logged: Motion, links: Mapping[str, LinkMotion]) -> None:
     for name, link in links.items():
         if name not in logged.links or np.all(np.isnan(logged.links[name].theta)):
             continue
-        turn = logged.links[name].theta - link.theta
-        there &= np.abs(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi) < THERE_RAD
+        there &= np.abs(_turned(logged.links[name].theta - link.theta)) < THERE_RAD
+
+
+def _turned(angle: Array) -> Array:
+    """Angles [rad] less whole turns."""
+    return np.asarray(np.remainder(angle + np.pi, 2.0 * np.pi) - np.pi)
+
+
+def free_departure(beside: FreeBeside) -> Departure | None:
+    """Where the first link left the assembly that the truth has at that time, while its loop stayed
+    closed.
+
+    What the truth goes through itself is no departure, and a phase that has run away is none: the
+    links are held to the position that the run's own coordinate has. With several freedoms the
+    phase alone tells.
+    """
+    if not beside.free.by_dyads or beside.no_geometry:
+        return None
+    try:
+        tracks = beside.tracks((GEOMETRY.name,), beside.at_crank)
+    except CrankcheckError:
+        return None
+    links = (track for track in tracks if track.body_kind == "link")
+    far, left = _far_off(beside, ((track.body, _turned(track.error)) for track in links))
+    if left is None or not _free_elsewhere(beside, far):
+        return None
+    index, link = left
+    return Departure(link, float(beside.motion.time_s[index]), float(beside.crank[index]))
+
+
+def _free_elsewhere(beside: FreeBeside, far: Mask) -> bool:
+    """Whether the run stands in one of the assemblies of the scene at one of the samples ``far``,
+    at its own driver angle."""
+    scene = beside.scene
+    keys = [group.branch_key for group in analyse(scene).groups if group.assemblies == 2]
+    index = np.flatnonzero(far)[:: max(int(np.sum(far)) // 200, 1)]
+    theta, still = beside.crank[index], np.zeros(index.size)
+    logged = beside.motion.each_series(lambda series: series[index])
+    for signs in itertools.product((1, -1), repeat=len(keys[:MOST_CHOICES])):
+        branch = dict(zip(keys, signs, strict=False))
+        other = replace(scene, branch={**scene.branch, **branch})
+        there = np.ones(index.size, dtype=bool)
+        try:
+            motion = solve_driven(other, theta, still, still, points=(), sliders=(), bound=False)
+        except CrankcheckError:
+            continue
+        stay(there, logged, motion.links)
+        if there.any():
+            return True
+    return False

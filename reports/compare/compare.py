@@ -2,30 +2,37 @@
 
 Total error: the reference at the commanded time. Geometric error: the reference at the crank angle
 that the engine logged, so that a crank which lags shows in the drive and not in the geometry.
-Of a run that was let go (`reports.compare.free`) there is a phase in place of the drive.
+
+What a run is beside (`Beside`) names the modules that compare it, which are loaded when they are
+needed.
 """
 
 from __future__ import annotations
 
-import numpy as np
+import math
+from collections.abc import Iterator
+from dataclasses import fields
+from importlib import import_module
+from typing import Protocol, cast
 
-from analytic.forces.jolts import jolts
-from models.errors import ReachError
-from models.poses import mass_ratio
+from models.motion import State
+from models.scene import Scene
 from reports.compare.beside import Beside
-from reports.compare.branch import departure
-from reports.compare.change_points import conditioning
-from reports.compare.curvature import curvature
-from reports.compare.drive_rounding import summed
-from reports.compare.error_rows import Instants, instants_of, whole_row
 from reports.compare.errors import Error, Errors
-from reports.compare.force_rows import force_rows
-from reports.compare.free.free_beside import FreeBeside
-from reports.compare.loading import loading
-from reports.compare.role_rows import differenced_rows, reported_rows, uncertain, whole_rows
-from reports.compare.uneven import uneven, unevenly_turned
-from reports.quantities import named
-from reports.quantities.quantity import Role
+from sim.check import SAME
+from sim.engine import Run, Settings, SettingValue, Setup
+
+
+class Comparing(Protocol):
+    """A module that compares runs of a kind."""
+
+    def compared(self, beside: Beside, errors: Errors | None) -> Errors:
+        """The errors of a run, with those that the modules before have found."""
+        ...
+
+    def places(self, beside: Beside) -> list[Error]:
+        """Drive or phase errors, total errors of place and gaps alone."""
+        ...
 
 
 def compare(beside: Beside | None) -> Errors | None:
@@ -39,93 +46,98 @@ def compare(beside: Beside | None) -> Errors | None:
     Errors or None
         One row per quantity, body, source and kind.
     """
-    if beside is None:
-        return None
-    if isinstance(beside, FreeBeside):
-        from reports.compare.free.free_errors import free_errors  # for what is let go alone
-
-        errors = free_errors(beside)
-    else:
-        errors = _of_driven(beside)
-    if beside.bends:
-        from reports.compare.elastic.elastic_errors import with_elastic  # where links bend alone
-
-        return with_elastic(errors, beside)
+    errors: Errors | None = None
+    for module in _modules(beside):
+        assert beside is not None
+        errors = module.compared(beside, errors)
     return errors
-
-
-def _of_driven(beside: Beside) -> Errors:
-    """As `compare`, but for what is elastic."""
-    scene, run, reference = beside.scene, beside.run, beside.reference
-    at = instants_of(beside, beside.motion.time_s, reference)
-    geometric, notes = _geometric(beside, at)
-    reported, not_reported = reported_rows(beside)
-    borne = force_rows(beside)
-    jolt = jolts(scene, beside.whole)
-    far = uneven(scene, reference, at.driver_rad) if beside.of_engine else {}
-    return Errors(
-        rows=(
-            *whole_rows(beside, at, "drive"),
-            *whole_rows(beside, at, "place"),
-            *geometric,
-            *whole_rows(beside, at, "closure"),
-            *reported,
-            *differenced_rows(beside, at),
-            *borne.rows,
-        ),
-        not_reported=(*not_reported, *borne.not_reported),
-        notes=(*notes, *borne.notes),
-        curvature=curvature(scene, beside.whole),
-        conditioning=conditioning(reference, at.driver_rad),
-        step_rad=scene.pace_rad_s * run.dt_s,
-        missing=beside.missing,
-        incomplete=beside.incomplete or borne.incomplete,
-        uncertain=uncertain(beside) | dict(borne.unsure),
-        departure=departure(beside),
-        summed_rad=summed(scene.driver.law, run.dt_s, run.steps),
-        jolt=float(jolt[0]),
-        worst_jolt=float(np.max(jolt)),
-        mass_ratio=mass_ratio(scene),
-        drives_within=scene.driver.is_inner,
-        starts_in_passage=bool(np.any(at.passed[: at.first])),
-        uneven=far,
-        uneven_rates=unevenly_turned(scene, far),
-        contradictions=borne.contradictions,
-        unbalanced=borne.unbalanced,
-        start_load=borne.start_load,
-        loading=loading(scene, beside.whole),
-        load_slopes=borne.load_slopes,
-        inertia_share=borne.inertia_share,
-    )
 
 
 def places(beside: Beside | None) -> list[Error]:
     """Drive error, total errors of place and gaps alone; none of a run that logged nothing."""
     if beside is None:
         return []
-    if isinstance(beside, FreeBeside):
-        from reports.compare.free.free_errors import free_places  # for what is let go alone
-
-        rows = free_places(beside)
-    else:
-        at = instants_of(beside, beside.motion.time_s, beside.reference)
-        roles: tuple[Role, ...] = ("drive", "place", "closure")
-        rows = [row for role in roles for row in whole_rows(beside, at, role)]
-    if beside.bends:
-        from reports.compare.elastic.elastic_errors import elastic_rows
-
-        rows += elastic_rows(beside)
-    return rows
+    return [row for module in _modules(beside) for row in module.places(beside)]
 
 
-def _geometric(beside: Beside, at: Instants) -> tuple[list[Error], tuple[str, ...]]:
-    """Errors against the reference at the logged crank angle, or a note that says why not."""
-    if not beside.has_crank:
-        return [], ()
-    if not np.all(np.isfinite(beside.crank)):
-        return [], ("no geometric error: the logged crank angle is not finite",)
-    try:
-        tracks = beside.tracks(named("place"), beside.at_crank)
-    except ReachError as error:
-        return [], (f"no geometric error: the logged crank left its range ({error})",)
-    return [whole_row(track, at, kind="geometric") for track in tracks], ()
+def _modules(beside: Beside | None) -> Iterator[Comparing]:
+    """The modules that compare a run."""
+    for name in beside.compared_by if beside else ():
+        yield cast(Comparing, import_module(name, __package__))
+
+
+ROUNDING = 1e-12
+"""A relative difference that is rounding: of a number that is worked out in another order."""
+
+
+def not_asked_for(run: Run, setup: Setup, holds: Settings, scene: Scene, state: State) -> list[str]:
+    """What the run says of itself that is not as asked for, field by field.
+
+    ``holds`` is what an engine that was given the settings says that it holds of them; ``state`` is
+    what the run was to start from.
+    """
+    texts = [
+        _words(field.name, getattr(setup, field.name), getattr(run, field.name))
+        for field in fields(setup)
+        if field.name != "asked" and getattr(run, field.name) != getattr(setup, field.name)
+    ]
+    told = [
+        _words(f"setting {name}", setup.asked.get(name), run.asked.get(name))
+        for name in dict.fromkeys([*setup.asked, *run.asked])
+        if name not in setup.asked or name not in run.asked or setup.asked[name] != run.asked[name]
+    ]
+    held = [
+        _words(f"setting {name}, as the engine holds it", value, run.settings.get(name))
+        for name, value in holds.items()
+        if run.motion is not None and not _equal(run.settings.get(name), value)
+    ]
+    return [*texts, *(told or held), *_elsewhere(run, scene, state)]
+
+
+def _elsewhere(run: Run, scene: Scene, state: State) -> list[str]:
+    """The bodies whose first logged place is not that of the state."""
+    motion = run.motion
+    if motion is None or not motion.time_s.size:
+        return []
+    first = motion.state()
+    size = max(scene.longest_m, *(math.hypot(*place) for place in state.position.values()))
+    turns = {
+        name: abs(math.remainder(first.theta[name] - angle, math.tau))
+        for name, angle in state.theta.items()
+        if name in first.theta
+    }
+    moves = {
+        name: math.dist(first.position[name], place) / size
+        for name, place in state.position.items()
+        if name in first.position
+    }
+    slides = {
+        name: abs(first.displacement[name] - place) / size
+        for name, place in state.displacement.items()
+        if name in first.displacement
+    }
+    far = {
+        f"{kind} {name}": (by, unit)
+        for kind, unit, each in (
+            ("link", "rad", turns),
+            ("point", "L", moves),
+            ("slider", "L", slides),
+        )
+        for name, by in each.items()
+        if by > SAME
+    }
+    return [f"start: {body} begins {by:.2g} {unit} off" for body, (by, unit) in far.items()]
+
+
+def _words(name: str, asked: object, found: object) -> str:
+    return f"{name}: asked for {_short(asked)}, the run has {_short(found)}"
+
+
+def _short(value: object) -> str:
+    return "none" if value is None else f"{value:.9g}" if isinstance(value, float) else repr(value)
+
+
+def _equal(found: SettingValue | None, asked: SettingValue) -> bool:
+    if found is None or isinstance(found, str) or isinstance(asked, str):
+        return found == asked
+    return math.isclose(found, asked, rel_tol=ROUNDING)

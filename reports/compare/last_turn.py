@@ -19,11 +19,8 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.compare.beside import Truth
-from reports.compare.free.free_beside import FreeBeside
-from reports.compare.free.free_series import SAMPLES as FREE_SAMPLES
-from reports.compare.free.free_series import free_series
-from reports.compare.free.some_samples import each_at
+from reports.compare.beside import Truth, each_at
+from reports.compare.free.free_truth import FreeBeside
 from reports.compare.tracks import Track
 from reports.quantities import named
 from sim.engine import Run
@@ -71,7 +68,7 @@ def _instants(scene: Scene, run: Run) -> np.ndarray:
     step_s = run.dt_s * run.every
     per_turn = scene.driver.law.period_s / step_s
     span = min(round(per_turn), times.size - 1)
-    wanted = FREE_SAMPLES if scene.is_free else SAMPLES_PER_TURN
+    wanted = SAMPLES if scene.is_free else SAMPLES_PER_TURN
     parts = min(max(round(wanted * span / per_turn), 1), span)
     return np.round(times.size - 1 - span + np.linspace(0, span, parts + 1)).astype(np.intp)
 
@@ -83,3 +80,26 @@ def _errors(placed: Iterable[Track], prefix: str) -> Mapping[str, Array]:
         for track in placed
         if track.body_kind != "point"
     }
+
+
+SAMPLES = 720
+"""Over a whole run: some fifty in a swing of a mechanism that lasts ten seconds."""
+
+
+def free_series(beside: FreeBeside) -> Mapping[str, Array]:
+    """Series by name, (T,) each, of a run that was thinned out to the instants that are kept.
+
+    ``phase`` [rad] is what the driver is off by at the same time, ``growth`` the sensitivity,
+    ``omega`` the driver's logged angular velocity [rad/s]. Where the engine has an energy,
+    ``energy`` [J] is that, less the work of loads and dampers as the reference has it, and less its
+    value at the start; ``kinetic`` the true kinetic energy [J].
+    """
+    run = beside.run
+    series = {"phase": beside.drive, "growth": beside.growth}
+    if driver := beside.motion.links.get(beside.scene.driver.link):
+        series["omega"] = driver.omega
+    if run.energy is not None and run.velocity_time_s is not None:
+        known = beside.free.energy(np.clip(run.velocity_time_s, 0.0, beside.free.until_s))
+        own = run.energy.total_j - known.work
+        series |= {"energy": own - own[0], "kinetic": known.kinetic}
+    return series

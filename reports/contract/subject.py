@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import cast
 
@@ -11,9 +11,8 @@ import numpy as np
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import EngineError
-from models.forces import Forces
 from models.laws import Law
-from models.motion import State
+from models.motion import Forces, State
 from models.scene import Same, Scene
 from reports.compare.beside import Beside, truth_of
 from reports.compare.compare import compare
@@ -140,3 +139,24 @@ def apart(one: Poses, other: Poses) -> float:
     if a.shape != b.shape or not (np.isfinite(a).all() and np.isfinite(b).all()):
         return float("inf")
     return float(np.abs(a - b).max() / max(np.abs(a).max(), 1e-300))
+
+
+Check = Callable[[Subject], Iterator[str]]
+"""Yields what is wrong, in words and numbers: nothing where the clause is held. Raises
+NotTriedError where there is nothing to look at."""
+
+
+@dataclass(frozen=True)
+class Clause:
+    """One thing that every engine has to do.
+
+    ``title`` says what, ``why`` what goes wrong otherwise, ``cure`` what to look at. A clause that
+    is not ``of_scenes`` is put to the first scene alone that it can be put to.
+    """
+
+    id: str
+    title: str
+    why: str
+    cure: str
+    check: Check
+    of_scenes: bool = True

@@ -11,17 +11,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.table import Table
 
+from analytic.elastic.elastic_motion import ElasticHistory, bent, energies, sampled
 from analytic.elastic.released import ReleasedElasticMotion
-from analytic.elastic.sampled import ElasticHistory, bent, energies, sampled
 from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
 from analytic.kinematics import solve
 from models.array import Array
-from models.controlled import Controlled
+from models.cut_links import line_of, with_rigid_links
+from models.driver import Controlled
 from models.elastic import Shape
-from models.elastic_line import line_of
 from models.motion import Motion
-from models.rigid import with_rigid_links
 from models.scene import Scene
 from reports.describe.elastic_words import described
 from reports.describe.tables import Columns, tables_over_time

@@ -10,13 +10,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.elastic.discretisation import Discretisation, Elements, Modes, Polynomials, Segments
-from analytic.elastic.elastic_doubt import ElasticDoubt
+from analytic.elastic.discretisation import (
+    Discretisation,
+    ElasticDoubt,
+    Elements,
+    Modes,
+    Polynomials,
+    Segments,
+)
+from analytic.elastic.elastic_motion import ElasticHistory
 from analytic.elastic.released import ReleasedElasticMotion
-from analytic.elastic.sampled import ElasticHistory
 from models.array import Array
+from models.cut_links import line_of
 from models.elastic import ElasticLink, Shape
-from models.elastic_line import line_of
 from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene

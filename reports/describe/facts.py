@@ -10,14 +10,11 @@ from dataclasses import dataclass
 from analytic.kinematics import reach
 from analytic.mechanism.cycle import Along, Output
 from analytic.mechanism.fourbar import FourBar
-from analytic.mechanism.speeds import ExtremeSpeed, extreme_speeds
-from analytic.mechanism.travel import Travel, travels
+from analytic.mechanism.travel import ExtremeSpeed, Travel, extreme_speeds, travels
 from analytic.structure.mobility import Structure
-from models.controlled import Controlled
+from models.driver import Controlled, Released, passing
 from models.errors import CrankcheckError, StructureError
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
-from models.passing import passing
-from models.released import Released
 from models.scene import Scene
 from reports.way.way import way_of
 
@@ -56,7 +53,7 @@ def speed_facts(
 ) -> SpeedFacts | None:
     """The largest and smallest speeds of links, sliders and points along directions, at the
     driver's angles at which they have no acceleration; None where a cycle of the mechanism has
-    none. ``clockwise`` turns a driver of one speed round, as in `models.passing`."""
+    none. ``clockwise`` turns a driver of one speed round, as in `models.driver`."""
     try:
         every = extreme_speeds(scene, _outputs(scene, along))
     except CrankcheckError:

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.array import Array
-from models.forces import Forces
-from models.motion import BodyMotion, Motion
+from models.motion import BodyMotion, Forces, Motion
 from sim.engine import Run
 
 if TYPE_CHECKING:

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from rich.table import Table
 
-from analytic.mechanism.coriolis import coriolis
+from analytic.mechanism.travel import coriolis
 from models.array import Array
-from models.driver_course import driver_place
+from models.driver import driver_place
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.facts import SpeedFacts

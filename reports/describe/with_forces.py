@@ -14,11 +14,9 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
 from models.characteristics import Constant
-from models.driver_course import driver_place
-from models.driver_shown import driver_shown, driver_unit
+from models.driver import driver_place, driver_shown, driver_unit
 from models.errors import CrankcheckError
-from models.forces import Forces, SliderForces
-from models.motion import Motion
+from models.motion import Forces, Motion, SliderForces
 from models.scene import Scene
 from reports.output.numbers import count, listed
 

@@ -146,7 +146,7 @@ def ratio(change: ErrorChange) -> str:
 def _line(members: Sequence[CellPair], compared: Sequence[float], engine: str) -> PrintedRow:
     """Pairs of one line, the largest change first, as a row."""
     first, change = members[0], members[0].worst
-    unit = "/s" if first.name.is_free else ""
+    unit = first.name.clock.per
     steps = _steps([pair.name.steps_per_turn for pair in members], compared, unit)
     if first.turned or change is None:
         failed = first.old if first.new.ok else first.new
@@ -175,7 +175,7 @@ def _engine(pair: CellPair, several: frozenset[str]) -> str:
 def _called(name: CellName, turns: bool = False) -> str:
     parts = [f"{name.engine} {name.variant}"]
     parts += [f"drive {name.drive}"] if name.drive != "prescribed" else []
-    parts += [f"{name.turns:g} {'s' if name.is_free else 'turns'}"] if turns else []
+    parts += [f"{name.turns:g} {name.clock.unit}"] if turns else []
     return ", ".join(parts)
 
 

@@ -17,7 +17,7 @@ from matplotlib.patheffects import withStroke
 from PIL import Image
 
 from models.array import Array
-from models.driver_shown import driver_stands
+from models.driver import driver_stands
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 from reports.drawing.force_arrows import ForceArrows, force_arrows

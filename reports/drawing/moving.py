@@ -18,14 +18,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from models.driver_course import driver_course
-from models.driver_shown import driver_axis, driver_unit
-from models.elastic_line import line_of
+from models.cut_links import line_of
+from models.driver import driver_axis, driver_course, driver_unit
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene
 from reports.compare.last_turn import Trace
-from reports.compare.series import angle_error
+from reports.compare.tracks import angle_error
 from reports.drawing.packed import packed
 from reports.drawing.shape import true_motion
 

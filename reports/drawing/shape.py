@@ -8,9 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from models.array import Array
-from models.forces import Forces
 from models.laws import Oscillating
-from models.motion import Motion
+from models.motion import Forces, Motion
 from models.scene import GROUND, Scene, Slider
 from reports.way.way import way_of
 

@@ -14,7 +14,7 @@ from html import escape
 import numpy as np
 
 from models.array import Array
-from models.driver_shown import driver_stands
+from models.driver import driver_stands
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 from reports.drawing.force_arrows import Arrow, ForceArrows, force_arrows

@@ -10,7 +10,8 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -26,18 +27,11 @@ from reports.figures.marks import Mark, marks
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, SMALL, logarithmic, width_in
 from reports.output.numbers import duration
-from reports.results.drawable import (
-    PLACE,
-    PLACE_ELASTIC,
-    PLACE_FREE,
-    around,
-    ends,
-    fitted,
-    measured,
-)
+from reports.results.drawable import around, ends, fitted, measured
 from reports.results.lines import Line, Named, named
 from reports.results.origin import notes
 from reports.results.overview import Report
+from reports.way.clock import SECONDS, TURNS, common_clock
 
 STEP, TIME = "time step [s]", "time step"
 PER_TURN = "steps per turn"
@@ -61,10 +55,10 @@ def draw(report: Report, scene: str) -> Figure:
     if strip:
         right: dict[str, Any] = {"ha": "right", "va": "center", "transform": axes.transAxes}
         axes.text(-0.02, 1.0 - strip / 2, "failed", size=SMALL, **right)
-    free = _all_free(own)
-    axes.set_xlabel(TIME if free else STEP)
+    over = _over(own)
+    axes.set_xlabel(over.label)
     axes.set_ylabel(_error_of(own))
-    (_time if free else _upper)(axes, own)
+    over.ticks(axes, own)
     return figure
 
 
@@ -79,29 +73,27 @@ def draw_all(report: Report) -> Figure:
     if strip:
         entries.append((Rectangle((0, 0), 1, 1, fc=STRIP), "strip along the top: failed"))
     mark_of = {name: mark.scaled(0.75) for name, mark in mark_of.items()}
-    free = _all_free(lines)
-    labels = (TIME if free else PER_TURN, _error_of(lines))
+    over = _over(lines)
+    labels = (over.label_of_all, _error_of(lines))
     figure, axes = grid(scenes, "Convergence", labels, entries, notes(report, lines))
-    _limits(axes, lines, 1.0 if free else 0.0)
+    _limits(axes, lines, over.unit_s)
     for scene, one in zip(scenes, axes, strict=True):
         own = report.lines_of(scene)
-        unit_s = 1.0 if free else own[0].period_s
+        unit_s = over.unit_s or own[0].period_s
         _panel(one, own, mark_of, unit_s)
         _failed(one, own, mark_of, unit_s, strip)
-        (_time if free else _count)(one, own)
+        over.ticks_of_all(one, own)
     return figure
 
 
-def _all_free(lines: Sequence[Line]) -> bool:
-    """Whether lines have no turns, and errors over the sensitivity of their motion."""
-    return all(line.drive == "free" for line in lines)
+def _over(lines: Sequence[Line]) -> Over:
+    """What steps are drawn over."""
+    return OVER[common_clock(line.drive for line in lines)]
 
 
 def _error_of(lines: Sequence[Line]) -> str:
     """What the errors of lines are of; rigid and elastic links are not drawn together."""
-    if any(line.bends for line in lines):
-        return PLACE_ELASTIC
-    return PLACE_FREE if _all_free(lines) else PLACE
+    return min((line.kind for line in lines), key=lambda kind: kind.leads).axis
 
 
 def _panel(axes: Axes, lines: Sequence[Line], mark_of: Mapping[Named, Mark], unit_s: float) -> None:
@@ -217,3 +209,21 @@ def _entries(
         )
         for line in lines
     ]
+
+
+@dataclass(frozen=True)
+class Over:
+    """How steps stand along an axis: in one panel, and in those of all scenes in the unit of time
+    that is given, 0 for a turn of each."""
+
+    label: str
+    ticks: Callable[[Axes, Sequence[Line]], None]
+    label_of_all: str
+    ticks_of_all: Callable[[Axes, Sequence[Line]], None]
+    unit_s: float
+
+
+OVER = {
+    TURNS: Over(STEP, _upper, PER_TURN, _count, 0.0),
+    SECONDS: Over(TIME, _time, TIME, _time, 1.0),
+}

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,11 +16,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
-from models.driver_shown import driver_axis
+from models.driver import driver_axis
 from models.scene import Scene
 from reports.drawing.moving import told_places
-from reports.figures.grids import grid
-from reports.figures.style import INK, TINY, power_of_ten
+from reports.figures.grids import corner_words, grid, tenfold
+from reports.figures.style import INK, Look, power_of_ten
 from reports.output.numbers import short
 from reports.results.drawable import ends
 from reports.results.error_parts import Parts, Split, split, worst_body
@@ -32,8 +31,7 @@ from reports.results.overview import Report
 
 STEPS = 720
 """Steps per turn of the cells that are shown, or the nearest that ended well: those of verify."""
-CurveStyle = dict[str, Any]
-LOOKS: dict[str, tuple[str, CurveStyle]] = {
+LOOKS: dict[str, tuple[str, Look]] = {
     "total": ("total", {"color": "#cccccc", "linewidth": 3.0}),
     "drive": ("drive: crank not where it is told to be", {"color": "#2f7d4c", "dashes": (1, 1)}),
     "floor": ("model floor: left at a step of zero", {"color": "#c04a1d", "dashes": (4, 1.5)}),
@@ -81,8 +79,7 @@ class ShownCell:
 
     @property
     def scale(self) -> float:
-        largest = max(float(np.max(np.abs(curve))) for curve in self.parts.curves.values())
-        return 10.0 ** math.floor(math.log10(largest)) if largest > 0.0 else 1.0
+        return tenfold(max(float(np.max(np.abs(each))) for each in self.parts.curves.values()))
 
 
 def _cell(line: Line, parts: Split) -> ShownCell | None:
@@ -109,9 +106,4 @@ def _panel(axes: Axes, cell: ShownCell, scene: Scene, unit: str) -> None:
     axes.yaxis.set_major_locator(MaxNLocator(4))
     if scene.driver.slider is None:
         axes.xaxis.set_major_formatter(FuncFormatter(lambda angle, _: f"{angle % 360:g}"))
-    low, high = axes.get_ylim()
-    axes.set_ylim(low, high + 0.16 * (high - low))  # room for the words
-    paper = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}  # over a tick behind
-    words: CurveStyle = {"va": "top", "size": TINY, "transform": axes.transAxes, "bbox": paper}
-    axes.text(0.03, 0.96, f"[{power_of_ten(cell.scale)} {unit}]", ha="left", **words)
-    axes.text(0.97, 0.96, cell.floor, ha="right", **words)
+    corner_words(axes, 0.16, f"[{power_of_ten(cell.scale)} {unit}]", cell.floor)

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reports.figures.sheet import EDGE, Panels, folded, sheet
-from reports.figures.style import PAGE_IN, SIZE, SMALL, cut
+from reports.figures.style import PAGE_IN, SIZE, SMALL, TINY, Look, cut
 
 COLUMNS = 4
 
@@ -47,8 +46,23 @@ def grid(
     under = low - 0.15 / figure.get_figheight()
     figure.text((box.x0 + right) / 2, under, labels[0], ha="center", va="top")
     middle = (low + box.y1) / 2
-    words: dict[str, Any] = {"rotation": 90, "va": "center", "multialignment": "center"}
+    words: Look = {"rotation": 90, "va": "center", "multialignment": "center"}
     figure.text(EDGE / PAGE_IN, middle, "\n".join(upright), **words)
     for one in axes[len(names) :]:
         one.remove()
     return figure, axes[: len(names)]
+
+
+def tenfold(largest: float) -> float:
+    """The power of ten that a panel of series up to ``largest`` is drawn in."""
+    return 10.0 ** math.floor(math.log10(largest)) if largest > 0.0 else 1.0
+
+
+def corner_words(axes: Axes, room: float, left: str, right: str) -> None:
+    """Words in the upper corners of a panel, which is made higher by that part of itself."""
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + room * (high - low))
+    paper = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}  # over a tick behind
+    words: Look = {"va": "top", "size": TINY, "transform": axes.transAxes, "bbox": paper}
+    axes.text(0.03, 0.96, left, ha="left", **words)
+    axes.text(0.97, 0.96, right, ha="right", **words)

@@ -6,6 +6,7 @@ figure of a column's width has little room for them.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,10 +15,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
-from models.driver_shown import driver_stands
+from models.driver import driver_stands
+from models.motion import Motion
 from models.scene import Scene
 from reports.describe.facts import describe_law
-from reports.drawing.gif import draw_bodies
+from reports.drawing.force_arrows import ForceArrows
+from reports.drawing.gif import draw_arrows, draw_bodies, scale_bar
 from reports.drawing.names import Name, Sheet, names
 from reports.drawing.shape import PATH_SAMPLES, box_of, clearest, turn_of
 from reports.figures.sheet import Panels, sheet
@@ -37,24 +40,43 @@ def draw(report: Report, name: str) -> Figure | None:
     if scene is None:
         return None
     path = turn_of(scene, FREE_SAMPLES if scene.is_free else PATH_SAMPLES)
-    low, high = box_of(path)
-    panels = Panels(top=0.05, right=0.1)
-    wide = COLUMN_IN - panels.left - panels.right
-    height = float(np.clip(wide * (high[1] - low[1]) / (high[0] - low[0]), 1.0, 4.0))
     at = clearest(path)
     title = f"{name}, {driver_stands(scene, path, at)}"
     under = [f"{scene.source}. {scene.note}", _origin(report, scene)]
-    figure, (axes,) = sheet(COLUMN_IN, replace(panels, height=height), title, [], under)
-    per_m = min(wide / (high[0] - low[0]), height / (high[1] - low[1]))
-    frame(axes, low, high, float(per_m))
+    return mechanism_at(scene, path, at, box_of(path), title, under)
+
+
+def mechanism_at(
+    scene: Scene,
+    path: Motion,
+    at: int,
+    box: tuple[Array, Array],
+    title: str,
+    notes: Sequence[str],
+    arrows: ForceArrows | None = None,
+) -> Figure:
+    """The drawing of a scene at a sample of its path, within a box, with arrows of its forces where
+    there are any."""
+    low, high = box
+    panels = Panels(top=0.05, right=0.1)
+    wide = COLUMN_IN - panels.left - panels.right
+    height = float(np.clip(wide * (high[1] - low[1]) / (high[0] - low[0]), 1.0, 4.0))
+    figure, (axes,) = sheet(COLUMN_IN, replace(panels, height=height), title, [], notes)
+    per_m = float(min(wide / (high[0] - low[0]), height / (high[1] - low[1])))
+    _frame(axes, low, high, per_m)
     draw_bodies(axes, scene, path, path, at, 0.5)
-    paper = Sheet(low, tuple((high - low) * per_m), float(per_m), 0.1 * scene.longest_m)
-    for each in names(scene, path, at, paper, name_size):
-        write_name(axes, each)
+    taken = []
+    if arrows is not None:
+        draw_arrows(axes, arrows, path, at)
+        scale_bar(axes, arrows, box, SMALL)
+        taken = [each.shaft for each in arrows.at(path, at)]
+    paper = Sheet(low, tuple((high - low) * per_m), per_m, 0.1 * scene.longest_m)
+    for each in names(scene, path, at, paper, _name_size, taken):
+        _write_name(axes, each)
     return figure
 
 
-def frame(axes: Axes, low: Array, high: Array, per_m: float) -> None:
+def _frame(axes: Axes, low: Array, high: Array, per_m: float) -> None:
     """Axes in metres from corner to corner, ``per_m`` inches each, with numbers that have room."""
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     axes.set_aspect("equal", adjustable="box", anchor="N")
@@ -64,13 +86,13 @@ def frame(axes: Axes, low: Array, high: Array, per_m: float) -> None:
     )
 
 
-def write_name(axes: Axes, each: Name) -> None:
+def _write_name(axes: Axes, each: Name) -> None:
     """A letter or a name in its place."""
     size, style = (SIZE, "normal") if each.is_point else (SMALL, "italic")
     axes.text(each.x, each.y, each.text, size=size, style=style, ha="center", va="center", zorder=8)
 
 
-def name_size(text: str, is_point: bool) -> tuple[float, float]:
+def _name_size(text: str, is_point: bool) -> tuple[float, float]:
     """Width and height of a text [inch]."""
     points = SIZE if is_point else SMALL
     return width_in(text, points), 0.75 * points / POINTS

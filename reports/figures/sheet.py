@@ -49,6 +49,11 @@ class Panels:
     between: tuple[float, float] = (0.15, 0.25)
 
 
+SIDES = (0.58, 0.1)
+"""Room on the left and on the right of a panel over an axis [inch]."""
+ONE = Panels(1, 1, 2.1, *SIDES, 0.15)
+
+
 def sheet(
     width: float,
     panels: Panels,

@@ -7,13 +7,19 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import lru_cache
+from typing import Any
 
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter, NullLocator
 
+from models.array import Array
+
+Look = dict[str, Any]
+"""How a line is drawn, as matplotlib names it."""
 COLUMN_IN, PAGE_IN = 3.4, 7.0
 """Widths of a column and of a page of two [inch]."""
 POINTS = 72.0
@@ -129,3 +135,16 @@ def logarithmic(axes: Axes, which: str, low: float, high: float, ticks: int = 8)
     few = high / low < 10.0**FEW
     axis.set_minor_locator(LogLocator(subs=range(2, 10)) if few else NullLocator())
     axis.set_minor_formatter(NullFormatter())
+
+
+def mark_zero(axes: Axes, *series: Array) -> None:
+    """A line at 0 where the series come near to it; else they have the axis for themselves."""
+    low, high = min(map(np.min, series)), max(map(np.max, series))
+    if low <= 0.2 * high and high >= 0.2 * low:
+        axes.axhline(0.0, color=QUIET, linewidth=0.5)
+
+
+def shorten(axes: Axes) -> None:
+    """Short numbers on the vertical axis, with one power of ten for all of them."""
+    axes.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=False)
+    axes.yaxis.get_offset_text().set_fontsize(SMALL)

@@ -19,7 +19,7 @@ from reports.figures.grids import grid
 from reports.figures.marks import Mark, marks
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, FRONT, logarithmic
-from reports.results.drawable import PLACE, PLACE_ELASTIC, around, ends, timed
+from reports.results.drawable import around, ends, timed
 from reports.results.lines import Line, Named, named
 from reports.results.looks import label
 from reports.results.origin import notes
@@ -42,7 +42,7 @@ def draw(report: Report, scene: str) -> Figure | None:
     _limits([axes], _points(own))
     _panel(axes, report, own, mark_of)
     axes.set_xlabel(COST)
-    axes.set_ylabel(PLACE_ELASTIC if own[0].bends else PLACE)
+    axes.set_ylabel(own[0].kind.axis)
     return figure
 
 
@@ -55,7 +55,7 @@ def draw_all(report: Report) -> Figure | None:
     names = [ALL, *scenes]
     entries = [*_entries(lines, mark_of), _front_entry()]
     title, under = "Work and precision", notes(report, lines, timed=True)
-    figure, axes = grid(names, title, (COST, PLACE), entries, under)
+    figure, axes = grid(names, title, (COST, lines[0].kind.axis), entries, under)
     mark_of = {name: mark.scaled(0.75) for name, mark in mark_of.items()}
     _limits(axes, _points(lines))
     _over(axes[0], report, mark_of)

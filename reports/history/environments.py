@@ -18,7 +18,7 @@ from packaging.version import InvalidVersion, Version
 
 from models.errors import CrankcheckError, cut
 from reports.output.write import write
-from reports.workers.programs import Runner
+from reports.workers.signals import Runner
 from sim.registry import declaration
 
 COMPLETE = "complete.txt"

@@ -24,8 +24,7 @@ from reports.history.environments import (
 )
 from reports.output.provenance import crankcheck_version, processor
 from reports.output.write import check_folder
-from reports.workers.programs import Ended, Runner, run_child
-from reports.workers.signals import leave_to_parent
+from reports.workers.signals import Ended, Runner, leave_to_parent, run_child
 from sim.registry import declaration
 
 ROOMS = Path(__file__).parents[2]

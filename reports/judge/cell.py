@@ -7,13 +7,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from models.driver_shown import place_in_words
+from models.driver import place_in_words
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Scene
-from reports.compare.asked import not_asked_for
 from reports.compare.beside import Truth
-from reports.compare.compare import compare
+from reports.compare.compare import compare, not_asked_for
 from reports.compare.errors import Departure
 from reports.judge.halving import Followed, followed
 from reports.judge.rules import judge

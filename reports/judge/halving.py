@@ -8,30 +8,22 @@ from dataclasses import dataclass, replace
 
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.compare.beside import Truth
+from reports.compare.beside import Truth, incomplete
 from reports.compare.compare import places
-from reports.compare.completeness import incomplete
 from reports.compare.errors import Error, Errors, largest
 from reports.compare.force_rows import force_rows
+from reports.judge.rules.reference import too_good
 from reports.judge.three_steps import AT_ROUNDING, Convergence, convergence
 from reports.judge.tolerance import beyond_engine, limits
-from reports.judge.too_good import too_good
 from reports.quantities import named
 from sim.engine import Placing, Run
 
 ELASTIC = ("segments", "deflection")
-PLACES, CLOSED, FORCES = ("phase", *named("place")), named("place", "closure"), named("force")
-FREE_CLOSED = ("phase", "geometry", *CLOSED)
+PLACES, FORCES = ("phase", *named("place")), named("force")
 HALVINGS = 2
 EXACT_DRIVE = 1e-9
 """A drive error [rad] up to which the crank is where it should be, but for rounding; long runs add
-to it what their sums may be off by (`reports.compare.drive_rounding`)."""
-MOST_GROWTH = 1e3
-"""A sensitivity of free motion from which on errors of phase cancel and add up as they like, and
-say nothing of an order."""
-SOLVED = 3e-4
-"""An error of free motion that does not shrink, of so small a share of its limit, is no floor of a
-model: where joints are nearly dependent an engine's solver leaves as much at any step."""
+to it what their sums may be off by (`reports.compare.whole_errors`)."""
 BEHIND_DRIVE = 5.0
 """How far behind the rounding of the crank that of the other links may be."""
 
@@ -67,15 +59,15 @@ def followed(
         The engine's, see `sim.engine.Engine`.
     """
     worst, force = worst_place(errors), _worst_of(errors.rows, FORCES)
-    if worst is None or (errors.free is not None and errors.free.sensitivity > MOST_GROWTH):
+    motion, summed_rad = errors.of_motion, errors.of_scene.summed_rad
+    if worst is None or not motion.has_order:
         return Followed()
     parts = [2**halving for halving in range(HALVINGS + 1)]
     finer = [_finer(truth, dt_s, p, rerun) for p in parts[1:]]
     every_row = [*errors.rows, *(row for rows, _ in finer for row in rows)]
     drive = largest(row for row in every_row if row.quantity == "drive")
-    rounding = _rounding(drive, EXACT_DRIVE + parts[-1] * errors.summed_rad)
-    if errors.free is not None:  # an integrated truth is off by more than rounding
-        rounding = max(rounding, parts[-1] * errors.summed_rad, worst.pure_bound)
+    rounding = _rounding(drive, EXACT_DRIVE + parts[-1] * summed_rad)
+    rounding = motion.rounding(rounding, parts[-1] * summed_rad, worst.pure_bound)
     steps_s, faults = [dt_s / p for p in parts], [fault for _, fault in finer if fault]
 
     def pure(followed: Error) -> list[float]:
@@ -96,13 +88,13 @@ def followed(
         _unit_words(worst),
         rounding,
         faults=faults,
-        over=over(CLOSED if errors.free is None else FREE_CLOSED, rounding),
+        over=over(motion.closing, rounding),
         copied=_copied(errors, dt_s, parts, [errors.rows, *(rows for rows, _ in finer)], order)
         if placing == "integrated"
         else (),
-        cancels=errors.free is not None,
+        cancels=motion.cancels,
         known=beyond_engine(worst.quantity, errors),
-        solved=SOLVED * _limit(truth.scene, errors, tolerance, worst) if errors.free else 0.0,
+        solved=motion.solved * _limit(truth.scene, errors, tolerance, worst),
     )
     if force is None:
         return Followed(of_places)
@@ -164,7 +156,7 @@ def _over(
     What is over its limit at the full step fails its own rule, and is not told again.
     """
     before = limits(scene, errors, tolerance)
-    finer = replace(errors, step_rad=errors.step_rad / parts, summed_rad=errors.summed_rad * parts)
+    finer = _at_step(errors, parts, errors.of_scene.summed_rad * parts)
     in_force = limits(scene, finer, tolerance)
     texts = []
     for name in quantities:
@@ -177,6 +169,13 @@ def _over(
         if not fine.pure <= max(limit, rounding):
             texts.append(f"{name} of {fine.body} {fine.pure:.2g}, limit {limit:.2g}")
     return f"at dt {dt_s / parts:.3g} s {'; '.join(texts)}" if texts else ""
+
+
+def _at_step(errors: Errors, parts: int, summed_rad: float) -> Errors:
+    """The same with its step cut into parts."""
+    step_rad = errors.of_scene.step_rad / parts
+    finer = replace(errors.of_scene, step_rad=step_rad, summed_rad=summed_rad)
+    return replace(errors, of_scene=finer)
 
 
 def _copied(
@@ -195,13 +194,14 @@ def _copied(
     seen: dict[tuple[float, ...], str] = {}
     for number, rows in zip(parts, runs, strict=True):
         at = f"dt {dt_s / number:.3g} s"
-        own = [row for row in rows if (row.body_kind, row.body) in errors.uneven]
+        own = [row for row in rows if (row.body_kind, row.body) in errors.of_scene.uneven]
         own = [row for row in own if row.quantity in PLACES and row.kind == "total"]
         places = tuple(size for row in own for size in (row.maximum, row.rms, row.final))
         if places and places in seen:
             texts.append(f"finer run: asked for {at}, the places are those of {seen[places]}")
         seen.setdefault(places, at)
-        finer = replace(errors, rows=tuple(own), step_rad=errors.step_rad / number)
+        summed_rad = errors.of_scene.summed_rad
+        finer = _at_step(replace(errors, rows=tuple(own)), number, summed_rad)
         near = too_good(finer, "integrated", order)
         if near and number > 1:
             texts.append(
@@ -221,9 +221,8 @@ def _rounding(drive: Error | None, exact: float) -> float:
 def worst_place(errors: Errors) -> Error | None:
     """The largest total error of angle, displacement or position, as pure numbers; where links
     bend, that of the deflection against the exact chain."""
-    if errors.elastic is not None:
-        return next((w for name in ELASTIC if (w := _worst_of(errors.rows, [name]))), None)
-    return _worst_of(errors.rows, PLACES)
+    groups = (_worst_of(errors.rows, names) for names in errors.of_links.followed)
+    return next((worst for worst in groups if worst), None)
 
 
 def _worst_of(rows: Iterable[Error], quantities: Collection[str]) -> Error | None:

@@ -1,18 +1,24 @@
-"""Results as flat rows: one per cell, and one per error of a cell."""
+"""Results as flat rows, one per cell and one per error of a cell, and as pandas frames of them."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, cast
 
 from reports.compare.errors import Error, ErrorKind, largest
 from reports.judge.cell import Checked
-from reports.judge.precision import IFTOMM, precision
-from reports.judge.tolerance import FORCES, Limit, known_limits
+from reports.judge.tolerance import FORCES, Limit
 from reports.quantities import QUANTITIES, named
 from reports.quantities.quantity import BodyKind, Source
 
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+ColumnsOf = Callable[[Checked], dict[str, object]]
+"""What cells of a kind have besides (part `columns` of a way)."""
 Column = tuple[str, str, BodyKind, Source, ErrorKind]
 
 
@@ -30,19 +36,6 @@ def _columns() -> Iterator[Column]:
 
 
 ERROR_COLUMNS = tuple(_columns())
-FORCE_COLUMNS = frozenset(
-    name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("force")
-)
-"""Those of cells of which forces were asked for."""
-DRIVE_COLUMNS = frozenset(
-    name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("drive")
-)
-FREE_COLUMNS = frozenset(name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("free"))
-"""Those of cells that were driven, and those of cells that were let go."""
-ELASTIC_COLUMNS = frozenset(
-    name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("elastic")
-)
-"""Those of cells whose links bend."""
 AS_THEY_ARE = ["quantity", "body_kind", "body", "source", "kind", "unit", "maximum", "rms", "final"]
 """The first columns of the frame of errors: what an error has of that name."""
 
@@ -82,22 +75,13 @@ def cell_row(checked: Checked) -> dict[str, object]:
         "stopped_at_s": checked.stopped_at_s,
         "failed_rules": " ".join(finding.rule for finding in checked.failures),
     }
-    errors = checked.errors.rows if checked.errors else ()
-    free = checked.cell.drive == "free"
-    bends = bool(checked.cell.scene.elastic)
-    wanted: Collection[str] = known_limits(free=free, bends=bends)
-    if not checked.cell.with_forces:
-        wanted = [name for name in wanted if name not in FORCES]
-    others = DRIVE_COLUMNS if free else FREE_COLUMNS
+    cell, errors = checked.cell, checked.errors.rows if checked.errors else ()
+    roles = cell.way.roles_of(with_forces=cell.with_forces)
     for name, *key in ERROR_COLUMNS:
-        if (
-            name in others
-            or (name in ELASTIC_COLUMNS and not bends)
-            or (name in FORCE_COLUMNS and not checked.cell.with_forces)
-        ):
-            continue
-        worst = largest(e for e in errors if [e.quantity, e.body_kind, e.source, e.kind] == key)
-        row[name] = worst.maximum if worst else None
+        if QUANTITIES[str(key[0])].role in roles:
+            worst = largest(e for e in errors if [e.quantity, e.body_kind, e.source, e.kind] == key)
+            row[name] = worst.maximum if worst else None
+    wanted = [name for name in cell.way.limits if cell.with_forces or name not in FORCES]
     for name in wanted:
         worst = largest(e for e in errors if e.kind == "total" and e.tolerance == name)
         column = name.replace("-", "_")
@@ -105,13 +89,9 @@ def cell_row(checked: Checked) -> dict[str, object]:
         row[f"{column}_limit_pure"] = (
             checked.limits[name].number if name in checked.limits else None
         )
-    placed = ("phase", *named("place")) if free else named("place")
-    placed = ("deflection",) if bends else placed  # what elastic links are about
-    row["place_pure"] = _worst(*(row[f"{name}_pure"] for name in placed))
+    row["place_pure"] = _worst(*(row[f"{name}_pure"] for name in cell.way.placed))
     convergence = checked.convergence
-    row |= free_row(checked) if free else {}
-    row |= elastic_row(checked) if bends else {}
-    row |= {
+    row |= cast(ColumnsOf, cell.way.part("columns"))(checked) | {
         "trend": convergence.trend if convergence else None,
         "order": convergence.order if convergence else None,
         "floor": convergence.floor if convergence else None,
@@ -120,39 +100,6 @@ def cell_row(checked: Checked) -> dict[str, object]:
         "warnings": " | ".join(checked.warnings),
     }
     return row | _force_convergence(checked) if checked.cell.with_forces else row
-
-
-def free_row(checked: Checked) -> dict[str, object]:
-    """What a free cell has besides: how far it was followed, and how far each class of precision
-    holds."""
-    facts = checked.errors.free if checked.errors else None
-    limit = checked.limits.get("phase")
-    return {
-        "precision": precision(checked),
-        "sensitivity": facts.sensitivity if facts else None,
-        "judged_until_s": facts.until_s if facts else None,
-        "left_out": facts.left_out if facts else None,
-        "limit_positions": facts.passages if facts else None,
-        **{
-            f"horizon_{name}_s": facts.horizon_s(size) if facts else None
-            for name, size in IFTOMM.items()
-        },
-        "horizon_limit_s": facts.judged_horizon_s(limit.number) if facts and limit else None,
-    }
-
-
-def elastic_row(checked: Checked) -> dict[str, object]:
-    """What a cell has besides whose links bend: as what they were given, and the parts of what the
-    deflection is off by, as shares of the largest."""
-    facts = checked.errors.elastic if checked.errors else None
-    return {
-        "segments": float(checked.cell.segments),
-        "springs": checked.cell.springs,
-        "frequency_ratio": facts.ratio if facts else None,
-        "chain_pure": facts.chain if facts else None,
-        "doubt_pure": facts.doubt if facts else None,
-        "linear_pure": facts.linear if facts else None,
-    }
 
 
 def _force_convergence(checked: Checked) -> dict[str, object]:
@@ -190,3 +137,17 @@ def identity(checked: Checked) -> dict[str, object]:
         "steps_per_turn": cell.steps_per_turn,
         "turns": cell.turns,
     }
+
+
+def error_frame(checked: Iterable[Checked]) -> pd.DataFrame:
+    """One row per scene, engine, profile, step, quantity, body, source and kind."""
+    import pandas as pd
+
+    return pd.DataFrame([row for one in checked for row in error_rows(one)])
+
+
+def cell_frame(checked: Sequence[Checked]) -> pd.DataFrame:
+    """One row per cell, failures included with their status and reason."""
+    import pandas as pd
+
+    return pd.DataFrame([cell_row(one) for one in checked])

@@ -11,16 +11,16 @@ says::
 the reference (at least 1), ``conditioning`` its smallest sine of a transmission angle, and
 ``share`` what a soft constraint may leave open of an acceleration (s = 0), and so of a velocity (s
 = 1), at every step; k is how often the quantity was differenced. ``summed`` is what rounding may
-make of the driver's angle by the end of the run [rad] (`reports.compare.drive_rounding`), which the
+make of the driver's angle by the end of the run [rad] (`reports.compare.whole_errors`), which the
 mechanism passes on as it does the driver's motion: the one part that grows with the number of
 steps.
 
 For places and gaps ``curvature / conditioning`` is at least twice the largest ``jolt``, half of
 a + omega^2 r at a distance r from the centre of a body: that much, times step^2, an engine that
-solves for impulses sets bodies off to close its joints (`reports.judge.start_allowance`).
+solves for impulses sets bodies off to close its joints (`reports.judge.rules.limits`).
 
 A change point that the motion goes through is left out of ``conditioning``, with half a radian of
-the driver on both sides (`reports.compare.change_points`). Rates there are held to limits of their
+the driver on both sides (`reports.compare.hardness`). Rates there are held to limits of their
 own (`in_passage`): what it takes to make good an error of place, within its limit, in one step.
 
 What was let go is ever further off the longer it lasts, by ``lasting * travel * step^3 *
@@ -40,15 +40,15 @@ of it; over the step and the curvature alone its drifts went from 0.02 to 19 tim
 Where links bend, rates have as many joints in a row as there are segments, each with a part of its
 own: their budget grows with the root of that number. The deflection of the links, a share of its
 largest, has the budget of places over that (``bends``), and what the swings of the springs are off
-by (`_swung`); all that is held to the beam, what the exact chain of as many segments is off it by
-(`reports.compare.elastic`), as that is no engine's fault. A beam of an engine's own has no joints
-within: its deflection is off by that share of itself by which what bends it is. Of exudyn it is a
-quarter of all that on the shipped scenes.
+by (`ElasticFacts.deflecting`); all that is held to the beam, what the exact chain of as many
+segments is off it by (`reports.compare.elastic`), as that is no engine's fault. A beam of an
+engine's own has no joints within: its deflection is off by that share of itself by which what bends
+it is. Of exudyn it is a quarter of all that on the shipped scenes.
 
 Forces are shares of the largest of the reference, in which the masses cancel: no ratio of these is
-in their budget, but in that of the start (`reports.judge.start_allowance`).
+in their budget, but in that of the start (`reports.judge.rules.limits`).
 
-Loads add two parts, and none where there are none (`reports.compare.loading`). A soft constraint
+Loads add two parts, and none where there are none (`reports.compare.hardness`). A soft constraint
 gives way by ``share`` of the acceleration that a load would give its body, times the square of its
 time constant, some steps; where that bends, by ``loading`` from step to step, accelerations are
 off. And a load that rises over a displacement by ``slope`` is another where its slider is off by
@@ -73,40 +73,11 @@ from dataclasses import dataclass
 
 from models.errors import CrankcheckError, suggestion
 from models.scene import Scene
-from reports.compare.elastic.elastic_facts import ElasticFacts
 from reports.compare.errors import Errors
 from reports.judge.three_steps import AT_ROUNDING
-from reports.quantities import QUANTITIES, named
+from reports.quantities import BENDING, EVERY, FREE, named
 from reports.quantities.places import WITHIN_A_STEP
-from reports.quantities.quantity import Tolerance, tolerance_name
-
-DEFAULTS: dict[str, Tolerance] = {
-    tolerance_name(name, each.source): each.tolerance
-    for name, entry in QUANTITIES.items()
-    for each in entry.criteria
-    if entry.role not in ("free", "elastic")
-}
-"""Of a mechanism that is driven."""
-BENDING: dict[str, Tolerance] = {
-    tolerance_name(name, each.source): each.tolerance
-    for name, entry in QUANTITIES.items()
-    for each in entry.criteria
-    if entry.role == "elastic"
-}
-"""Of elastic links themselves."""
-ELASTIC = DEFAULTS | BENDING
-"""Of a mechanism whose links bend."""
-FREE: dict[str, Tolerance] = {
-    tolerance_name(name, each.source): of_free
-    for name, entry in QUANTITIES.items()
-    for each in entry.criteria
-    if (of_free := each.tolerance if entry.role == "free" else each.free) is not None
-}
-"""Of one that was let go: its errors at the same time are over the sensitivity of its motion."""
-FREE_ELASTIC = FREE | BENDING
-"""Of one whose links bend as well."""
-EVERY = tuple(dict.fromkeys((*DEFAULTS, *FREE, *ELASTIC)))
-"""All that there may be a limit of."""
+from reports.quantities.quantity import Tolerance
 
 CLOSED_BY_A_MOTOR = 0.1
 """Of the budget of places: what a motor between two moving bodies may leave open."""
@@ -115,71 +86,52 @@ FORCES = frozenset(named("force"))
 
 def default(tolerance: Tolerance, errors: Errors) -> float:
     """The limit for a run with this step and this scene."""
-    step, curvature = errors.step_rad, errors.curvature
+    scene, motion, links = errors.of_scene, errors.of_motion, errors.of_links
+    step, curvature = scene.step_rad, scene.curvature
     bend = curvature**tolerance.power
     if tolerance.conditioned:
-        bend /= max(errors.conditioning, 1e-12)
+        bend /= max(scene.conditioning, 1e-12)
     if tolerance.closes:
-        bend = max(bend, 2.0 * errors.worst_jolt)
-    budget = (tolerance.coefficient * step**tolerance.order + errors.summed_rad) * bend
-    if tolerance.rate and errors.elastic is not None:
-        budget *= math.sqrt(errors.elastic.segments)
-    budget += tolerance.drifting * errors.drifted_rad * step**tolerance.order
-    lasted = errors.travel_rad * step ** (tolerance.order + 1) * curvature**1.5
+        bend = max(bend, 2.0 * scene.worst_jolt)
+    budget = (tolerance.coefficient * step**tolerance.order + scene.summed_rad) * bend
+    if tolerance.rate:
+        budget *= math.sqrt(links.segments)
+    budget += tolerance.drifting * motion.drifted_rad * step**tolerance.order
+    lasted = motion.travel_rad * step ** (tolerance.order + 1) * curvature**1.5
     budget += tolerance.lasting * lasted
-    budget += tolerance.opening * errors.late.start * errors.drifted_rad
-    budget += tolerance.arc * errors.late.offset + tolerance.late * errors.late.loss
-    shaken = tolerance.share * curvature + tolerance.load_share * errors.loading
+    budget += tolerance.opening * motion.late.start * motion.drifted_rad
+    budget += tolerance.arc * motion.late.offset + tolerance.late * motion.late.loss
+    shaken = tolerance.share * curvature + tolerance.load_share * errors.of_forces.loading
     budget += shaken * step**tolerance.share_order
     budget += _felt(tolerance, errors)
-    if tolerance.bends and errors.elastic is not None:
-        joined = 1.0 if errors.elastic.of_beam else errors.elastic.slender
-        budget = budget * joined + _swung(step, errors.elastic)
+    if tolerance.bends:
+        budget = links.deflecting(budget, step)
     budget = min(float(budget), tolerance.cap)
     return float(budget + tolerance.floor + AT_ROUNDING / step**tolerance.differenced)
 
 
 def _felt(tolerance: Tolerance, errors: Errors) -> float:
     """What loads are off by where their sliders are off, as a share of the largest force."""
-    slope = errors.load_slopes.get(tolerance.slope, 0.0)
+    slope = errors.of_forces.load_slopes.get(tolerance.slope, 0.0)
     if not slope:
         return 0.0
     worst, most = errors.worst("displacement"), default(WITHIN_A_STEP, errors)
     off = worst.pure if worst is not None and worst.pure <= most else most
-    return slope * off / max(errors.conditioning, 1e-12)
-
-
-def _swung(step: float, elastic: ElasticFacts) -> float:
-    """What the swings of springs are off by, of which a step makes (r step)^2/24 of the phase.
-
-    What starts straight rings as under an even load: k half-waves, k odd, with 1/k^5 of the
-    deflection, k^2 times as fast, and so with k^6 of the phase, up to their whole swing. Of that
-    the sum falls as the step to the power 4/3.
-    """
-    phase = (elastic.ratio * step) ** 2 * (1.0 + math.tau * elastic.cycles) / 12.0
-    if not elastic.straight:
-        return phase
-    return sum(min(2.0, k**6 * phase) / k**5 for k in range(1, elastic.segments, 2))
+    return slope * off / max(errors.of_scene.conditioning, 1e-12)
 
 
 def beyond_engine(name: str, errors: Errors) -> float:
-    """What the exact chain of segments, or what elements, are off the beam by, and the beam itself,
-    of a quantity."""
-    elastic = errors.elastic
-    if elastic is None or name == "segments":
-        return 0.0
-    own = elastic.apart.get(name.removesuffix("-differenced"), 0.0)
-    if elastic.estimated:
-        own *= 2.0
-    if name in FORCES:  # what bends by another share pushes by as much more
-        locked = 2.0 * elastic.chain if elastic.of_beam else 0.0
-        return own + 0.5 * (default(ELASTIC["segments"], errors) + locked)
-    return own + (elastic.doubt if name == "deflection" else 0.0)
+    """Model error of what the engine was given of the links, as a pure number of a quantity."""
+    links = errors.of_links
+    own, segments = links.beyond(name), links.limits.get("segments")
+    if name in FORCES and segments:  # what bends by another share pushes by as much more
+        return own + 0.5 * (default(segments, errors) + links.locked)
+    return own
 
 
 def passing(tolerance: Tolerance, errors: Errors) -> float:
     """The limit of a rate near a change point, where places are made good within a step."""
-    made_good = default(WITHIN_A_STEP, errors) / errors.step_rad**tolerance.rate
+    made_good = default(WITHIN_A_STEP, errors) / errors.of_scene.step_rad**tolerance.rate
     return max(default(tolerance, errors), made_good)
 
 
@@ -191,31 +143,19 @@ class Limit:
     origin: str
 
 
-def numbers_for(errors: Errors) -> Mapping[str, Tolerance]:
-    """The numbers of the default limits of a run."""
-    return known_limits(free=errors.free is not None, bends=errors.elastic is not None)
-
-
-def known_limits(*, free: bool, bends: bool) -> Mapping[str, Tolerance]:
-    """Those that there are of what is let go, or driven, with links that bend or without."""
-    if bends:
-        return FREE_ELASTIC if free else ELASTIC
-    return FREE if free else DEFAULTS
-
-
 def limits(
     scene: Scene, errors: Errors, overrides: Mapping[str, float], option: str = "--tol"
 ) -> dict[str, Limit]:
     """The limit per tolerance name: command line before scene before default."""
     chosen = {}
-    for name, tolerance in numbers_for(errors).items():
+    for name, tolerance in errors.limits.items():
         if name in overrides:
             chosen[name] = Limit(overrides[name], option)
         elif name in scene.tolerance:
             chosen[name] = Limit(scene.tolerance[name], "scene")
         else:
             own = default(tolerance, errors) + beyond_engine(name, errors)
-            if name == "drive" and errors.drives_within:
+            if name == "drive" and errors.of_scene.drives_within:
                 own += CLOSED_BY_A_MOTOR * default(WITHIN_A_STEP, errors)
             chosen[name] = Limit(own, "default")
     return chosen
@@ -229,7 +169,7 @@ def in_passage(name: str, limit: Limit, errors: Errors) -> Limit:
         return limit
     if name in FORCES:
         return Limit(math.inf, "not judged near a change point")
-    return Limit(passing(numbers_for(errors)[name], errors), "default near a change point")
+    return Limit(passing(errors.limits[name], errors), "default near a change point")
 
 
 def parse(texts: Iterable[str], option: str = "--tol", every: str = "") -> dict[str, float]:
@@ -269,18 +209,19 @@ def refuse_forces_unasked(option: str, quantities: Iterable[str]) -> None:
         )
 
 
-def refuse_of_other_motion(
-    option: str, quantities: Iterable[str], free: Iterable[bool], *, bends: bool = False
+def refuse_of_other_kinds(
+    option: str, quantities: Iterable[str], known: Iterable[Mapping[str, Tolerance]]
 ) -> None:
-    """Refuse limits of what none of the cells has, which are ``free`` or driven; ``bends``
-    says that one has elastic links. Raises CrankcheckError."""
-    known = {name for each in set(free) for name in known_limits(free=each, bends=bends)}
-    other = [name for name in quantities if name not in known]
+    """Refuse limits of quantities that none of the cells has, whose limits are the ``known``.
+    Raises CrankcheckError."""
+    names = [name for limits in known for name in limits]
+    other = [name for name in quantities if name not in names]
     if other:
         of = "of free motion; let scenes go with --free, or" if other[0] in FREE else "of a drive;"
         of = "of elastic links;" if other[0] in BENDING else of
         raise CrankcheckError(
-            f"{option} {other[0]}: it is {of} leave {other[0]} out. There is {', '.join(known)}"
+            f"{option} {other[0]}: it is {of} leave {other[0]} out. "
+            f"There is {', '.join(dict.fromkeys(names))}"
         )
 
 

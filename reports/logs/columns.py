@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -12,15 +13,12 @@ import pandas as pd
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
 import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no types
 
-from models.array import Array
+from models.array import NO_NUMBERS, Array
 from models.errors import CrankcheckError, cut, suggestion
-from models.regular import UnreadableError, regular_bytes
-from models.samples import NO_NUMBERS
-from reports.logs.extent import refuse_columns, refuse_rows
-from reports.logs.text import Layout, text_columns
-from reports.logs.text_lines import row_line
+from models.files.inputs import UnreadableError, regular_bytes
+from reports.logs.text_lines import COMMA, is_number, refuse_columns, refuse_rows, row_line
+from reports.logs.text_rows import Layout, text_columns
 from reports.logs.workbook import sheet_columns
-from reports.logs.written_number import cure_of, written_number
 
 ENDINGS = (".csv", ".tsv", ".txt", ".parquet", ".xlsx")
 MOST_BYTES = 600_000_000
@@ -223,3 +221,38 @@ def _parquet(raw: bytes, wanted: Callable[[str], bool]) -> tuple[pa.Table, list[
         raise UnreadableError(
             f"no Parquet that can be read: {cut(str(error).splitlines()[0], 200)}"
         ) from None
+
+
+FORTRAN = re.compile(r"[-+]?[\d.]+d[-+]?\d+", re.IGNORECASE)
+"""A double of Fortran: 1.5D-3."""
+CLOCK = re.compile(r"(\d+ days?, )?\d+:\d\d.*|\d{2,4}[-./]\d\d?[-./]\d\d?.*")
+"""An hour, or a date: 00:00:01, 2026-01-01."""
+THOUSANDS = re.compile(r"[-+]?\d{1,3}(?:[ ,.'\u2019]\d{3})+(?:[.,]\d*)?")
+"""Digits in groups of three: 1,000.5."""
+
+
+def written_number(text: str, decimal: str) -> float:
+    """The number that a text is, with that mark before its decimals. Raises ValueError for none."""
+    if decimal == ",":
+        if "." in text:
+            raise ValueError
+        text = text.replace(",", ".")
+    if "_" in text:  # which Python takes for a number
+        raise ValueError
+    return float(text)
+
+
+def cure_of(text: str, decimal: str) -> str:
+    """What would make a number of a text."""
+    text = text.strip()
+    if COMMA.fullmatch(text) and decimal == ".":
+        return "write decimal points, or say decimal = ',' in [file] of the map"
+    if THOUSANDS.fullmatch(text):
+        return "write numbers without marks between the thousands"
+    if "." in text and decimal == "," and is_number(text):
+        return "write a decimal comma, as the map says decimal = ','"
+    if FORTRAN.fullmatch(text):
+        return "write e for the d of the exponent"
+    if CLOCK.fullmatch(text):
+        return "write seconds from the start on"
+    return "write numbers alone, or leave the column out ([[channel]] ignore = true)"

@@ -1,23 +1,32 @@
-"""The forces of a user's own log, of columns that are called so (`reports.logs.force_names`)."""
+"""The forces of a user's own log, of columns that are called so.
+
+``C_rod_fx_n`` is the force of pin C on the rod, along x of the ground; ``C_fx_n`` will do where two
+bodies meet, and is that on the second of them. ``C_slider_normal_n`` and ``C_slider_moment_n_m``
+are what the guide exerts, ``torque_n_m`` is the drive's on the driver, ``drive_force_n`` that on a
+slider. Dots and spaces stand for underscores, and the unit may be in brackets. ``force_time_s`` are
+the instants that forces act at, where they are others than those of the rows.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError, cut, few
-from models.forces import Forces, SliderForces
 from models.joints import joined_at
-from models.scene import Scene
-from reports.logs.force_names import Place, drive_place, force_meaning, force_places, shown_names
+from models.motion import Forces, SliderForces
+from models.scene import GROUND, Scene
+from reports.output.numbers import listed
 
 if TYPE_CHECKING:
-    from reports.logs.columns import Columns  # and the readers of files with it
+    from reports.logs.columns import Columns
+
 
 QUANTITIES = {"pin": "reaction", "push": "torque"}
 """What a kind of column is judged as, where that is called otherwise."""
@@ -139,3 +148,133 @@ def _numbers(columns: Columns, name: str) -> Array:
         return columns.numbers(name)
     rest = replace(columns, raw={name: columns.raw[name][1:]}, first=columns.first + 1)
     return np.concatenate([[np.nan], rest.numbers(name)])
+
+
+POUND, INCH = 4.4482216152605, 0.0254
+UNITS: Mapping[str, Mapping[str, float]] = {
+    "force": {"n": 1.0, "kn": 1e3, "mN": 1e-3, "MN": 1e6, "lbf": POUND},
+    "moment": {
+        "n_m": 1.0,
+        "nm": 1.0,
+        "n_mm": 1e-3,
+        "nmm": 1e-3,
+        "kn_m": 1e3,
+        "knm": 1e3,
+        "mN_m": 1e-3,
+        "mNm": 1e-3,
+        "MN_m": 1e6,
+        "MNm": 1e6,
+        "lbf_in": POUND * INCH,
+        "lbf_ft": POUND * 12 * INCH,
+    },
+}
+"""What one is in SI, by how it is spelled: in letters of any size, but for milli and mega."""
+TIMES = "force_time_s"
+Place = tuple[Literal["torque", "push", "pin", "normal", "moment"], str, str, int]
+"""What a column is of: kind, point or slider, body, and axis; a push is what drives a slider."""
+MOMENTS = ("torque", "moment")
+LENGTH = "it is the length of a force, whose components are judged with --forces"
+FRICTION = "it is friction, which is not judged"
+
+
+def names_force(column: str, scene: Scene) -> bool:
+    """Whether a column is one of forces."""
+    return column == TIMES or force_meaning(column, force_places(scene)) is not None
+
+
+def shown_names(scene: Scene) -> list[str]:
+    """What columns of forces are best called, one name for each: of two bodies at a pin the
+    second's."""
+    names: dict[Place, str] = {}
+    for name, place in force_places(scene).items():
+        kind, of, body, _ = place
+        if kind == "pin" and len(bodies := joined_at(scene)[of]) == 2 and body != bodies[1]:
+            continue
+        names.setdefault(place, f"{name}_{'n_m' if kind in MOMENTS else 'n'}")
+    return list(names.values())
+
+
+def force_places(scene: Scene) -> dict[str, Place]:
+    """What columns may be called, without their units."""
+    drive = drive_place(scene)
+    names = [f"drive_{scene.driver.effort}"]
+    if drive[0] == "torque":
+        names = ["torque", f"{drive[1]}_torque", *names]
+    found = dict.fromkeys(names, drive)
+    for point, bodies in joined_at(scene).items():
+        for axis, letter in enumerate("xy"):
+            for body in bodies:
+                place: Place = ("pin", point, body, axis)
+                name = body.replace(" ", "_")
+                found[f"{point}_{name}_f{letter}"] = place
+                found[f"{point}_on_{name}_f{letter}"] = place
+            if len(bodies) == 2:
+                found[f"{point}_f{letter}"] = ("pin", point, bodies[1], axis)
+    for name in scene.sliders:
+        for kind in ("normal", "moment"):
+            of: Place = ("normal" if kind == "normal" else "moment", name, "", 0)
+            found[f"{name}_slider_{kind}"] = of
+            found[f"{name}_{kind}"] = of
+    return found
+
+
+def drive_place(scene: Scene) -> Place:
+    """What a column of the drive on the driver is of."""
+    return "torque" if scene.driver.slider is None else "push", scene.driver.name, "", 0
+
+
+def force_meaning(column: str, places: Mapping[str, Place]) -> tuple[Place, float] | None:
+    """What a column is of, and what one of its numbers is in SI, NaN where that may be milli or
+    mega; None for none."""
+    for stem, kind, unit in _stems(column):
+        place = places.get(stem)
+        if place and (place[0] in MOMENTS) == (kind == "moment"):
+            known = {"": 1.0, **UNITS[kind]}
+            return place, known.get(unit, known.get(unit.lower(), math.nan))
+    return None
+
+
+def _stems(column: str) -> Iterator[tuple[str, str, str]]:
+    """What a name may be without its unit, of which kind the unit is, and how that is spelled, ""
+    for none."""
+    bare = re.sub(r"\s*[\[(]([^\[\]()]*)[\])]\s*$", r"_\1", column)
+    words = re.sub(r"[\s._·*]+", "_", bare.strip()).strip("_")
+    for kind, units in UNITS.items():
+        for unit in units:
+            stem = words[: -len(unit) - 1]
+            if words.lower().endswith(f"_{unit.lower()}"):
+                yield stem, kind, words[len(stem) + 1 :]
+        yield words, kind, ""
+
+
+def why_not_judged(column: str, scene: Scene) -> str:
+    """Why a column is not judged that says what belongs to forces, and is none: a length, friction,
+    a body that is not there; "" for another."""
+    reasons = _others(scene)
+    return next((reasons[stem] for stem, _, _ in _stems(column) if stem in reasons), "")
+
+
+def _others(scene: Scene) -> dict[str, str]:
+    """What columns may be called beside forces, without units, and why each is not judged."""
+    every = [*scene.ground, *scene.pins, *(slider.point for slider in scene.sliders.values())]
+    met: dict[str, tuple[str, ...]] = dict.fromkeys(every, ()) | dict(joined_at(scene))
+    bodies = [GROUND, *scene.links, *(name for meet in met.values() for name in meet)]
+    found: dict[str, str] = {}
+    for point, meet in met.items():
+        where = f"in {point} meet {listed(meet)}" if meet else f"{point} is no pin"
+        for body in dict.fromkeys(bodies):
+            why = LENGTH if body in meet else f"{where}, not {body}" if meet else where
+            for stem in (f"{point}_{body}", f"{point}_on_{body}"):
+                found |= dict.fromkeys(_vector(stem.replace(" ", "_")), why)
+        which = f"{where}: name the body, as in {point}_{meet[0]}_fx_n" if meet else where
+        found |= dict.fromkeys(_vector(point), LENGTH if len(meet) == 2 else which)
+        found[f"{point}_friction"] = FRICTION
+    for name in scene.sliders:
+        found |= dict.fromkeys((f"{name}_slider_friction", f"{name}_friction"), FRICTION)
+    places = force_places(scene)
+    return {name: why for name, why in found.items() if name not in places}
+
+
+def _vector(stem: str) -> tuple[str, str, str]:
+    """What components and length of a force are called."""
+    return f"{stem}_fx", f"{stem}_fy", f"{stem}_f"

@@ -16,8 +16,8 @@ from models.motion import (
     PointMotion,
     SliderMotion,
 )
-from reports.logs.units import Dimension
-from reports.quantities.moving import MovingKind
+from reports.logs.units import Dimension, si
+from reports.quantities.quantity import MovingKind
 
 LoggedKind = MovingKind | Literal["elastic"]
 """What may be logged of: an elastic link is a link, and bends and stretches besides."""
@@ -118,3 +118,49 @@ KINDS: Mapping[tuple[LoggedKind, str], Kind] = {
 """By body kind and name: angle, angular velocity, angular acceleration of a link; x, y, vx, vy, ax,
 ay of a point; displacement, speed, acceleration of a slider; deflection of the middle of an elastic
 link from the line between its pins, and its extension."""
+
+
+OWN: Mapping[tuple[LoggedKind, str], str] = {
+    ("link", "angle"): "theta_rad",
+    ("link", "angular velocity"): "omega_rad_s",
+    ("link", "angular acceleration"): "alpha_rad_s2",
+    ("slider", "displacement"): "slider_displacement_m",
+    ("slider", "speed"): "slider_speed_m_s",
+    ("slider", "acceleration"): "slider_acceleration_m_s2",
+    ("elastic", "deflection"): "deflection_m",
+    ("elastic", "extension"): "extension_m",
+    **{("point", f"{rate}{letter}"): f"{rate}{letter}_{unit}"
+       for rate, unit in (("", "m"), ("v", "m_s"), ("a", "m_s2")) for letter in "xy"},
+}  # fmt: skip
+"""What we call columns ourselves, after the name of the body (`reports.describe.frame`)."""
+LENGTH = "it is the length of a vector, whose components are judged"
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What the name of a column says; "" and None for what it leaves open."""
+
+    of: str
+    kind: Kind | None
+    gap: bool
+    unit: str
+    relative_to: str = ""
+    on: str = ""
+
+
+def own_meanings(bodies: Mapping[str, tuple[LoggedKind, ...]]) -> Mapping[str, Meaning | str]:
+    """What our own columns of ``bodies`` say, whatever those are called, by name: a later body's
+    where two have one."""
+    found: dict[str, Meaning | str] = {}
+    for body, kinds in bodies.items():
+        said: dict[str, Meaning | str] = {
+            name: Meaning(body, KINDS[key], False, si(KINDS[key].dimension))
+            for key, name in OWN.items()
+            if key[0] in kinds
+        }
+        if "point" in kinds:
+            said |= dict.fromkeys(("v_m_s", "a_m_s2"), LENGTH)
+        if "point" in kinds or "slider" in kinds:
+            said["gap_m"] = Meaning(body, None, True, "m")
+        found |= {f"{body}{mark}{name}": each for name, each in said.items() for mark in "_."}
+    return found

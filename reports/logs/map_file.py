@@ -30,13 +30,11 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from models.errors import CrankcheckError, listed, shown, suggestion
-from models.regular import UnreadableError, regular_text
-from models.toml_text import tables
+from models.files.inputs import UnreadableError, regular_text, tables
 from reports.logs.channel import Channel, OwnLog
 from reports.logs.kinds import KINDS
-from reports.logs.spelling import DIMENSION
-from reports.logs.text import Layout
-from reports.logs.units import UNITS
+from reports.logs.text_rows import Layout
+from reports.logs.units import DIMENSION, UNITS
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e15, le=1e15)]
 Truth = Annotated[bool, Field(strict=True)]

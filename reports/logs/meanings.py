@@ -2,23 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
 from reports.logs.channel import Channel, OwnLog
-from reports.logs.column_meaning import GapColumn, column_meaning
+from reports.logs.column_meaning import GapColumn, Reader, column_meaning, gaps_told
 from reports.logs.columns import Columns
-from reports.logs.force_columns import log_forces
-from reports.logs.force_names import TIMES, names_force, why_not_judged
-from reports.logs.instants import instants, refuse_far
-from reports.logs.judged_channels import judged_channels, without_lengths
-from reports.logs.map_file import LEFT_OUT, ChannelTable, Map
-from reports.logs.names import meaning
-from reports.logs.readings import Reader, gaps_told
-from reports.logs.scene_names import SceneNames
-from reports.logs.time_columns import further_instants, time_columns, time_of, unit_of_time
+from reports.logs.force_columns import TIMES, log_forces, names_force, why_not_judged
+from reports.logs.kinds import LENGTH
+from reports.logs.map_file import (
+    HEAD,
+    LEFT_OUT,
+    ChannelTable,
+    Map,
+    file_lines,
+    told_lines,
+    toml_text,
+)
+from reports.logs.names import SceneNames, meaning
+from reports.logs.time_columns import (
+    further_instants,
+    instants,
+    refuse_far,
+    time_columns,
+    time_of,
+    unit_of_time,
+)
 
 A_FORCE = "a force, which is judged with --forces"
 
@@ -137,3 +148,136 @@ def _nothing(columns: Columns, scene: Scene, unused: Sequence[tuple[str, str]]) 
         f"{few(map(cut, columns.raw), 8)}{why}; name columns such as "
         f"{next(iter(scene.links))}_deg, or write a map: --write-map map.toml"
     )
+
+
+def without_lengths(
+    channels: Sequence[Channel], told: Container[str]
+) -> tuple[list[Channel], list[tuple[str, str]]]:
+    """The channels without lengths of vectors, which are those that a map does not tell of, of a
+    slider's point whose components are there, beside the slider's own."""
+    parts = {(each.of, each.kind.order) for each in channels if each.kind.body_kind == "point"}
+    sliders = [each for each in channels if each.kind.body_kind == "slider"]
+    own = {(each.of, each.kind.order) for each in sliders if "slider" in each.column.lower()}
+    lengths = [
+        each
+        for each in sliders
+        if "slider" not in each.column.lower()
+        and each.column not in told
+        and (each.of, each.kind.order) in parts & own
+    ]
+    kept = [each for each in channels if each not in lengths]
+    return kept, [(each.column, LENGTH) for each in lengths]
+
+
+def judged_channels(
+    channels: Sequence[Channel], scene: Scene
+) -> tuple[list[Channel], list[Channel], list[tuple[str, str]]]:
+    """The channels to be judged, those of further copies of a point's place, which a gap is taken
+    of, and what is not judged with the reason. Raises CrankcheckError for two columns of one
+    quantity."""
+    first: dict[tuple[object, ...], Channel] = {}
+    main: list[Channel] = []
+    copies: list[Channel] = []
+    spare: list[tuple[str, str]] = []
+    order = {body: n for n, body in enumerate([*scene.links])}
+    for each in sorted(channels, key=lambda one: (bool(one.relative_to), order.get(one.on, -1))):
+        key = (each.kind, each.of, each.on, each.relative_to)
+        if key in first:
+            raise CrankcheckError(
+                f"two columns for one quantity, {each.name}: {first[key].column!r} and "
+                f"{each.column!r}; rename one, or say in a map what it is, or ignore = true"
+            )
+        first[key] = each
+        if each.kind.body_kind == "point" and each.of in scene.ground:
+            spare.append((each.column, "it is of a point of the ground, which does not move"))
+            continue
+        before = next((o for o in main if (o.kind, o.of) == (each.kind, each.of)), None)
+        if before is not None and each.kind.body_kind == "point" and each.kind.order == 0:
+            copies.append(each)
+        else:
+            main.append(each)
+    place = {each.column: n for n, each in enumerate(channels)}
+    return sorted(main, key=lambda one: place[one.column]), copies, spare
+
+
+def blank_map(columns: Columns, scene: Scene, map_: Map) -> tuple[str, str] | None:
+    """A form of the map of a log, all its columns in it, with what is to be filled in yet.
+
+    None where the names, and the map that it is read by, tell the times and something of the scene:
+    what is wrong then is another fault, and where the map names a column that is not there.
+    """
+    told = {one.column: one for one in map_.channel}
+    if not {*told, map_.time.column or next(iter(columns.raw))} <= set(columns.raw):
+        return None
+    left_out = {one.column for one in map_.channel if one.ignore}
+    times = {map_.time.column} if map_.time.column else _times(columns.raw, left_out)
+    others = [name for name in columns.raw if name not in times]
+    is_wanted = wanted(scene, map_)
+    bodies = [name for name in others if is_wanted(name)]
+    if times and bodies:
+        return None
+    lacks = [
+        *([] if times else ["the column of the times, in [time]"]),
+        *([] if bodies else ["of at least one column what it is of, in a [[channel]]"]),
+    ]
+    named = SceneNames(scene)
+    lines = [
+        *HEAD,
+        f"# Still to be filled in: {'; '.join(lacks)}.",
+        f"# The scene has {', '.join(map(toml_text, _bodies(scene)))}.",
+        "",
+        *(file_lines(map_.file) or ["# [file]", '# decimal = ","', ""]),
+        *_time_lines(map_, times, columns.raw),
+    ]
+    for name in others:
+        lines.append("")
+        if name in told:
+            lines += told_lines(told[name])
+        elif name in bodies:
+            lines.append(f"# {toml_text(name)} is taken as its name says")
+        else:
+            lines += [
+                f"# {_why_not(name, named)}",
+                "# [[channel]]",
+                f"# column = {toml_text(name)}",
+            ]
+            lines += ['# of = ""', '# kind = ""', '# unit = ""']
+    return "\n".join(lines) + "\n", "; ".join(lacks)
+
+
+def _times(names: Iterable[str], left_out: Iterable[str]) -> set[str]:
+    """The columns that are of times by their names; one that contradicts itself is none."""
+    found: set[str] = set()
+    for name in set(names).difference(left_out):
+        try:
+            if time_of(name):
+                found.add(name)
+        except CrankcheckError:
+            continue
+    return found
+
+
+def _time_lines(map_: Map, times: set[str], names: Iterable[str]) -> Sequence[str]:
+    """The table of times; with remarks for what is to be filled in."""
+    told = map_.time.model_dump(exclude_defaults=True)
+    lines = ["[time]", *(f"{key} = {toml_text(value)}" for key, value in told.items())]
+    if not times:
+        lines += [f"# column = {toml_text(name)}" for name in names]
+        lines.append('# unit = "s"')
+    return lines
+
+
+def _bodies(scene: Scene) -> Sequence[str]:
+    """All that a column can be of."""
+    points = (name for name in scene.pins if name not in scene.ground)
+    return list(dict.fromkeys([*scene.links, *points, *scene.sliders]))
+
+
+def _why_not(name: str, named: SceneNames) -> str:
+    """Why nothing is made of a column, in a line."""
+    try:
+        found = meaning(name, named)
+    except CrankcheckError as error:
+        return " ".join(str(error).split())
+    text = found if isinstance(found, str) else "it is of a point of the ground"
+    return " ".join(text.split())

@@ -6,20 +6,21 @@ Our own grammar comes first, whatever bodies are called; then that of strangers'
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 
-from models.scene import GROUND
-from reports.logs.name_units import (
+from models.errors import cut
+from models.scene import GROUND, Scene
+from reports.logs.kinds import KINDS, LENGTH, Kind, LoggedKind, Meaning, own_meanings
+from reports.logs.units import (
+    DIMENSION,
     one_unit,
     refuse_other_dimension,
+    si,
     trailing_unit,
     without_unit,
 )
-from reports.logs.own_columns import Meaning
-from reports.logs.reading_words import kind_of_words
-from reports.logs.scene_names import SceneNames
-from reports.logs.units import si
 
 FILLERS = {"angular", "linear", "of", "the", "link", "body", "point", "joint", "pin", "slider",
            "block", "log", "sensor", "at", "on", "in", "signal", "value"}  # fmt: skip
@@ -80,3 +81,168 @@ def _roles(bodies: Sequence[str], named: SceneNames, *, relative: bool) -> tuple
     if len(links) == 1 and len(points) == 1 and links != points:
         return points[0], "", links[0]
     return "", "", ""
+
+
+PLACES = {"pos", "position", "place", "coordinate", "coord"}
+SPEEDS = {"v", "vel", "velocity", "speed", "rate"}
+ACCELERATIONS = {"a", "acc", "accel", "acceleration"}
+TURNING: Sequence[set[str]] = (
+    {"theta", "angle", "ang", "phi", "rot", "rotation", "orientation", "q", *PLACES},
+    {"omega", "w", "angvel", "thetadot", "dtheta", "qd", *SPEEDS},
+    {"alpha", "angacc", "thetaddot", "qdd", *ACCELERATIONS},
+)
+SLIDING: Sequence[set[str]] = (
+    {"displacement", "disp", "s", "stroke", "travel", *PLACES},
+    {"sdot", *SPEEDS},
+    {"sddot", *ACCELERATIONS},
+)
+AXES = {f"{prefix}{axis}": (order, at) for at, axis in enumerate("xy") for order, prefix in
+        enumerate(("", "v", "a"))} | {"px": (0, 0), "py": (0, 1)}  # fmt: skip
+
+
+def kind_of_words(
+    kinds: Sequence[LoggedKind], words: Sequence[str], unit: str, *, slider: bool
+) -> Kind | str:
+    """The kind of reading that words and a unit name, or why none."""
+    dimension = DIMENSION.get(unit)
+    if "elastic" in kinds and ("elastic", " ".join(words)) in KINDS:
+        return KINDS["elastic", " ".join(words)]
+    if "link" in kinds:
+        if len(words) > 1 and words[-1] == "z":  # the axis that all turn about
+            words = words[:-1]
+        order = _order(words, TURNING)
+        chosen = [k for k in KINDS.values() if k.body_kind == "link" and k.order == order]
+        if not words:
+            chosen = [k for k in KINDS.values() if k.body_kind == "link"]
+            chosen = [k for k in chosen if k.dimension == (dimension or "angle")]
+        return chosen[0] if chosen else _unknown(words, "link", unit)
+    axis = None if slider else _axis(words)
+    if "point" in kinds and axis:
+        order, at = axis
+        of = [k for k in KINDS.values() if k.body_kind == "point"]
+        return next(k for k in of if (k.order, k.axis) == (order, at))
+    if "slider" in kinds:
+        order = _order(words, SLIDING)
+        chosen = [k for k in KINDS.values() if k.body_kind == "slider" and k.order == order]
+        if not words:
+            chosen = [k for k in KINDS.values() if k.body_kind == "slider"]
+            chosen = [k for k in chosen if k.dimension == (dimension or "length")]
+        return chosen[0] if chosen else _unknown(words, "slider", unit)
+    if list(words) in (["v"], ["a"]):
+        return LENGTH
+    return _unknown(words, "point", unit)
+
+
+def _order(words: Sequence[str], names: Sequence[set[str]]) -> int | None:
+    """Which derivative some words name; None where they name none, or several."""
+    orders = {n for word in words for n, known in enumerate(names) if word in known}
+    known = set().union(*names)
+    if len(orders) == 2 and 0 in orders and not PLACES.isdisjoint(names[0]):
+        orders -= {0}  # angle velocity
+    return orders.pop() if len(orders) == 1 and known.issuperset(words) else None
+
+
+def _axis(words: Sequence[str]) -> tuple[int, int] | None:
+    """Derivative and axis of a point's component; None where the words name none."""
+    axes = [word for word in words if word in AXES]
+    if len(axes) != 1:
+        return None
+    order, axis = AXES[axes[0]]
+    for word in words:
+        if word == axes[0] or word in PLACES | {"p"}:
+            continue
+        if word in SPEEDS and order == 0:
+            order = 1
+        elif word in ACCELERATIONS and order == 0:
+            order = 2
+        else:
+            return None
+    return order, axis
+
+
+def _unknown(words: Sequence[str], kind: str, unit: str) -> str:
+    """Why nothing is made of a column of a body."""
+    told: Mapping[str, str] = {
+        "link": "angle, angular velocity or angular acceleration",
+        "point": "x, y, vx, vy, ax or ay",
+        "slider": "displacement, speed or acceleration",
+    }
+    if words:
+        return f"{cut(' '.join(words))!r} is no kind of reading of a {kind}: {told[kind]}"
+    of = f"{unit} is a unit of {DIMENSION[unit]}, and" if unit else "it tells no kind:"
+    return f"{of} a {kind} has {told[kind]}"
+
+
+DRIVERS = {"driver", "input", "motor"}
+SHORT = 2
+"""Names of bodies up to this length are told apart by case: `a` is an acceleration, `A` a point."""
+
+
+@dataclass(frozen=True)
+class SceneNames:
+    """The bodies of a scene, as the names of columns may have them."""
+
+    scene: Scene
+
+    @cached_property
+    def points(self) -> frozenset[str]:
+        return frozenset([*self.scene.pins, *(each.point for each in self.scene.sliders.values())])
+
+    @cached_property
+    def bodies(self) -> Sequence[str]:
+        """All names, longest first."""
+        every = {*self.scene.links, *self.points, *self.scene.sliders, GROUND}
+        return sorted(every, key=lambda name: (-len(name), name))
+
+    @cached_property
+    def own(self) -> Mapping[str, Meaning | str]:
+        """What the columns say that we write ourselves, by name."""
+        return own_meanings({body: self.kinds_of(body) for body in self.bodies})
+
+    def kinds_of(self, name: str) -> tuple[LoggedKind, ...]:
+        """What has that name: often a slider and its point have the same."""
+        there: Iterable[tuple[LoggedKind, bool]] = (
+            ("link", name in self.scene.links),
+            ("point", name in self.points),
+            ("slider", name in self.scene.sliders),
+            ("elastic", name in self.scene.elastic),
+        )
+        return tuple(kind for kind, holds in there if holds)
+
+    def found(self, text: str) -> tuple[list[str], list[str]]:
+        """The bodies that a text names, in its order, and the words left, in lower case: `xC` and
+        `rockerAngle` too."""
+        bodies, words = self._apart(text)
+        if not bodies:
+            bodies, words = self._apart(self._parted(text))
+        if not bodies and not DRIVERS.isdisjoint(words):
+            bodies = [self.scene.driver.name]
+            words = [word for word in words if word not in DRIVERS]
+        return bodies, words
+
+    def _in_its_case(self, text: str) -> str:
+        """The body that is spelled so, or else the only one in other letters; "" for several."""
+        alike = [name for name in self.bodies if name.lower() == text.lower()]
+        return text if text in alike else alike[0] if len(alike) == 1 else ""
+
+    def _parted(self, text: str) -> str:
+        """A text with a space before each capital in a word, and between a point and its axis."""
+        text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)
+        points = "|".join(re.escape(name) for name in self.bodies if name in self.points)
+        text = re.sub(rf"(?<![A-Za-z0-9])({points})([va]?[xy])(?![A-Za-z0-9])", r"\1 \2", text)
+        return re.sub(rf"(?<![A-Za-z0-9])([va]?[xy])({points})(?![A-Za-z0-9])", r"\1 \2", text)
+
+    def _apart(self, text: str) -> tuple[list[str], list[str]]:
+        """The bodies of a text, and its other words."""
+        places: list[tuple[int, str]] = []
+        for name in self.bodies:
+            flags = 0 if len(name) <= SHORT else re.IGNORECASE
+            pattern = rf"(?<![A-Za-z0-9]){re.escape(name)}(?![A-Za-z0-9])"
+            while hit := re.search(pattern, text, flags):
+                body = self._in_its_case(hit[0])
+                if not body:
+                    break
+                places.append((hit.start(), body))
+                text = text[: hit.start()] + " " * len(name) + text[hit.end() :]
+        words = [word.strip("/").lower() for word in re.split(r"[^A-Za-z0-9°µμ²/^*']+", text)]
+        return [name for _, name in sorted(places)], [word for word in words if word]

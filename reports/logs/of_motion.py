@@ -6,17 +6,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from models.array import Array
+from models.array import Array, numbers, samples
 from models.errors import CrankcheckError, suggestion
 from models.motion import Motion
-from models.samples import numbers, samples
 from models.scene import Scene
 from reports.logs.channel import OwnLog
 from reports.logs.columns import Columns
-from reports.logs.kinds import KINDS, Kind
+from reports.logs.kinds import KINDS, OWN, Kind
 from reports.logs.map_file import ChannelTable, Map, TimeTable
 from reports.logs.meanings import understood
-from reports.logs.own_columns import OWN
 from reports.logs.units import si
 
 TIME = "time_s"

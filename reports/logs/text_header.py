@@ -6,11 +6,18 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from models.regular import UnreadableError
-from reports.logs.extent import refuse_columns
-from reports.logs.spelling import spelled_unit
-from reports.logs.text_fields import are_numbers, fields_of, is_number, separator_of
-from reports.logs.text_lines import LOOK, Beginning, is_remark
+from models.files.inputs import UnreadableError
+from reports.logs.text_lines import (
+    LOOK,
+    Beginning,
+    are_numbers,
+    fields_of,
+    is_number,
+    is_remark,
+    refuse_columns,
+    separator_of,
+)
+from reports.logs.units import spelled_unit
 
 EXCEL = re.compile(r"sep=(.)", re.IGNORECASE)
 """The line that tells Excel the separator."""

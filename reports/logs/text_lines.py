@@ -1,4 +1,4 @@
-"""The lines of a text: what of it begins where, and which lines are blank or remarks."""
+"""The lines of a text and their fields, and the most of a log that is read."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from models.regular import UnreadableError
+from models.files.inputs import UnreadableError
 
 LOOK = 200_000
 """Bytes at the beginning in which the header, and the first row, must stand."""
@@ -104,3 +104,81 @@ def body(raw: bytes, start: int, is_row: Callable[[str], bool]) -> Body:
     parts = [part for part in kept if len(part)]
     text = parts[0] if len(parts) == 1 else memoryview(b"".join(parts))
     return Body(text, np.asarray(passed, dtype=np.int64))
+
+
+SEPARATORS = {"\t": "a tab", ";": "a semicolon", ",": "a comma", " ": "spaces"}
+NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|[-+]?(nan|inf(inity)?)", re.I)
+COMMA = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?")
+"""A number with a decimal comma."""
+SPACED = re.compile(
+    r"""[\[(][^\[\]()]*[\])] | "(?:[^"]|"")*" | [^\s"\[(]\S*(?:[ ]+[\[(][^\[\]()]*[\])])?""", re.X
+)
+"""A field between spaces: a unit in brackets belongs to the name before it."""
+
+
+def separator_of(header: str, row: str) -> str:
+    """What stands between the fields: the first of tab, semicolon, comma and space that the header
+    has, outside of brackets and quotes; spaces where ``row`` has as many fields between them."""
+    bare = re.sub(r'"[^"]*"|\[[^\]]*\]|\([^)]*\)', "x", header).strip()
+    for separator in SEPARATORS:
+        # Names with spaces in a file of one column, or of a separator that comes next.
+        if separator in bare and (
+            separator != " " or len(fields_of(row, " ")) == len(fields_of(header, " "))
+        ):
+            return separator
+    return ","
+
+
+def fields_of(line: str, separator: str) -> list[str]:
+    """The fields of a line, quotes taken off."""
+    if separator == " ":
+        return [_unquoted(field) for field in SPACED.findall(line)]
+    mark = re.escape(separator)
+    found = re.findall(rf'(?:^|{mark})[^\S{mark}]*("(?:[^"]|"")*"|[^{mark}]*)', line)
+    return [_unquoted(field.strip()).strip() for field in found]
+
+
+def _unquoted(field: str) -> str:
+    """A field without its quotes; those in it are written twice."""
+    if len(field) > 1 and field[0] == field[-1] and field[0] in "\"'":
+        return field[1:-1].replace(field[0] * 2, field[0])
+    return field
+
+
+def is_number(field: str) -> bool:
+    """Whether a field is a number, with a decimal point or comma."""
+    return bool(NUMBER.fullmatch(field) or COMMA.fullmatch(field))
+
+
+def are_numbers(fields: Sequence[str]) -> bool:
+    """Whether no field that is not blank is a name."""
+    return all(is_number(field) for field in fields if field)
+
+
+MOST_ROWS = 2_000_000
+"""Ten hours of samples at 60 Hz, half an hour at 1 kHz; judging them takes seconds."""
+MOST_COLUMNS = 2_000
+MOST_NUMBERS = 80_000_000
+"""Of columns that something is made of."""
+
+
+def refuse_columns(columns: int) -> None:
+    """Raise UnreadableError for more columns than are looked at."""
+    if columns > MOST_COLUMNS:
+        raise UnreadableError(
+            f"{columns} columns; at most {MOST_COLUMNS} are read: leave out what is not of the "
+            "mechanism"
+        )
+
+
+def refuse_rows(rows: int, columns: int) -> None:
+    """Raise UnreadableError for more rows, of so many columns that are read, than that."""
+    if rows > MOST_ROWS:
+        raise UnreadableError(
+            f"{rows} rows; at most {MOST_ROWS} are read: cut the log, or keep every n-th row"
+        )
+    if rows * columns > MOST_NUMBERS:
+        raise UnreadableError(
+            f"{rows} rows of {columns} columns; at most {MOST_NUMBERS} numbers are read: keep "
+            "every n-th row, or fewer columns"
+        )

@@ -6,15 +6,23 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
+import pyarrow as pa  # type: ignore[import-untyped]  # ships no types  # type: ignore[import-untyped]  # ships no types
 import pyarrow.csv as pc  # type: ignore[import-untyped]  # ships no types
 
+from models.array import Array
 from models.errors import cut
-from models.regular import UnreadableError
-from reports.logs.extent import refuse_rows
-from reports.logs.text_fields import COMMA, SEPARATORS, is_number
-from reports.logs.text_header import TITLE, Header
-from reports.logs.text_lines import Body
+from models.files.inputs import UnreadableError
+from reports.logs.text_header import TITLE, Header, header_of, marked_rows
+from reports.logs.text_lines import (
+    COMMA,
+    SEPARATORS,
+    Body,
+    beginning,
+    body,
+    fields_of,
+    is_number,
+    refuse_rows,
+)
 
 DIGITS = re.compile(r"[-+]?\d+(e[-+]?\d+)?", re.IGNORECASE)
 """What is left of a number on either side of its decimal comma."""
@@ -153,3 +161,41 @@ def _count(body: memoryview) -> int:
     for first in range(0, len(body), step):
         count += bytes(body[first : first + step]).count(b"\n")
     return count + (len(body) > 0 and body[-1] != 10)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What a map says of a file: "" where it is to be found."""
+
+    separator: str = ""
+    decimal: str = "."
+    sheet: str = ""
+
+
+@dataclass(frozen=True)
+class TextTable:
+    """The table of a text, all names of its header, the line that its first row stands in, and of
+    the lines from there on those that are no rows."""
+
+    table: pa.Table
+    names: Sequence[str]
+    first: int
+    passed: Array
+
+
+def text_columns(
+    raw: bytes,
+    layout: Layout,
+    wanted: Callable[[str], bool] = lambda name: True,
+) -> TextTable:
+    """Read the ``wanted`` columns of a text with a header; lines that are blank or remarks are
+    passed over wherever they stand. Raises UnreadableError for what is no such text."""
+    start = beginning(raw)
+    header = header_of(start, layout.separator, wanted)
+    names = header.names
+    is_row = marked_rows(names, header.separator, wanted)
+    below = body(raw, start.offsets[header.first], is_row)
+    fields = fields_of(start.lines[header.first], header.separator)
+    table = RowReader(header, below, layout.decimal).table(fields, wanted)
+    kept = names[:-1] if header.ends else names
+    return TextTable(table, kept, header.first + 1, below.passed)

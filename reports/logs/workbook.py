@@ -13,10 +13,9 @@ import numpy as np
 import pandas as pd
 
 from models.errors import cut, few, suggestion
-from models.regular import UnreadableError
-from reports.logs.extent import refuse_columns, refuse_rows
-from reports.logs.text_fields import are_numbers
+from models.files.inputs import UnreadableError
 from reports.logs.text_header import units_below, with_units
+from reports.logs.text_lines import are_numbers, refuse_columns, refuse_rows
 
 MOST_SHEET_BYTES = 400_000_000
 """Of a workbook when it is unpacked."""

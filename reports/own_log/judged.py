@@ -17,17 +17,14 @@ from reports.compare.errors import Errors, largest
 from reports.judge.cell import left_words
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.limits import LIMITS
+from reports.judge.rules.reference import LEAST
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import refuse_forces_unasked
-from reports.judge.too_good import LEAST, PLACES
-from reports.logs.beside_truth import beside_truth, lacking
 from reports.logs.channel import OwnLog
-from reports.logs.log_beside import LogBeside
+from reports.logs.log_beside import LogBeside, beside_truth, lacking
 from reports.own_log.drives import DriveFit, LogDrive
 from reports.own_log.log_kind import HeldLog, LogRequest, log_kind
-from reports.own_log.log_limits import log_limits
-from reports.own_log.required import absent_names, required_name
-from reports.quantities import named
+from reports.own_log.log_limits import absent_names, log_limits, required_name
 from sim.engine import Placing
 
 ITSELF = (
@@ -146,9 +143,8 @@ def _placing(errors: Errors) -> Placing:
     """How the places of a log came about, which its start goes by: those that are nearer than a
     step leaves what is integrated were solved for. Where links bend places are off by what pieces
     leave of the beam, and its pins tell alone: without these the start has the wider limit."""
-    told = named("closure") if errors.elastic is not None else PLACES
-    worst = largest(row for row in errors.rows if row.quantity in told)
-    near = LEAST * errors.step_rad**2
+    worst = largest(row for row in errors.rows if row.quantity in errors.of_links.shut)
+    near = LEAST * errors.of_scene.step_rad**2
     return "integrated" if worst is not None and not worst.pure <= near else "solved"
 
 

@@ -48,6 +48,10 @@ class LogKind(Protocol):
     """How logs of a kind of scene are judged."""
 
     truth_name: str
+    no_cause: str
+    """The sentence about columns, at {}, that are out of tolerance and have no cause."""
+    driver_angle: str
+    """The quantity that the angle of the driven link is judged as."""
 
     def truth(self, log: OwnLog, request: LogRequest) -> tuple[OwnLog, Truth, DriveFit | None]:
         """The log as far as its truth is known, the truth, and the drive that was fitted. Raises
@@ -61,4 +65,4 @@ class LogKind(Protocol):
 
 def log_kind(scene: Scene) -> LogKind:
     """That of the scene."""
-    return cast(LogKind, way_of(scene).log)
+    return cast(LogKind, way_of(scene).part("log"))

@@ -10,8 +10,8 @@ from typing import Literal
 from models.errors import cut, harmless
 from reports.compare.errors import Error
 from reports.judge.tolerance import Limit
-from reports.logs.beside_truth import readings_of
 from reports.logs.channel import Reading
+from reports.logs.log_beside import readings_of
 from reports.logs.units import UNITS
 from reports.output.numbers import error_text
 from reports.own_log.judged import JudgedLog

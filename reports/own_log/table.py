@@ -1,9 +1,10 @@
-"""A judged log on the terminal: what is wrong and why, what was read as what, the verdict."""
+"""A judged log on the terminal, as Markdown and as JUnit XML: what is wrong with it, and why."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from xml.etree.ElementTree import Element
 
 from rich.console import Console
 from rich.markup import escape
@@ -12,11 +13,13 @@ from rich.text import Text
 
 from models.errors import cut, few, harmless
 from reports.causes.cause import Cause
-from reports.describe.held_to import held_to
 from reports.judge.rules import RULES
 from reports.output.console import hanging, plain_table
+from reports.output.junit import case_of, say, suite_of
+from reports.output.markdown import folded, plain, table
 from reports.output.numbers import count, error_text, short
 from reports.own_log.judged import JudgedLog
+from reports.own_log.log_kind import log_kind
 from reports.own_log.rows import LogRow, column_text, log_rows, share_of
 
 WIDE = 90
@@ -104,9 +107,7 @@ def unexplained(judged: JudgedLog) -> list[str]:
 
 def no_cause_text(judged: JudgedLog, columns: Sequence[str]) -> str:
     """What is said of columns that are out of tolerance and have no cause."""
-    if judged.scene.is_free:
-        return f"of {few(columns, 6)}: see the notes; none is looked for in what was let go"
-    return f"none that is known explains {few(columns, 6)}"
+    return log_kind(judged.scene).no_cause.format(few(columns, 6))
 
 
 def _table(rows: Sequence[LogRow], width: int) -> Table:
@@ -224,14 +225,76 @@ def footer(judged: JudgedLog, facts: Mapping[str, str]) -> list[str]:
         "fitted": "a driver fitted to the log",
         "logged": "the logged angle of the driver (geometry alone)",
     }
-    elastic = judged.errors.elastic if judged.errors else None
+    assert judged.errors is not None
     time_s = judged.log.time_s
     step = f"step {judged.step_s:g} s" if judged.step_s else "no step known"
     return [
-        held_to(
-            free=judged.scene.is_free, elastic=elastic, moved=f" moved by {drives[judged.drive]}"
-        ),
+        judged.errors.compared_with(f" moved by {drives[judged.drive]}"),
         f"t = {time_s[0]:.6g} to {time_s[-1]:.6g} s, {step}; limits from "
         f"{', '.join(dict.fromkeys(row.limit.origin for row in log_rows(judged)))}.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),
     ]
+
+
+def suite(judged: JudgedLog, facts: Mapping[str, str]) -> Element:
+    """A test case for each error, and one for what the rules say of the log as a whole."""
+    cases = []
+    for row in log_rows(judged):
+        case = case_of(judged.scene.name, f"{row.what} ({', '.join(row.columns) or 'differenced'})")
+        if row.verdict == "out":
+            text = f"{row.error.pure:.3g} {share_of(row.error)}, limit {row.limit.number:.3g}"
+            say(case, "failure", "\n".join(_causes(judged, row.columns)), message=text, type="out")
+        cases.append(case)
+    whole = case_of(judged.scene.name, "the log as a whole")
+    if judged.failures:
+        text = "\n".join(f"{each.rule}: {each.text}" for each in judged.failures)
+        say(whole, "failure", text, message=judged.failures[0].text, type=judged.failures[0].rule)
+    if judged.not_judged:
+        say(whole, "system-out", f"not judged: {', '.join(judged.not_judged)}")
+    return suite_of("judge", [*cases, whole], facts)
+
+
+def _causes(judged: JudgedLog, columns: tuple[str, ...]) -> list[str]:
+    """What explains the errors of some columns."""
+    return [cause_text(cause) for cause in judged.causes if set(columns) & set(cause.columns)]
+
+
+COMMENT_ROOM = 20_000
+HEADS = ("", "columns", "read as", "largest error:", "of its scale:", "limit:", "taken:")
+
+
+def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
+    """The verdict, what is wrong and why, every error, and what the numbers are."""
+    parts = [
+        f"## crankcheck judge: {plain(judged.log.source)}",
+        f"**{verdict_line(judged).plain}**",
+    ]
+    parts += [
+        "\n".join(
+            f"- {f.rule} {plain(RULES[f.rule].title)}: {plain(f.text)}" for f in judged.failures
+        ),
+        "\n".join(f"- cause: {plain(cause_text(c))}" for c in judged.causes),
+    ]
+    cells = [
+        (
+            "ok" if row.verdict == "within" else "OUT",
+            row.names,
+            row.what,
+            row.size,
+            f"{error_text(row.error.pure)} {share_of(row.error)}",
+            short(row.limit.number),
+            taken_text(row.taken),
+        )
+        for row in sorted(shown_rows(judged), key=lambda row: row.verdict == "within")
+    ]
+    parts.append(table(HEADS, cells, COMMENT_ROOM, "errors"))
+    told = [f"drive: {fit_text(judged)}"] if judged.fit else []
+    if judged.not_judged:
+        told.append(f"not judged: {missing_text(judged)}, which the log has not")
+    told += filter(None, [rest_text(judged)])
+    told += [f"not used: {line}" for line in unused_lines(judged)]
+    told += judged.notes
+    if told:
+        parts.append(folded("more", "\n".join(f"- {plain(each)}" for each in told)))
+    parts.append("\n".join(f"{plain(line)}  " for line in footer(judged, facts)))
+    return "\n\n".join(part for part in parts if part)

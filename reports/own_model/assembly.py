@@ -5,19 +5,18 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
-from analytic.in_assembly import in_assembly
-from analytic.kinematics import reach, solve, solve_driven
+from analytic.kinematics import in_assembly, reach, solve, solve_driven
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, ReachError, few
+from models.files.names import MOST_ASSEMBLIES
+from models.joints import Frame, frames
 from models.laws import ConstantSpeed
-from models.names import MOST_ASSEMBLIES
-from models.poses import Frame, frames
 from models.scene import Driver, Scene
-from reports.own_model.request import ModelRequest
 from sim.engine import BodyPose
 from sim.own_models import MOST_TURNS, OwnModel
 
@@ -71,12 +70,12 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
         raise CrankcheckError(
             f"--branch {unknown[0]}: it chooses between no two assemblies; {have}"
         )
-    free = [key for key in keys if key not in request.branch]
-    if len(free) > MOST_CHOICES:
+    left = [key for key in keys if key not in request.branch]
+    if len(left) > MOST_CHOICES:
         raise CrankcheckError(
-            f"{request.path}: {len(free)} choices between two assemblies, of which {MOST_CHOICES} "
-            f"are found by trying; choose {len(free) - MOST_CHOICES} or more with --branch NAME=1 "
-            f"or NAME=-1, of {', '.join(free)}"
+            f"{request.path}: {len(left)} choices between two assemblies, of which {MOST_CHOICES} "
+            f"are found by trying; choose {len(left) - MOST_CHOICES} or more with --branch NAME=1 "
+            f"or NAME=-1, of {', '.join(left)}"
         )
     ranked = sorted(_fits(own, bare, numbered, request.branch), key=lambda fit: fit[0])
     if not ranked:
@@ -129,10 +128,10 @@ def _fits(
     own: OwnModel, bare: Scene, choices: Mapping[str, Sequence[int]], chosen: Mapping[str, int]
 ) -> Iterator[tuple[float, Scene]]:
     """Every assembly, with how far the pose is from it."""
-    free = [key for key in choices if key not in chosen]
+    left = [key for key in choices if key not in chosen]
     drawn = own.drawn().bodies
-    for signs in itertools.product(*(choices[key] for key in free)):
-        branch = dict.fromkeys(choices, 1) | dict(chosen) | dict(zip(free, signs, strict=True))
+    for signs in itertools.product(*(choices[key] for key in left)):
+        branch = dict.fromkeys(choices, 1) | dict(chosen) | dict(zip(left, signs, strict=True))
         scene = replace(bare, branch=branch)
         try:
             state = solve(scene, np.zeros(1), bound=False).state()
@@ -189,3 +188,38 @@ def _near(span: tuple[float, float], angle: float) -> tuple[float, float]:
     """The range of whole turns on or back that is nearest to an angle."""
     turns = round((angle - (span[0] + span[1]) / 2) / TURN) * TURN
     return span[0] + turns, span[1] + turns
+
+
+@dataclass(frozen=True)
+class ModelRequest:
+    """A model file and the joint that drives it, at ``speed_rad_s`` from the pose that the file is
+    drawn in, or from keyframe ``key``, or from ``start_deg`` of the joint's own coordinate.
+
+    The step is the file's own where neither ``dt_s`` nor ``steps_per_turn`` is given; ``branch``
+    overrides the assembly that is drawn. Raises CrankcheckError for what is no speed, angle or
+    assembly.
+    """
+
+    path: Path
+    joint: str
+    speed_rad_s: float
+    key: str | None = None
+    start_deg: float | None = None
+    branch: Mapping[str, int] = field(default_factory=dict)
+    dt_s: float | None = None
+    steps_per_turn: float | None = None
+    turns: float = 1.0
+    tolerance: Mapping[str, float] = field(default_factory=dict)
+    converge: bool = True
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.speed_rad_s) and self.speed_rad_s):
+            raise CrankcheckError(
+                f"--speed {self.speed_rad_s:g}: give that of the crank in rad/s, such as 10; -10 "
+                "turns it the other way"
+            )
+        if self.start_deg is not None and not math.isfinite(self.start_deg):
+            raise CrankcheckError(f"--start {self.start_deg:g}: give an angle")
+        for name, sign in self.branch.items():
+            if sign not in (1, -1):
+                raise CrankcheckError(f"--branch {name}: found {sign}; it is 1 or -1")

@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.judge.cell import Checked
+from reports.judge.cell import Checked, unfinished
 from reports.judge.halving import worst_place
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Finding
 from reports.output.numbers import short
-from reports.own_model.account import Account, told
-from reports.own_model.checked_line import CheckedLine
+from reports.own_model.account import (
+    Account,
+    CheckedLine,
+    Line,
+    Proposal,
+    checked_line,
+    told,
+    without_run,
+)
 from reports.verify.advised import HELPS
+from reports.workers.isolated import Isolated, Limits, Lost
 
 SAYS = 2.0
 """A line that is told for one thing alone has something to say where it changes the error by so
@@ -183,3 +192,71 @@ def _part(finding: Finding) -> float:
     if finding.number is None or not finding.limit:
         return math.inf
     return finding.number / finding.limit if math.isfinite(finding.number) else math.inf
+
+
+Run = Callable[[Line], CheckedLine]
+
+
+def run_lines(
+    account: Account, limits: Limits, done: Callable[[CheckedLine], None] = lambda _: None
+) -> JudgedModel:
+    """Run all lines of an account, each in a process that is ended when it fails or hangs."""
+    child: Isolated[CheckedLine] = Isolated(limits)
+
+    def run(line: Line) -> CheckedLine:
+        result = child.call(checked_line, line)
+        if not isinstance(result, Lost):
+            return result
+        if isinstance(result.error, CrankcheckError):
+            raise result.error
+        return without_run(unfinished(line.cell, result.status, result.reason))
+
+    try:
+        return judged_lines(account, run, done)
+    finally:
+        child.close()
+
+
+def judged_lines(account: Account, run: Run, done: Callable[[CheckedLine], None]) -> JudgedModel:
+    """All lines, as ``run`` does each; what is recommended is chosen once the first is there."""
+    lines: list[CheckedLine] = []
+    for profile in account.profiles:
+        if len(lines) == 1:
+            account = chosen(account, lines[0], run)
+        lines.append(run(Line(account, profile)))
+        done(lines[-1])
+    return judged_model(account, lines)
+
+
+def chosen(account: Account, own: CheckedLine, run: Run) -> Account:
+    """The account with the first of its proposals that gains on the model as written; contacts
+    are off only where that makes the error `SAYS` times less. Where none gains, it says so."""
+    limit = _error(own)
+    quick = replace(account, request=replace(account.request, converge=False))
+
+    def error(proposal: Proposal) -> float:
+        if not proposal.patch:
+            return limit
+        return _error(run(Line(replace(quick, recommended=proposal), account.profiles[-1])))
+
+    for integrator in (True, False):
+        found = [
+            (error(each), each)
+            for each in account.proposals
+            if each.advised.integrator == integrator
+        ]
+        kept = next(pair for pair in found if not pair[1].advised.contacts_off)
+        least = min(found, key=lambda pair: pair[0])
+        best = least if SAYS * least[0] < kept[0] else kept
+        if best[0] < limit:
+            return replace(account, recommended=best[1])
+    there = [each for each in account.proposals if not each.patch]
+    if there and math.isfinite(limit):
+        return replace(account, recommended=there[0])
+    return replace(account, helps=False)
+
+
+def _error(one: CheckedLine) -> float:
+    """The largest error of place, without an end where the run did not end well."""
+    error = errors_of(one)[0]
+    return math.inf if math.isnan(error) else error

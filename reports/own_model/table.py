@@ -1,8 +1,8 @@
-"""An own model on the terminal: what is wrong, what was read, its lines, what to change, the
-verdict."""
+"""An own model on the terminal and as JSON: what was read, its lines, and what to change."""
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping
 
@@ -12,11 +12,13 @@ from rich.table import Table
 from rich.text import Text
 
 from models.errors import harmless
+from models.files.assemble import scene_text
 from reports.judge.halving import worst_place
+from reports.judge.rows import cell_row, error_row
 from reports.judge.rules import RULES
 from reports.output.console import hanging, plain_table
-from reports.output.numbers import short
-from reports.own_model.checked_line import CheckedLine
+from reports.output.numbers import finite, short
+from reports.own_model.account import CheckedLine
 from reports.own_model.judged import JudgedModel, errors_of
 from reports.own_model.sentences import (
     factor_text,
@@ -30,7 +32,7 @@ from reports.own_model.sentences import (
     still_out,
     verdict_text,
 )
-from reports.verify.row_cells import MARKS
+from reports.verify.cell_table import MARKS
 
 WIDE, NARROW = 76, 52
 """Columns of a terminal that show the gap and the body of the largest error; below which what
@@ -148,3 +150,46 @@ def _recommended(console: Console, judged: JudgedModel) -> None:
     """The recommended settings, or why there are none."""
     console.print(Text(recommended_head(judged), "bold"))
     console.print(harmless(judged.patch), markup=False, highlight=False, soft_wrap=True)
+
+
+def document(judged: JudgedModel, facts: Mapping[str, str]) -> str:
+    """Facts, what was read, every joint, and the lines with their findings and errors; what is not
+    finite is null."""
+    account = judged.account
+    content = {
+        "provenance": dict(facts),
+        "verdict": judged.verdict,
+        "model": {
+            "file": str(account.request.path),
+            "driven": account.request.joint,
+            "speed_rad_s": account.request.speed_rad_s,
+            "key": account.request.key,
+            "scene": scene_text(account.scene),
+            "notes": list(account.notes),
+            "disturbances": [vars(group) for group in groups(judged)],
+            "recommended": judged.patch,
+            "helps": account.helps,
+        },
+        "joints": [
+            {
+                "joint": joint.name,
+                "open_m": joint.open_m,
+                "gap_m": dict(joint.gap_m),
+                "share_of_limit": joint.share,
+            }
+            for joint in judged.joints()
+        ],
+        "cells": [_cell(judged, one) for one in judged.lines],
+    }
+    return json.dumps(finite(content), indent=1) + "\n"
+
+
+def _cell(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
+    """A line: as a cell of any verification, with what it gains at each step and every error."""
+    return cell_row(one) | {
+        "settings": dict(one.settings),
+        "gains": list(judged.gains(one)),
+        "notes": list(one.errors.notes) if one.errors else [],
+        "findings": [vars(finding) for finding in one.findings],
+        "errors": [error_row(row, one.limits) for row in one.errors.rows] if one.errors else [],
+    }

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from reports.drawing.packed import embedded, policy
 from reports.output.numbers import NONE, count, duration, error_text, readable
-from reports.page.sections import SECTIONS
-from reports.page.sections.free import build as free
+from reports.page.sections import OF_WAYS, SECTIONS
 from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion
 from reports.page.sections.section import PageReport, Section
@@ -59,10 +58,11 @@ def page(stored: Stored, matrix: Matrix | None = None) -> str:
     sections = {name: build(report) for name, build in SECTIONS.items()}
     text = _rendered(report, sections)
     over = len(text.encode()) - MOST_BYTES
-    if over > 0 and sections["free"] is not None:
-        sections["free"] = free(report, max(BUDGET - over, 0))
-        text = _rendered(report, sections)
-        over = len(text.encode()) - MOST_BYTES
+    for name, own in OF_WAYS.items():
+        if over > 0 and sections[name] is not None and own.lighter is not None:
+            sections[name] = own.lighter(report, max(BUDGET - over, 0))
+            text = _rendered(report, sections)
+            over = len(text.encode()) - MOST_BYTES
     if over > 0 and report.driven is not None and sections["motion"] is not None:
         sections["motion"] = motion(report.driven, BUDGET - over)
         text = _rendered(report, sections)
@@ -120,10 +120,7 @@ def render(report: Report, sections: Sequence[Section]) -> str:
 def assembled(head: Head, sections: Sequence[Section]) -> str:
     """A page of some sections under a head."""
     environment = _environment()
-    bodies = [
-        Markup(environment.get_template(f"sections/{one.template}").render(one.words))
-        for one in sections
-    ]
+    bodies = [Markup(_template(environment, one.template).render(one.words)) for one in sections]
     names = dict.fromkeys([*FIRST, *(script for one in sections for script in one.scripts)])
     early = _script("theme.js")
     late = "\n".join(_script(name) for name in names)
@@ -143,6 +140,13 @@ def assembled(head: Head, sections: Sequence[Section]) -> str:
         ],
         head=head,
     )
+
+
+def _template(environment: Environment, template: str | Path) -> Template:
+    """That of a section, of ours by its name, of others by its file."""
+    if isinstance(template, Path):
+        return environment.from_string(template.read_text(encoding="utf-8"))
+    return environment.get_template(f"sections/{template}")
 
 
 @cache

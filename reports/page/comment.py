@@ -11,15 +11,16 @@ from reports.output.markdown import code, fitted, folded, plain, table
 from reports.output.numbers import count, listed, short
 from reports.page.sections.verdict import level, verdict
 from reports.results.cost import MEANS, Costs
-from reports.results.lines import Line, called, named, turn_of
+from reports.results.lines import Line, called, named
 from reports.results.looks import label
 from reports.results.origin import made, settings_of, study, versions
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation
 from reports.results.table import noise_line, short_target
 from reports.store.reader import Stored
+from reports.way.clock import clock_of
 from sim.engine import Drive
-from sim.snippets import snippet_writer
+from sim.offers import snippet_writer
 
 ROOM = {
     "damage": 4_000,
@@ -113,7 +114,7 @@ def _recommended(report: Report) -> str:
         f"The cheapest that keep the error of place [rad, or of the longest link] on {scenes} "
         "within a target; times are geometric means."
         + " Where links bend, it is that of the deflection, over the largest."
-        * bool(report.elastic_lines)
+        * bool(report.of_kind("elastic"))
     )
     remarks = dict.fromkeys(_remark(one) for one in report.recommendations)
     kept, left = fitted([f"- {plain(text)}" for text in remarks if text], ROOM["set"] // 2)
@@ -127,7 +128,7 @@ def _recommendation(one: Recommendation) -> tuple[str, ...]:
     target, best = short_target(one.target), one.best
     if one.reason:
         return (target, best.engine, "none", *[""] * 5)
-    per_second = " /s" * (best.drive == "free")
+    per_second = _per(best.drive)
     times = (f"{best.us_per_step:.2f}", f"{1e3 * best.s_per_turn:.3g}{per_second}")
     steps, error = steps_told(best.steps_per_turn, best.drive), short(best.worst_error)
     name = called(best.variant, best.drive)
@@ -160,7 +161,8 @@ def _snippets(report: Report) -> Iterator[str]:
     for (engine, variant, drive, steps), group in groups.items():
         tightest = min(group, key=lambda one: one.target)
         targets = listed([short_target(one.target) for one in group])
-        title = f"{engine} {variant}, {steps:g} steps per {turn_of(drive)} (error up to {targets})"
+        a_turn = f"{steps:g} steps per {clock_of(drive).name}"
+        title = f"{engine} {variant}, {a_turn} (error up to {targets})"
         if text := tightest.snippet():
             texts.append(folded(title, code(text, snippet_writer(engine).language)))
     kept, left = fitted(texts, ROOM["snippets"])
@@ -188,7 +190,7 @@ def _time(costs: Costs) -> list[str]:
     ]
     if costs.timed and part:
         steps[0] += f" ({part})"
-    unit = " /s" * (costs.drive == "free")
+    unit = _per(costs.drive)
     turns = [
         costs.part(costs.reached[target]) or (f"{1e3 * s:.3g}{unit}" if math.isfinite(s) else "")
         for target, s in costs.s_to.items()
@@ -214,7 +216,13 @@ def _finest(line: Line) -> tuple[str, str]:
 
 def steps_told(steps: float, drive: str) -> str:
     """Steps per turn, or of what was let go per second, which is said."""
-    return f"{steps:g}" + " /s" * (drive == "free")
+    return f"{steps:g}{_per(drive)}"
+
+
+def _per(drive: str) -> str:
+    """What stands behind a number of a second."""
+    per = clock_of(drive).per
+    return f" {per}" if per else ""
 
 
 def _failures(report: Report) -> Iterator[str]:

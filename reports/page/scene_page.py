@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from analytic.elastic.sampled import ElasticHistory
+from analytic.elastic.elastic_motion import ElasticHistory
 from analytic.free.free_motion import FreeMotion
 from models.scene import Scene
 from reports.describe.elastic_course import ElasticCourse

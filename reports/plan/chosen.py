@@ -8,7 +8,8 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError, nearest
-from models.files import (
+from models.files.inputs import names_in
+from models.files.reading import (
     kinds,
     load_scene,
     names_of_scenes,
@@ -16,7 +17,6 @@ from models.files import (
     run_where_named,
     shipped,
 )
-from models.one_or_more import names_in
 from models.scene import Scene
 from reports.judge.tolerance import check_names
 from sim.registry import engine, usual

@@ -97,7 +97,7 @@ def rigid_alone(what: str) -> Callable[[Scene], None]:
 
 def cut_scene(scene: Scene, given: GivenAs) -> Scene:
     """What an engine is given of a scene with elastic links. Raises CrankcheckError."""
-    from reports.compare.elastic.cut import cut  # where links bend alone
+    from reports.compare.elastic.elastic_truth import cut  # where links bend alone
 
     return cut(scene, given.segments, given.springs).given
 
@@ -149,7 +149,7 @@ def _held_steps_s(scene: Scene, segments: int, springs: Springs) -> float:
     """Steps in a second that explicit methods hold so many segments with; 0 where a link stretches
     alone, and is no chain of them."""
     from analytic.elastic.discretisation import Segments
-    from analytic.elastic.stiffness import fastest_rad_s
+    from analytic.elastic.elastic_motion import fastest_rad_s
     from reports.compare.elastic.elastic_truth import STEADY
 
     links = scene.elastic.values()

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from analytic.free.loosened import loosened
-from models.controlled import Controlled
+from analytic.free.free_motion import loosened
+from models.cut_links import with_rigid_links
+from models.driver import Controlled
 from models.errors import CrankcheckError
-from models.files import kinds, shipped
-from models.rigid import with_rigid_links
+from models.files.reading import kinds, shipped
 from models.scene import Scene
 from reports.judge.tolerance import check_names
 from reports.plan.chosen import chosen_scenes

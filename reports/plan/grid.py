@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from models.errors import CrankcheckError, few
-from models.files import names_of_scenes, scene_texts, shipped
+from models.files.reading import names_of_scenes, scene_texts, shipped
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.output.numbers import count as told

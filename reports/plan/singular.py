@@ -13,12 +13,11 @@ import numpy as np
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import repeats_after, solve, solve_driven
 from models.array import Array, Mask
-from models.driver_course import driver_course
-from models.driver_shown import driver_unit, place_in_words
+from models.driver import driver_course, driver_unit, place_in_words
 from models.errors import CrankcheckError, few
 from models.motion import Crossing, Motion
 from models.scene import Scene
-from reports.compare.change_points import near
+from reports.compare.hardness import near
 from sim.registry import engine
 
 SINGULAR = 1e-6

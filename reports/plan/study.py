@@ -38,9 +38,7 @@ from pydantic_core import ErrorDetails
 from yaml.constructor import ConstructorError
 
 from models.errors import CrankcheckError, cut, listed, shown, suggestion
-from models.parsed import DEEPEST, refuse_extreme
-from models.regular import UnreadableError, regular_text
-from models.toml_text import tables
+from models.files.inputs import DEEPEST, UnreadableError, refuse_extreme, regular_text, tables
 from sim.engine import SettingValue
 
 DEFAULT = Path(__file__).parent / "studies" / "default.toml"

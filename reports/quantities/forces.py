@@ -15,8 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from models.array import Array
-from models.forces import ForceBound, Forces
-from models.motion import Motion
+from models.motion import ForceBound, Forces, Motion
 from models.scene import Scene
 from reports.quantities.quantity import BodyKind, Criterion, Measure, Quantity, Series, Tolerance
 from sim.engine import Run
@@ -211,7 +210,7 @@ REACTION = _force(
         "react.",
         TAKEN_UP,
         diagram="reactions in pins",
-        free=FREE_FORCE,
+        free_motion=FREE_FORCE,
     ),
 )
 NORMAL = _force(
@@ -229,7 +228,7 @@ NORMAL = _force(
         "normal",
         TAKEN_UP,
         diagram="normal forces of sliders",
-        free=FREE_FORCE,
+        free_motion=FREE_FORCE,
     ),
 )
 MOMENT = _force(
@@ -247,7 +246,7 @@ MOMENT = _force(
         "moment",
         TAKEN_UP,
         diagram="moments of sliders",
-        free=FREE_FORCE,
+        free_motion=FREE_FORCE,
     ),
 )
 TORQUE = _force(
@@ -269,6 +268,6 @@ TORQUE = _force(
             slope="torque",
         ),
         diagram="driving torque",
-        free=FREE_FORCE,
+        free_motion=FREE_FORCE,
     ),
 )

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from models.driver_course import driver_place
+from models.driver import driver_place
 from models.motion import Motion
 from models.scene import GROUND, Scene
-from reports.quantities.moving import every_place
-from reports.quantities.quantity import Criterion, Measure, Quantity, Series, Tolerance
+from reports.quantities.quantity import Criterion, Measure, Quantity, Series, Tolerance, every_place
 from sim.engine import Run
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from models.array import Array
-from models.motion import Motion
+from models.motion import Bound, Motion, Order
 from models.scene import Scene
 from sim.engine import Run
 
@@ -47,7 +47,7 @@ class Measure:
 @dataclass(frozen=True)
 class Tolerance:
     """The numbers of a default limit, and why they are what they are; `reports.judge.tolerance` has
-    the formula, `reports.judge.start_allowance` that of ``jump``, ``parts`` and ``makes_up``.
+    the formula, `reports.judge.rules.limits` that of ``jump``, ``parts`` and ``makes_up``.
     ``lasting``, ``drifting``, ``opening``, ``arc`` and ``late`` are of free motion, which is ever
     further off the longer it lasts; what ``bends`` is a share of the largest deflection."""
 
@@ -81,8 +81,8 @@ class Criterion:
     """What the errors of one source are held to: the words of a rule, and its tolerance.
 
     ``short`` is the rule in the verdict table, ``diagram`` the error in the page's list of
-    diagrams, which has none of it where that is empty. ``free`` is the tolerance of a mechanism
-    that was let go, None where the error is shown alone there.
+    diagrams, which has none of it where that is empty. ``free_motion`` is the tolerance of free
+    motion, None where the error is shown alone there.
     """
 
     id: str
@@ -92,7 +92,7 @@ class Criterion:
     short: str
     tolerance: Tolerance
     diagram: str = ""
-    free: Tolerance | None = None
+    free_motion: Tolerance | None = None
 
     @property
     def source(self) -> Source:
@@ -129,3 +129,62 @@ class Quantity:
 def tolerance_name(quantity: str, source: Source) -> str:
     """What `--tol`, a scene and the columns of pure numbers call a quantity from a source."""
     return quantity if source == "reported" else f"{quantity}-{source}"
+
+
+MovingKind = Literal["link", "slider", "point"]
+
+
+def moving(kind: MovingKind, order: Order, column: str) -> Measure:
+    """Angles, displacements or positions of the moving bodies of a kind, or a rate of them."""
+    turns = kind == "link"
+
+    def scale(scene: Scene, _: Motion) -> float:
+        speed = scene.pace_rad_s**order
+        return speed if turns else scene.longest_m * speed
+
+    def truth(scene: Scene, reference: Motion) -> Series:
+        """Without points of the ground, and without the driver's coordinate, which is the drive."""
+        own = scene.driver
+        crank = (own.link,) if order == 0 and own.is_crank else ()
+        slider = (own.slider,) if order == 0 and own.slider is not None else ()
+        still: Mapping[MovingKind, Collection[str]] = {
+            "link": crank,
+            "slider": slider,
+            "point": scene.ground,
+        }
+        bodies = _read(reference, kind, order).items()
+        return {name: series for name, series in bodies if name not in still.get(kind, ())}
+
+    return Measure(
+        body_kind=kind,
+        column=column,
+        unit=("rad" if turns else "m") + ("", "/s", "/s^2")[order],
+        share=(("rad", "w", "w^2") if turns else ("L", "w L", "w^2 L"))[order],
+        scale=scale,
+        truth=truth,
+        logged=lambda _, run: _read(run.motion, kind, order),
+        bound=lambda _, reference: _read(reference.bound, kind, order),
+    )
+
+
+def every_place(kind: MovingKind, column: str) -> Measure:
+    """The places of all moving bodies of a kind, the driver with them."""
+
+    def truth(scene: Scene, reference: Motion) -> Series:
+        still = scene.ground if kind == "point" else ()
+        return {name: at for name, at in _read(reference, kind, 0).items() if name not in still}
+
+    return replace(moving(kind, 0, column), truth=truth)
+
+
+def _read(motion: Motion | Bound | None, kind: MovingKind, order: Order) -> Series:
+    """The series of a motion, or of a bound, if it is there."""
+    if motion is None:
+        return {}
+    if kind == "link":
+        return {n: (m.theta, m.omega, m.alpha)[order] for n, m in motion.links.items()}
+    if kind == "slider":
+        sliders = motion.sliders.items()
+        return {n: (m.displacement, m.speed, m.acceleration)[order] for n, m in sliders}
+    points = motion.points.items()
+    return {n: (m.position, m.velocity, m.acceleration)[order] for n, m in points}

@@ -10,7 +10,7 @@ from typing import Annotated
 from rich.console import Console
 
 from models.errors import CrankcheckError, listed
-from models.files import find_scenes, parse_scene, scene_texts
+from models.files.reading import find_scenes, parse_scene, scene_texts
 from models.scene import Scene
 from reports.advise.advice import Advice, offers, prices, timings
 from reports.advise.demand import choices, demanded

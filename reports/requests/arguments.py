@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 import numpy as np
 
 from models.errors import CrankcheckError, shown, suggestion
-from models.files import every_shipped, load_scene
+from models.files.reading import every_shipped, load_scene
 from models.scene import KEPT, Scene
-from reports.judge.tolerance import EVERY
 from reports.output.numbers import listed
 from reports.plan.steps import positive
+from reports.quantities import EVERY
 from sim.engine import SettingValue
 from sim.registry import FIRST, engine
 from sim.settings import profile_of, resolved

@@ -57,7 +57,7 @@ class CellVerdict(Shown, Checked):
     def frame(self) -> pd.DataFrame:
         """One row per quantity, body, source and kind of error, with the limit in force; ``unit``
         is that of ``maximum``, ``rms`` and ``final``."""
-        from reports.judge.frames import error_frame
+        from reports.judge.rows import error_frame
 
         return error_frame([self])
 

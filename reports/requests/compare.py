@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from models.driver_shown import driver_unit
+from models.driver import driver_unit
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.compare import compare as comparing
 from reports.compare.beside import Truth
 from reports.compare.errors import Error, ErrorKind, Errors, largest
-from reports.describe.held_to import held_to
 from reports.judge.tolerance import check_names
 from reports.output.console import plain_table, say
 from reports.output.numbers import short
@@ -123,7 +122,7 @@ def compare(
                 f"{what.reason}"
             )
         return Comparison(scene, f"{what.engine} {what.version}, profile {what.profile}", errors)
-    from reports.logs.beside_truth import beside_truth
+    from reports.logs.log_beside import beside_truth
     from reports.own_log.drives import chosen_drive, refuse_geometry_alone
     from reports.own_log.log_kind import LogRequest, log_kind
 
@@ -214,8 +213,7 @@ def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> 
             _driver(worst),
         )
     console.print(table, "")
-    said = held_to(free=errors.free is not None, elastic=errors.elastic)
-    say(console, said, "dim")
+    say(console, errors.compared_with(), "dim")
     for note in errors.notes:
         say(console, note, "yellow")
 

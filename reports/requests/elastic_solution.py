@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.console import Console
 
-from analytic.elastic.sampled import ElasticHistory, sampled
+from analytic.elastic.elastic_motion import ElasticHistory, sampled
 from analytic.result import Selection
 from analytic.structure.mobility import analyse
-from models.array import Array
+from models.array import Array, samples
 from models.errors import CrankcheckError, StructureError
 from models.motion import Motion
-from models.samples import samples
 from models.scene import Scene
 from reports.describe.elastic_course import (
     ElasticCourse,
@@ -192,16 +191,16 @@ class ElasticSolving(Solving):
         say(console, more, "dim")
 
     def figure_files(self) -> Sequence[str]:
-        from reports.figures.elastic.course_figures import elastic_figure_files
+        from reports.figures.elastic_figures import ELASTIC_FIGURES
 
-        return elastic_figure_files()
+        return ELASTIC_FIGURES.files
 
     def drawn(self, solution: ElasticSolution, folder: Path) -> str:
-        from reports.figures.elastic.writing import written_elastic_figures
+        from reports.figures.elastic_figures import ELASTIC_FIGURES
 
         motion = solution.vibration
         course = drawn_course(motion, closely_sampled(motion.scene, motion.until_s))
-        return written_elastic_figures(course, folder)
+        return ELASTIC_FIGURES.written(course, folder)
 
     def page(self, solution: ElasticSolution) -> tuple[str, str]:
         from reports.requests.scene_report import elastic_page_of
@@ -217,6 +216,3 @@ class ReleasedElasticSolving(LetGo, ElasticSolving):
     def solution(self, scene: Scene, asked: Asked) -> ElasticSolution:
         self.refuse_forces(scene, asked)
         return super().solution(scene, asked)
-
-
-DRIVEN, LET_GO = ElasticSolving(), ReleasedElasticSolving()

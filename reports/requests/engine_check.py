@@ -10,8 +10,7 @@ from rich.console import Console
 
 from models.errors import CrankcheckError, suggestion
 from reports.contract.clauses import CLAUSES
-from reports.contract.ruling import SCENES, named, put_to_all, refuses_all
-from reports.contract.table import show
+from reports.contract.ruling import SCENES, named, put_to_all, refuses_all, show
 from reports.requests.options import Jobs, argument, option
 from reports.workers.isolated import checked_limits
 from reports.workers.progress import progress_bar

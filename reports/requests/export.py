@@ -13,20 +13,19 @@ from typing import Annotated
 from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
-from models.files import find_scene, load_scene
-from models.mjcf import build
-from models.mjcf_options import exact
+from models.files.reading import find_scene, load_scene
+from models.mjcf.document import build
+from models.mjcf.options import exact
 from reports.output.console import put, say
 from reports.output.write import check_file, write
 from reports.plan.free import under_control
 from reports.plan.steps import MOST_STEPS
 from reports.requests.options import SceneName, option, output_option
 from reports.way.way import way_of
-from sim.force_recipes import force_recipe
+from sim.offers import force_recipe, viewer
 from sim.registry import engine
 from sim.run import check_steps
 from sim.settings import profile_of, resolved
-from sim.viewing import viewer
 
 
 @dataclass(frozen=True)

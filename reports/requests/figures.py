@@ -14,8 +14,9 @@ from rich.console import Console
 from rich.progress import track
 
 from models.errors import CrankcheckError, suggestion
-from models.table_fields import NAME
-from reports.figures.all_figures import FIGURES, Drawing
+from models.files.schema import NAME
+from reports.figures.all_figures import FIGURES
+from reports.figures.drawing import Drawing
 from reports.figures.saving import FORMATS, saved
 from reports.figures.style import styled
 from reports.output.console import say_whole, tell
@@ -105,7 +106,7 @@ def _whole(report: Report, drawing: Drawing) -> Report | None:
     """What of a store a figure over all scenes shows: what was driven, where there is any."""
     if report.driven is not None:
         return report.driven if "driven" in drawing.drives else report
-    alike = len({(line.bends, line.drive == "free") for line in report.lines}) < 2
+    alike = len({line.way.name for line in report.lines}) < 2
     return report if alike and "let go" in drawing.drives else None
 
 
@@ -114,9 +115,8 @@ def _report_on(report: Report, drawing: Drawing, scene: str) -> Report | None:
     driven = report.driven
     if driven is not None and scene in driven.scenes and "driven" in drawing.drives:
         return driven
-    lines = {"elastic": report.elastic_lines, "let go": report.free_lines}
-    shown = (line for kind in drawing.drives for line in lines.get(kind, ()))
-    return report if any(line.scene == scene for line in shown) else None
+    kinds = {kind for line in report.lines_of(scene) for kind in line.way.kinds}
+    return report if kinds & {*drawing.drives} - {"driven"} else None
 
 
 def _chosen(asked: Sequence[str], names: Iterable[str], option: str, noun: str) -> list[str]:

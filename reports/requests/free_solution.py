@@ -15,10 +15,9 @@ from analytic.free.free_motion import FreeMotion
 from analytic.free.release import release
 from analytic.result import Selection
 from analytic.structure.mobility import analyse
-from models.array import Array
+from models.array import Array, samples
 from models.errors import CrankcheckError
 from models.motion import Bound, Motion
-from models.samples import samples
 from models.scene import Scene
 from reports.describe.facts import describe_law
 from reports.describe.frame import cleaned
@@ -174,14 +173,14 @@ class FreeSolving(LetGo):
         say(console, more, "dim")
 
     def figure_files(self) -> Sequence[str]:
-        from reports.figures.free.writing import free_figure_files
+        from reports.figures.free_figures import FREE_FIGURES
 
-        return free_figure_files()
+        return FREE_FIGURES.files
 
     def drawn(self, solution: FreeSolution, folder: Path) -> str:
-        from reports.figures.free.writing import written_free_figures
+        from reports.figures.free_figures import FREE_FIGURES, free_course
 
-        return written_free_figures(solution.free, folder)
+        return FREE_FIGURES.written(free_course(solution.free), folder)
 
     def page(self, solution: FreeSolution) -> tuple[str, str]:
         from reports.requests.scene_report import free_page_of
@@ -189,6 +188,3 @@ class FreeSolving(LetGo):
         lasts_s = solution.time_s[-1]
         words = f"the free motion of {solution.scene.name} over {lasts_s:g} s"
         return free_page_of(solution.free), words
-
-
-SOLVING = FreeSolving()

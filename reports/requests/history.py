@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
-from models.files import find_scenes
+from models.files.reading import find_scenes
 from reports.history.environments import EngineVersion, NotMeasuredError, ready, uv_here, wanted
 from reports.history.table import page, show, table_text
 from reports.history.verification import alone, cache_folder, kept, key_of, measure, place
@@ -24,8 +24,7 @@ from reports.plan.chosen import left_out_note
 from reports.requests.options import Duration, Jobs, StepS, StepsPerTurn, argument, option
 from reports.requests.verify import IN_FOLDER, VerifyRequest, plan
 from reports.results.changes.reading import scene_digests
-from reports.verify.footer import DRIVEN, FREE
-from reports.workers.programs import run_child
+from reports.workers.signals import run_child
 from sim.registry import ENGINES, engine
 
 FILES = ("history.csv", "history.md")
@@ -198,7 +197,7 @@ def _footer(
     names = " ".join(result.version for result in measured) or "none"
     facts = provenance({request.engine: names})
     lines = [
-        FREE if first.drive == "free" else DRIVEN,
+        first.way.units,
         f"{step}, {long}; settings are those of this crankcheck's profiles in every version.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),
     ]

@@ -9,12 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any, overload
 
 from rich.console import Console
 
-from analytic.free.loosened import loosened
+from analytic.free.free_motion import loosened
 from models.errors import CrankcheckError
-from models.files import find_scene, load_scene
-from models.one_or_more import names_in
+from models.files.inputs import names_in
+from models.files.reading import find_scene, load_scene
 from models.scene import Scene
-from reports.judge.tolerance import check_names, parse, refuse_of_other_motion
+from reports.judge.tolerance import (
+    check_names,
+    parse,
+    refuse_of_other_kinds,
+)
 from reports.logs.map_file import Map, read_map
 from reports.output.console import say_whole
 from reports.output.provenance import provenance
@@ -23,9 +27,8 @@ from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, judge_log
 from reports.own_log.log_kind import LogRequest
 from reports.own_log.log_limits import EVERY
-from reports.own_log.markdown import markdown
 from reports.own_log.rows import row_table
-from reports.own_log.table import show
+from reports.own_log.table import markdown, show
 from reports.plan.elastic import given_of
 from reports.plan.steps import positive
 from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
@@ -206,7 +209,7 @@ def judged(
         scene = scene_of_run(scene, log)
         _refuse_other_targets(scene, limits)
         _refuse_few_steps(scene, log)
-        every_name = way_of(scene).tolerances
+        every_name = way_of(scene).targets
         named = limits if every is None else {name: limits.get(name, every) for name in every_name}
         return verdict_of_run(scene, log, named)
     if free:
@@ -230,7 +233,7 @@ def judged(
 def _refuse_other_targets(scene: Scene, target: Mapping[str, float]) -> None:
     """Refuse targets of what the scene has not. Raises CrankcheckError."""
     of_some = [*target.keys() - {EVERY}]
-    refuse_of_other_motion("--target", of_some, [scene.is_free], bends=bool(scene.elastic))
+    refuse_of_other_kinds("--target", of_some, [way_of(scene).limits])
 
 
 def _refuse_few_steps(scene: Scene, run: Run) -> None:

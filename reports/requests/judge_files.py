@@ -13,8 +13,8 @@ from reports.output.junit import junit
 from reports.output.numbers import finite
 from reports.output.write import write
 from reports.own_log.judged import JudgedLog
-from reports.own_log.junit import suite
 from reports.own_log.rows import row_table
+from reports.own_log.table import suite
 
 
 def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
@@ -22,9 +22,12 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
 
     Raises CrankcheckError for a log that no map alone can mend.
     """
-    from reports.logs.blank_map import blank_map  # pandas, which takes a third of a second
     from reports.logs.columns import read_columns
-    from reports.logs.meanings import understood, wanted
+    from reports.logs.meanings import (
+        blank_map,  # pandas, which takes a third of a second
+        understood,
+        wanted,
+    )
 
     columns = read_columns(log, map_.layout, wanted(scene, map_))
     try:

@@ -10,17 +10,15 @@ from typing import Annotated, Any
 
 from rich.console import Console
 
-from analytic.circuits.circuits import Circuits, Position, circuits_of
-from analytic.circuits.dead_points import at_limit, dead_points
-from analytic.circuits.own_arc import own_arc
-from analytic.circuits.rotatability import Rotation, rotations
-from analytic.circuits.transmission import Extreme, transmissions
-from analytic.dyads.driven import driver_scale
-from analytic.mechanism.grashof_of_scene import grashof_of
+from analytic.circuits.arcs import own_arc
+from analytic.circuits.circuits import Circuits, Extreme, Position, circuits_of, transmissions
+from analytic.circuits.rotatability import Rotation, at_limit, dead_points, rotations
+from analytic.dyads.chunk import driver_scale
+from analytic.mechanism.fourbar import grashof_of
 from analytic.structure.mobility import analyse
-from models.driver_shown import driver_unit
+from models.driver import driver_unit
 from models.errors import CrankcheckError, StructureError, harmless, shown
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.output.console import plain_table, say, say_whole
 from reports.requests.options import SceneName, option

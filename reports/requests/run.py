@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Annotated, cast
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from models.files import find_scene
+from models.files.reading import find_scene
 from models.scene import Scene
-from reports.compare.free.kept_motion import released_state
+from reports.compare.free.free_truth import released_state
 from reports.output.console import say, say_whole
 from reports.output.frame_file import ENDINGS, write_frame
 from reports.output.write import check_file

@@ -10,7 +10,7 @@ from rich.text import Text
 from analytic.structure.groups import Bridge
 from analytic.structure.mobility import analyse
 from models.errors import StructureError
-from models.files import KINEMATICS, kinds, load_scene, shipped
+from models.files.reading import KINEMATICS, kinds, load_scene, shipped
 from models.scene import Scene
 from reports.describe.facts import describe_law
 from reports.output.console import plain_table

@@ -19,13 +19,10 @@ from reports.output.provenance import provenance
 from reports.output.write import Outputs
 from reports.plan.chosen import chosen_engines
 from reports.requests.options import Jobs, option, output_option
-from reports.selftest.all_faults import chosen_faults
-from reports.selftest.elastic_runs import BENDING
+from reports.selftest.all_faults import RUNS, chosen_faults
 from reports.selftest.fault import PROFILE, RunKind
-from reports.selftest.free_runs import FREE_RUNS
 from reports.selftest.table import place_row, show
 from reports.selftest.trial import (
-    STEPS,
     Passed,
     Verdict,
     healthy,
@@ -78,7 +75,7 @@ class SelftestRequest:
             for each in dict.fromkeys(fault.kind for fault in faults)
             for scene, name in sites([f for f in faults if f.kind == each], engines)
         ]
-        passed = [] if self.faults or self.forces else passed_by(engines, kind)
+        passed = [] if self.faults else passed_by(engines, kind)
         facts = provenance({name: engine(name).version() for name in engines})
         rows = [place_row(one, place) for one in verdicts for place in one.places]
         contents = {
@@ -105,13 +102,8 @@ def _kind(request: SelftestRequest) -> RunKind:
 def _settings(verdicts: Sequence[Verdict]) -> dict[str, object]:
     """How long the runs are, and at which step; free ones by their scene."""
     kinds = {one.fault.kind for one in verdicts}
-    turn = {"steps_per_turn": STEPS, "turns": 1} if kinds - {"free", *BENDING} else {}
-    runs = {scene: {"dt_s": dt_s, "steps": steps} for scene, (dt_s, steps) in FREE_RUNS.items()}
-    own: dict[RunKind, object] = {"free": runs}
-    own |= {
-        kind: {scene: vars(each) for scene, each in bent.items()} for kind, bent in BENDING.items()
-    }
-    return {"profile": PROFILE, **turn, **{kind: own[kind] for kind in own if kind in kinds}}
+    own = (runs.settings.items() for kind, runs in RUNS.items() if kind in kinds)
+    return {"profile": PROFILE, **{name: value for items in own for name, value in items}}
 
 
 def _json(

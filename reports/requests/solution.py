@@ -14,7 +14,7 @@ from analytic.forces.efficiency import Efficiency, efficiency
 from analytic.mechanism.cycle import Along
 from analytic.structure.groups import Bridge
 from analytic.structure.mobility import Structure, analyse
-from models.driver_course import driver_place
+from models.driver import driver_place
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene

@@ -17,7 +17,7 @@ from analytic.mechanism.cycle import Along
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError, suggestion
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from models.laws import MOST_TURNS
 from models.motion import Motion
 from models.scene import Scene
@@ -234,14 +234,15 @@ class DrivenSolving(Solving):
         show_solution(console, solution, few, more=more, along=along, clockwise=request.clockwise)
 
     def figure_files(self) -> Sequence[str]:
-        from reports.figures.forces.writing import figure_files
+        from reports.figures.force_figures import FORCE_FIGURES
 
-        return figure_files()
+        return FORCE_FIGURES.files
 
     def drawn(self, solution: Solution, folder: Path) -> str:
-        from reports.figures.forces.writing import written_figures
+        from reports.figures.force_figures import FORCE_FIGURES
+        from reports.figures.force_turn import force_turn
 
-        return written_figures(solution.scene, folder)
+        return FORCE_FIGURES.written(force_turn(solution.scene), folder)
 
     def page(self, solution: Solution) -> tuple[str, str]:
         from reports.requests.scene_report import page_of
@@ -283,6 +284,3 @@ def _along(scene: Scene, text: str) -> Along:
     if point not in points:
         raise CrankcheckError(f"--along {text}: {suggestion(point, points, 'the points are')}")
     return Along(point, math.radians(direction_deg))
-
-
-SOLVING = DrivenSolving()

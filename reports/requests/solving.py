@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from rich.console import Console
 
 from models.array import Array
-from models.controlled import Controlled
+from models.driver import Controlled
 from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.laws import ConstantSpeed, Oscillating
@@ -30,7 +30,7 @@ from reports.way.way import way_of
 
 if TYPE_CHECKING:
     from analytic.elastic.discretisation import Discretisation
-    from analytic.elastic.sampled import ElasticHistory
+    from analytic.elastic.elastic_motion import ElasticHistory
 
 
 MOST_MODES, MOST_ELEMENTS = 20, 12
@@ -122,7 +122,7 @@ class ElasticChoice:
 
         Raises CrankcheckError for what can not be asked, and what it does not allow.
         """
-        from analytic.elastic.elastic_history import elastic_history
+        from analytic.elastic.control import elastic_history
 
         stiffened = not is_true(self.linear, "--linear")
         by, start = self.discretisation(scene), self.start(scene)
@@ -236,7 +236,7 @@ class Solving(ABC):
 
 def solving_of(scene: Scene) -> Solving:
     """How a scene is solved."""
-    return cast(Solving, way_of(scene).solving)
+    return cast(Solving, way_of(scene).part("solving"))
 
 
 def refuse_samples(request: SolveOptions) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -21,12 +21,13 @@ from reports.output.write import Outputs
 from reports.plan.chosen import PROFILES, chosen_engines, chosen_profiles
 from reports.plan.singular import silent_note
 from reports.requests.options import Engines, Forces, Jobs, argument, option, output_option
+from reports.stability.all_cases import CATALOGUE
 from reports.stability.case import Case
-from reports.stability.catalogue import CATALOGUE
 from reports.stability.critical import command
 from reports.stability.matrix import FILE, Matrix, read_matrix, run_rows, to_json
 from reports.stability.running import CaseLine, run_lines, run_one
 from reports.stability.table import show, show_run
+from reports.way.way import WAYS, way
 from reports.workers.isolated import Limits, checked_limits
 from reports.workers.progress import progress_bar
 from sim.registry import engine
@@ -60,7 +61,7 @@ class StabilityRequest:
             An unknown case, engine or profile, a value that has no reference, or a folder that can
             not be written.
         """
-        cases = _cases(self.cases, free=self.free, elastic=self.elastic)
+        cases = _cases(self.cases, {"free": self.free, "elastic": self.elastic})
         engines = chosen_engines(self.engines)
         profiles = [name for name, _ in chosen_profiles(self.profiles or PROFILES, engines)]
         limits = checked_limits(self.limit_s, self.memory_gb)
@@ -92,25 +93,23 @@ class StabilityRequest:
         return 0
 
 
-def _cases(names: Sequence[str], *, free: bool, elastic: bool) -> list[Case]:
-    """The named cases, or all: those that are let go with ``free``, those of ``elastic`` links, or
-    those that are driven and rigid."""
-    asked = [kind for kind, wanted in zip(KINDS, (free, elastic), strict=True) if wanted]
-    if len(asked) > 1:
-        raise CrankcheckError("--free with --elastic: no case is of both; ask for one of them")
+def _cases(names: Sequence[str], asked: Mapping[str, bool]) -> list[Case]:
+    """The named cases, or all of the way that is asked for, or those that are driven and rigid."""
+    kinds = [kind for kind, given in asked.items() if given]
+    if len(kinds) > 1:
+        both = " with ".join(f"--{kind}" for kind in kinds)
+        raise CrankcheckError(f"{both}: no case is of both; ask for one of them")
     for name in names:
         if name not in CATALOGUE:
             raise CrankcheckError(f"case {name!r}: unknown; {suggestion(name, CATALOGUE, 'use')}")
-    for kind in asked:
-        those = [name for name, case in CATALOGUE.items() if getattr(case, kind)]
-        for name in (each for each in names if each not in those):
+    for kind in kinds:
+        known = [name for name, case in CATALOGUE.items() if case.way == kind]
+        if others := [name for name in names if name not in known]:
             raise CrankcheckError(
-                f"--{kind} and {name}: no {KINDS[kind]}; those are {', '.join(those)}"
+                f"--{kind} and {others[0]}: {way(kind).no_case}; those are {', '.join(known)}"
             )
-    own = {kind: kind in asked for kind in KINDS}
-    every = (
-        name for name, case in CATALOGUE.items() if {k: getattr(case, k) for k in KINDS} == own
-    )
+    own = next(iter(kinds), WAYS[-1])
+    every = (name for name, case in CATALOGUE.items() if case.way == own)
     return [CATALOGUE[name] for name in dict.fromkeys(names or every)]
 
 

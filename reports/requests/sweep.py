@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from rich.console import Console
 
 from models.errors import CrankcheckError, shown
-from models.one_or_more import names_in
+from models.files.inputs import names_in
 from reports.output.console import say_whole
 from reports.plan.chosen import left_out_note
 from reports.plan.chosen_study import (

@@ -10,8 +10,8 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from models.errors import CrankcheckError
-from models.files import every_shipped, load_scene
-from models.scene_text import scene_text
+from models.files.assemble import scene_text
+from models.files.reading import every_shipped, load_scene
 from reports.plan.chosen_study import (
     Overrides,
     StudyChoice,

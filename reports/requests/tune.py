@@ -16,7 +16,7 @@ from rich.text import Text
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
-from models.files import find_scenes, read_text
+from models.files.reading import find_scenes, read_text
 from reports.judge.three_steps import AT_ROUNDING
 from reports.output.console import say_whole
 from reports.output.provenance import crankcheck_version, provenance
@@ -33,10 +33,9 @@ from reports.workers.isolated import Limits
 from reports.workers.progress import progress_bar
 from reports.workers.signals import Stopped
 from sim.engine import Settings
+from sim.offers import SearchSpace, search_space, snippet
 from sim.registry import engine, offering
 from sim.settings import profile_of, resolved
-from sim.snippets import snippet
-from sim.tuning import SearchSpace, search_space
 
 PROFILE = "tuned"
 """The profile that is searched around, and compared with."""

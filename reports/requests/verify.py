@@ -13,16 +13,15 @@ from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
-from models.files import find_scenes
+from models.files.reading import find_scenes
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked
-from reports.judge.frames import cell_frame, error_frame
-from reports.judge.rows import cell_row
+from reports.judge.rows import cell_frame, cell_row, error_frame
 from reports.judge.tolerance import (
     check_names,
     parse,
     refuse_forces_unasked,
-    refuse_of_other_motion,
+    refuse_of_other_kinds,
 )
 from reports.output.console import say_whole, tell
 from reports.output.frame_file import csv, parquet
@@ -46,9 +45,8 @@ from reports.plan.free import (
 )
 from reports.plan.singular import gives_forces, silent_note
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions, refuse_of_models
-from reports.verify.all_cells import check_all
-from reports.verify.junit import suite
-from reports.verify.table import show
+from reports.verify.advised import check_all
+from reports.verify.table import show, suite
 from reports.way.length import Length
 from reports.way.way import driven_by, laid_out, way_of
 from sim.engine import Drive
@@ -123,9 +121,7 @@ def plan(request: VerifyOptions) -> list[Cell]:
         refuse_forces_unasked("--tol", tolerance)
     scenes = _scenes(request)
     _refuse_options(request, scenes)
-    bends = any(scene.elastic for scene in scenes)
-    free = [scene.is_free for scene in scenes]
-    refuse_of_other_motion("--tol", tolerance, free, bends=bends)
+    refuse_of_other_kinds("--tol", tolerance, (way_of(scene).limits for scene in scenes))
     engines = chosen_engines(request.engines)
     profiles = chosen_profiles(request.profiles, engines)
     given = given_of(scenes, request.segments, request.springs)

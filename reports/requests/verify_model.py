@@ -13,20 +13,18 @@ from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
-from models.scene_text import scene_text
-from reports.judge.frames import cell_frame, error_frame
+from models.files.assemble import scene_text
+from reports.judge.rows import cell_frame, error_frame
 from reports.judge.tolerance import parse
 from reports.output.frame_file import csv, parquet
 from reports.output.junit import junit
 from reports.output.provenance import provenance
 from reports.output.write import Outputs, check_file
 from reports.own_model.account import read
-from reports.own_model.document import document
-from reports.own_model.judged import JudgedModel
-from reports.own_model.request import ModelRequest
-from reports.own_model.running import run_lines
+from reports.own_model.assembly import ModelRequest
+from reports.own_model.judged import JudgedModel, run_lines
 from reports.own_model.sentences import is_diff, recommended_head
-from reports.own_model.table import show
+from reports.own_model.table import document, show
 from reports.plan.steps import TURNS, positive
 from reports.requests.arguments import (
     is_true,
@@ -39,7 +37,7 @@ from reports.requests.arguments import (
 from reports.requests.options import given
 from reports.requests.shown import Shown
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions
-from reports.verify.junit import suite
+from reports.verify.table import suite
 from reports.workers.isolated import LIMIT_S, MEMORY_GB, checked_limits
 from sim.own_models import reading_engine
 from sim.registry import engine

@@ -6,11 +6,15 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import cast
 
 import pandas as pd
 
 from reports.results.cost import mean
-from reports.results.lines import Line, called, numbers, turn_of
+from reports.results.lines import Line, called, numbers
+from reports.results.result_kind import ResultKind
+from reports.way.clock import clock_of
+from reports.way.way import WAYS, Way, way
 from sim.engine import Drive, SettingValue
 
 NOT_RUN = "not run"
@@ -21,9 +25,9 @@ class Candidate:
     """Settings that may be recommended, with what was measured of them.
 
     ``errors`` are place errors by scene [pure] of the runs that ended well, or those of deflections
-    where links ``bend``; ``faults`` say why a scene has none. ``us_per_step`` and ``s_per_turn``
-    are geometric means over the scenes, in which each counts the same however slow it is; NaN where
-    a scene was not timed.
+    where links bend, as its ``way`` says; ``faults`` say why a scene has none. ``us_per_step`` and
+    ``s_per_turn`` are geometric means over the scenes, in which each counts the same however slow
+    it is; NaN where a scene was not timed.
     """
 
     engine: str
@@ -36,7 +40,12 @@ class Candidate:
     faults: Mapping[str, str] = field(repr=False)
     us_per_step: float
     s_per_turn: float
-    bends: bool = False
+    way: Way | None = None
+
+    @property
+    def kind(self) -> ResultKind:
+        """What is said of such cells."""
+        return cast(ResultKind, (self.way or way(WAYS[-1])).part("results"))
 
     @property
     def scenes(self) -> int:
@@ -51,7 +60,7 @@ class Candidate:
     @property
     def steps_told(self) -> str:
         """Its step in words."""
-        return f"{self.steps_per_turn:g} steps a {turn_of(self.drive)}"
+        return f"{self.steps_per_turn:g} steps a {clock_of(self.drive).name}"
 
     @property
     def worst_scene(self) -> str | None:
@@ -130,7 +139,7 @@ def _each_step(group: Mapping[str, Line], scenes: Sequence[str]) -> list[Candida
                 faults={scene: fault for scene, fault in faults.items() if fault},
                 us_per_step=mean(float(row["us_per_step"]) for row in complete),
                 s_per_turn=mean(float(row["s_per_turn"]) for row in complete),
-                bends=first.bends,
+                way=first.way,
             )
         )
     return every

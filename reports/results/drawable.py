@@ -10,12 +10,6 @@ import pandas as pd
 
 from reports.results.lines import Line
 
-PLACE = "largest error: angle [rad], place / L [-]"
-"""The error that all diagrams speak of; L is the longest link."""
-PLACE_FREE = "largest error / sensitivity: angle [rad], place / L [-]"
-"""That of what was let go."""
-PLACE_ELASTIC = "largest error of deflection / largest deflection [-]"
-"""That of elastic links."""
 WORDS = {
     "grows": "grows as the step shrinks",
     "irregular": "no order",

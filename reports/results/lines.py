@@ -6,7 +6,8 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import cast
+from functools import cached_property
+from typing import Any, cast
 
 import pandas as pd
 from pydantic import ValidationError
@@ -18,8 +19,11 @@ from reports.quantities import QUANTITIES
 from reports.results.fits.line import LineFit, fit_line
 from reports.results.fits.words import words
 from reports.results.one_processor import comparable
+from reports.results.result_kind import ResultKind
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
+from reports.way.clock import clock_of
+from reports.way.way import Way, way_of_row
 from sim.engine import Drive, SettingValue
 
 
@@ -47,10 +51,15 @@ class Line:
         """The variant as a sentence calls it, without the engine."""
         return called(self.variant, self.drive)
 
+    @cached_property
+    def way(self) -> Way:
+        """How its cells were run and compared."""
+        return way_of_row(self.cells.iloc[0].to_dict())
+
     @property
-    def bends(self) -> bool:
-        """Whether links bend, and its error is that of the deflection, over the largest."""
-        return has_bent(self.cells)
+    def kind(self) -> ResultKind:
+        """What is said of its cells."""
+        return cast(ResultKind, self.way.part("results"))
 
     @property
     def lasts_s(self) -> float:
@@ -62,11 +71,6 @@ class Line:
         """The period of the driver [s]; a second of what is let go."""
         first = self.cells.iloc[0]
         return float(first["dt_s"] * first["steps_per_turn"])
-
-
-def has_bent(cells: pd.DataFrame) -> bool:
-    """Whether there is a cell whose links bend."""
-    return "segments" in cells and bool(cells["segments"].notna().any())
 
 
 Named = tuple[str, str, Drive]
@@ -81,11 +85,6 @@ def named(line: Line) -> Named:
 def called(variant: str, drive: Drive) -> str:
     """A variant by its name, and its drive where that is not the usual one."""
     return variant if drive == "prescribed" else f"{variant}, {drive} drive"
-
-
-def turn_of(drive: Drive) -> str:
-    """What steps and costs are counted over: what is let go has no turns."""
-    return "second" if drive == "free" else "turn"
 
 
 def lines(stored: Stored, quantity: str = "place_pure") -> tuple[Line, ...]:
@@ -165,15 +164,17 @@ def _line(rows: pd.DataFrame, quantity: str) -> Line:
         fit=fit,
         words=words(
             fit,
-            "/ D" if quantity == "place_pure" and has_bent(rows) else _unit(quantity),
+            _unit(quantity, first.to_dict()),
             float(first["dt_s"] * first["steps_per_turn"]),
-            turn_of(cast(Drive, str(first["drive"]))),
+            clock_of(str(first["drive"])).name,
         ),
     )
 
 
-def _unit(quantity: str) -> str:
-    """The unit of a column of errors."""
+def _unit(quantity: str, row: Mapping[Any, Any]) -> str:
+    """The unit of a column of errors, of such cells."""
+    if quantity == "place_pure":
+        return cast(ResultKind, way_of_row(row).part("results")).unit
     if quantity.endswith("_pure"):
         names = [n for n in QUANTITIES if quantity.startswith(f"{n.replace('-', '_')}_")]
         return QUANTITIES[names[0]].share if names else "rad"

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from reports.results.lines import Line, Named, called, named
+from reports.way.clock import SECONDS, common_clock
 
 FAMILY = 4
 """Colours in a family; the style sheet has three families: cool, warm, and green with grey."""
@@ -43,7 +44,7 @@ def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
     """A look for every engine, variant and drive, in the order of the lines; where all were let go
     the drive needs no word."""
     lines = tuple(lines)
-    free = all(line.drive == "free" for line in lines)
+    bare = common_clock(line.drive for line in lines) is SECONDS
     every: dict[Named, Look] = {}
     engines: dict[str, int] = {}
     for line in lines:
@@ -54,7 +55,7 @@ def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
         every[named(line)] = Look(
             number=len(every),
             engine=line.engine,
-            variant=line.variant if free else called(line.variant, line.drive),
+            variant=line.variant if bare else called(line.variant, line.drive),
             version=line.version,
             colour=family % FAMILIES * FAMILY + place % FAMILY,
             symbol=SYMBOLS[family % len(SYMBOLS)],

@@ -9,6 +9,7 @@ from reports.results.lines import Line, named
 from reports.results.one_processor import machine
 from reports.results.overview import Report
 from reports.results.settings_text import OWN
+from reports.way.clock import SECONDS, TURNS, common_clock
 
 SHOWN = 10
 """Variants whose settings a figure tells; Markdown and the page tell all of them."""
@@ -33,19 +34,31 @@ def versions(report: Report, lines: Sequence[Line]) -> str:
 
 def study(lines: Sequence[Line]) -> str:
     """The size of the grid that the lines are of."""
+    return _STUDIES[common_clock(line.drive for line in lines)](lines)
+
+
+def _where(lines: Sequence[Line]) -> str:
+    """The scenes and variants."""
     scenes = dict.fromkeys(line.scene for line in lines)
     where = next(iter(scenes)) if len(scenes) == 1 else count(len(scenes), "scene")
-    variants = count(len({named(line) for line in lines}), "variant")
+    return f"Study: {where}, {count(len({named(line) for line in lines}), 'variant')}"
+
+
+def _in_turns(lines: Sequence[Line]) -> str:
     steps = sorted({float(n) for line in lines for n in line.cells["steps_per_turn"]})
     turns = sorted({float(n) for line in lines for n in line.cells["turns"]})
-    if all(line.drive == "free" for line in lines):
-        dts = sorted({float(dt) for line in lines for dt in line.cells["dt_s"]}, reverse=True)
-        lasts = listed([duration(s) for s in sorted({line.lasts_s for line in lines})])
-        each = listed([duration(dt) for dt in dts])
-        return f"Study: {where}, {variants}, let go for {lasts}, dt {each}"
     to = f"{steps[0]:g}" + (f" to {steps[-1]:g}" if len(steps) > 1 else "")
     long = ", ".join(f"{n:g}" for n in turns) + (" turn" if turns == [1.0] else " turns")
-    return f"Study: {where}, {variants}, {to} steps per turn, {long}"
+    return f"{_where(lines)}, {to} steps per turn, {long}"
+
+
+def _in_seconds(lines: Sequence[Line]) -> str:
+    dts = sorted({float(dt) for line in lines for dt in line.cells["dt_s"]}, reverse=True)
+    lasts = listed([duration(s) for s in sorted({line.lasts_s for line in lines})])
+    return f"{_where(lines)}, let go for {lasts}, dt {listed([duration(dt) for dt in dts])}"
+
+
+_STUDIES = {TURNS: _in_turns, SECONDS: _in_seconds}
 
 
 def made(report: Report, timed: bool) -> str:

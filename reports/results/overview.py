@@ -8,18 +8,21 @@ from functools import cached_property
 
 import pandas as pd
 
-from analytic.free.loosened import loosened
+from analytic.free.free_motion import loosened
 from models.errors import CrankcheckError
-from models.files import parse_scene
+from models.files.reading import parse_scene
 from models.scene import Scene
 from reports.plan.free import under_control
 from reports.results.candidates import Candidate, candidates
 from reports.results.cost import Costs, costs_of, noise
-from reports.results.lines import Line, Named, has_bent, lines, named
+from reports.results.lines import Line, Named, lines, named
 from reports.results.looks import Look, looks
-from reports.results.recommend import TARGETS, Recommendation, recommendations
+from reports.results.recommend import Recommendation, recommendations
+from reports.results.result_kind import TARGETS
 from reports.results.settings_text import settings_told
 from reports.store.reader import Stored
+from reports.way.clock import TURNS, clock_of
+from reports.way.way import WAYS, way_of_row
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,7 @@ class Report:
         names = dict.fromkeys(line.scene for line in self.lines)
         texts = self.stored.manifest.scenes
         found = {name: _parsed(texts.get(name), name) for name in names}
-        driven = {line.scene for line in self.lines if line.drive != "free"}
+        driven = {line.scene for line in self.lines if clock_of(line.drive) is TURNS}
         return {
             name: scene if scene is None or name in driven else loosened(under_control(scene))
             for name, scene in found.items()
@@ -94,9 +97,9 @@ class Report:
         """What was driven alone and has rigid links: turns, and errors of place; None where
         everything was let go or bends."""
         cells = self.stored.cells
-        other = cells["drive"] == "free"
-        if has_bent(cells):
-            other |= cells["segments"].notna()
+        rows = cells.drop_duplicates("line").to_dict("records")
+        names = {row["line"]: way_of_row(row).name for row in rows}
+        other = cells["line"].map(names) != WAYS[-1]
         if not other.any():
             return self
         if other.all():
@@ -104,15 +107,9 @@ class Report:
         own = cells[~other].reset_index(drop=True)
         return DrivenReport(replace(self.stored, cells=own), whole=self)
 
-    @cached_property
-    def free_lines(self) -> tuple[Line, ...]:
-        """The lines that were let go."""
-        return tuple(line for line in self.lines if line.drive == "free")
-
-    @cached_property
-    def elastic_lines(self) -> tuple[Line, ...]:
-        """The lines whose links bend."""
-        return tuple(line for line in self.lines if line.bends)
+    def of_kind(self, kind: str) -> tuple[Line, ...]:
+        """The lines of a kind (`reports.way.way.Way.kinds`)."""
+        return tuple(line for line in self.lines if kind in line.way.kinds)
 
     def look(self, line: Line) -> Look:
         """How a line is drawn."""

@@ -12,19 +12,10 @@ from reports.results.cost import equal, noise, reached
 from reports.results.lines import Line, lines
 from reports.results.why_not import broken, nearest, nothing
 from reports.store.reader import Stored
+from reports.way.clock import clock_of
+from reports.way.way import WAYS
+from sim.offers import PERIOD_S, snippet
 from sim.registry import offering
-from sim.snippets import PERIOD_S, snippet
-
-TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
-"""Errors of place [rad, or of the longest link]."""
-ELASTIC_TARGETS = (1e-1, 1e-2, 1e-3)
-"""Errors of deflections, of the largest: nearer to the beam comes no chain that is run."""
-SEGMENTS = (
-    "Each elastic link is so many rigid segments, with a spring of rate EI n / l in every pin "
-    "between them. Whatever the speed, the step times their highest frequency stays below 1.5."
-)
-KINDS = ((False, False), (False, True), (True, False), (True, True))
-"""Whether links bend, and whether it was let go: errors of each are told apart."""
 
 
 @dataclass(frozen=True)
@@ -56,28 +47,20 @@ class Recommendation:
             return ""
         scenes = "the scene" if best.scenes == 1 else f"each of {best.scenes} scenes"
         head = (
-            f"{best.engine} {', '.join(best.versions)}, {best.variant}: {_promise(best)} within "
+            f"{best.engine} {', '.join(best.versions)}, {best.variant}: {best.kind.promise} within "
             f"{self.target:g} on {scenes}; at worst {short(best.worst_error)}, on "
             f"{best.worst_scene}.",
-            *([SEGMENTS] if best.bends else []),
+            *best.kind.notes,
             *([f"Caution: {self.caution}."] if self.caution else []),
         )
-        period_s = 1.0 if best.drive == "free" else period_s
+        period_s = clock_of(best.drive).period_s(period_s)
         return snippet(
             best.engine, best.settings, best.steps_per_turn, period_s, drive=best.drive, head=head
         )
 
 
-def _promise(best: Candidate) -> str:
-    """What the error of a candidate is of, and its unit."""
-    if best.bends:
-        return "deflection (of the largest)"
-    over = " over the sensitivity" if best.drive == "free" else ""
-    return f"place{over} (rad, or of the longest link)"
-
-
 def recommendations(
-    stored: Stored, targets: Sequence[float] = TARGETS
+    stored: Stored, targets: Sequence[float] | None = None
 ) -> tuple[Recommendation, ...]:
     """One for each engine and target, of what was driven, of what was let go, and of both with
     elastic links, which have targets of their own.
@@ -90,9 +73,10 @@ def recommendations(
     within = noise(stored)
     every = lines(stored)
     chosen: list[Recommendation] = []
-    for bends, free in KINDS:
-        own = [line for line in every if (line.bends, line.drive == "free") == (bends, free)]
-        chosen += _of_lines(own, ELASTIC_TARGETS if bends else targets, within)
+    for name in reversed(WAYS):
+        own = [line for line in every if line.way.name == name]
+        if own:
+            chosen += _of_lines(own, targets or own[0].kind.targets, within)
     return tuple(chosen)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import cast
 
 from rich.console import Group, RenderableType
 from rich.markup import escape
@@ -12,10 +13,13 @@ from rich.text import Text
 from reports.output.console import plain_table
 from reports.output.numbers import short
 from reports.results.cost import SHARE, noise, pairs
-from reports.results.lines import called, turn_of
+from reports.results.lines import called
 from reports.results.one_processor import left_out, machine
 from reports.results.recommend import Recommendation
+from reports.results.result_kind import ResultKind
 from reports.store.reader import Stored
+from reports.way.clock import clock_of
+from reports.way.way import WAYS, way
 
 WIDE = 90
 """Columns of a terminal that have room for the scene of the worst error in a column of its own."""
@@ -26,22 +30,26 @@ def recommendation_table(
 ) -> RenderableType:
     """The cheapest settings for each target and engine, with what is to be said of them below: a
     table each of what was driven, of what was let go, and of elastic links."""
-    kinds = dict.fromkeys((one.best.bends, one.best.drive == "free") for one in recommendations)
+    kinds = dict.fromkeys(_kind(one) for one in recommendations)
     tables: list[RenderableType] = []
     for kind in kinds:
-        own = [one for one in recommendations if (one.best.bends, one.best.drive == "free") == kind]
+        own = [one for one in recommendations if _kind(one) == kind]
         tables += ["", _table(own, width)]
     return Group(*tables[1:]) if tables else _table(recommendations, width)
+
+
+def _kind(one: Recommendation) -> tuple[ResultKind, str]:
+    return one.best.kind, clock_of(one.best.drive).name
 
 
 def _table(recommendations: Sequence[Recommendation], width: int) -> RenderableType:
     """What was driven, or what was let go, with rigid links or elastic ones."""
     wide = width >= WIDE
-    bends = any(one.best.bends for one in recommendations)
-    what = "deflection within a target of the beam's" if bends else "scene within a target"
-    table = plain_table(f"cheapest settings that keep every {what}")
-    turn = turn_of(recommendations[0].best.drive) if recommendations else "turn"
-    table.add_column("target\n/ D" if bends else "target\nrad", no_wrap=True, justify="right")
+    best = recommendations[0].best if recommendations else None
+    kind = best.kind if best else cast(ResultKind, way(WAYS[-1]).part("results"))
+    table = plain_table(f"cheapest settings that keep every {kind.kept}")
+    turn = clock_of(best.drive if best else "").name
+    table.add_column(kind.head, no_wrap=True, justify="right")
     table.add_column("engine", no_wrap=True)
     table.add_column("settings", overflow="fold", min_width=10)
     for head in (f"steps\na {turn}", "us per\nstep", f"ms per\n{turn}", "worst\nerror"):

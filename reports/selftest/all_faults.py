@@ -3,67 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import cast
 
 from models.errors import CrankcheckError, suggestion
-from reports.selftest import (
-    beams,
-    clock,
-    dynamics,
-    elastic,
-    elastic_released,
-    engines,
-    forces,
-    handed_back,
-    mechanism,
-    misplaced,
-    missing,
-    record,
-    requests,
-    stepping,
-    values,
-)
 from reports.selftest.fault import Fault, RunKind
+from reports.selftest.fault_runs import FaultRuns, FaultSet
+from reports.way.way import WAYS, way
 
+_SETS = [cast(FaultSet, way(name).own_part("faults", FaultSet((), {}))) for name in reversed(WAYS)]
+RUNS: dict[RunKind, FaultRuns] = {kind: runs for each in _SETS for kind, runs in each.runs.items()}
+"""By kind."""
+GROUPS = {group: title for runs in RUNS.values() for group, title in runs.groups.items()}
+_KINDS = {group: kind for kind, runs in RUNS.items() for group in runs.groups}
 FAULTS: dict[str, Fault] = {
-    fault.name: fault
-    for module in (
-        requests,
-        handed_back,
-        mechanism,
-        engines,
-        clock,
-        values,
-        misplaced,
-        missing,
-        forces,
-        dynamics,
-        stepping,
-        record,
-        elastic,
-        beams,
-        elastic_released,
-    )
-    for fault in module.FAULTS
+    fault.name: replace(fault, kind=_KINDS[fault.group]) for each in _SETS for fault in each.faults
 }
 """To add a fault, add it to the module of its group."""
-GROUPS = {
-    "request": "another run than was asked for",
-    "reference": "numbers that are the reference's",
-    "scene": "another mechanism in the engine",
-    "engine": "something wrong inside the engine",
-    "clock": "another instant than the log says",
-    "log": "wrong numbers in the log",
-    "misplaced": "numbers of the log in a wrong place",
-    "missing": "something missing from the log",
-    "force": "a right motion with wrong forces",
-    "dynamics": "let go, as another machine",
-    "stepping": "let go, and spoilt inside the engine",
-    "record": "let go, and wrong in the log",
-    "segments": "elastic links, as another chain",
-    "vibration": "elastic links, spoilt in the engine",
-    "deflection": "elastic links, wrong in the log",
-    "beam": "elastic links, as an engine's own beam",
-}
 
 
 def chosen_faults(
@@ -88,7 +44,7 @@ def chosen_faults(
                 f"--fault {name}: it can be planted in {able} only; "
                 f"found --engine {', '.join(sorted(chosen))}"
             )
-    kinds = (kind, "beam") if kind == "elastic" else (kind,)
+    kinds = (kind, *RUNS[kind].also)
     every = [name for name, fault in FAULTS.items() if fault.kind in kinds]
     order = dict.fromkeys(names or every)
     return [FAULTS[name] for name in order if any(map(FAULTS[name].possible, chosen))]

@@ -6,10 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from analytic.elastic.node_start import node_start
-from models.beamed import BeamedScene
-from models.beams import Beam
-from models.elastic import Shape
+from analytic.elastic.engine_start import node_start
+from models.cut_scenes import BeamedScene
+from models.elastic import Beam, Shape
 from models.motion import State
 from models.scene import Scene
 from reports.judge.cell import CellRunner

@@ -6,13 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, lru_cache
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.compare.elastic.elastic_truth import ChainTruth, ElasticTruth
 from reports.judge.cell import Cell
-from reports.selftest.fault import PROFILE, Items, RunKind
+from reports.selftest.fault import PROFILE, Items
 from reports.way.length import Springs
-from sim.engine import Drive, Run
+from reports.way.way import way_of
+from sim.engine import Run
 from sim.run import run
 
 BENT, LOOSE = "fourbar-elastic", "fourbar-elastic-pulse"
@@ -50,9 +51,6 @@ BEAM_RUNS: dict[str, ElasticRun] = {BENT: ElasticRun(8, 2880, "beam")}
 doubt."""
 
 
-BENDING: Mapping[RunKind, Mapping[str, ElasticRun]] = {"elastic": ELASTIC_RUNS, "beam": BEAM_RUNS}
-
-
 @cache
 def _once(name: str) -> Scene:
     """The elastic scene of that name, read once."""
@@ -66,14 +64,13 @@ def elastic_cell(
     scene, own = _once(name), runs[name]
     steps = round(own.steps * finer)
     dt_s = (own.lasts_s or scene.driver.law.period_s) / steps
-    drive: Drive = "free" if scene.is_free else "prescribed"
     return Cell(
         scene,
         engine,
         PROFILE,
         dt_s,
         steps,
-        drive=drive,
+        drive=way_of(scene).drive,
         converge=False,
         segments=own.segments,
         springs=own.springs,

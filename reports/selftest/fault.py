@@ -6,18 +6,18 @@ in it. A size of 0 goes the same way and changes nothing, which must not be noti
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from analytic.kinematics import solve
 from models.scene import Same, Scene
-from reports.compare.beside import truth_of
-from reports.compare.free.free_truth import free_truth
 from reports.judge.cell import CellRunner
+from reports.way.length import Planned
+from reports.way.way import way_of
 from sim.engine import Run, Session, Settings
 from sim.registry import available, engine, offering
 from sim.run import run
@@ -31,40 +31,10 @@ REFUSED = "the engine does not hold"
 """What `sim.check` says where the model in the engine is not the scene."""
 Plant = Callable[[float], CellRunner]
 Items = tuple[tuple[str, Any], ...]
-FaultGroup = Literal[
-    "request",
-    "reference",
-    "scene",
-    "engine",
-    "clock",
-    "log",
-    "misplaced",
-    "missing",
-    "force",
-    "dynamics",
-    "stepping",
-    "record",
-    "segments",
-    "vibration",
-    "deflection",
-    "beam",
-]
-RunKind = Literal["motion", "forces", "free", "elastic", "beam"]
-"""What the runs are that faults are planted in: driven ones, the same with their forces, of a
-mechanism that was let go, or of one whose links bend, as segments or as an engine's own beam."""
+RunKind = str
+"""What the runs are that faults are planted in, by name (`FaultRuns`)."""
 INSIDE = ("engine", "stepping", "vibration")
 """The groups of what goes wrong inside an engine."""
-KINDS: Mapping[str, RunKind] = {
-    "force": "forces",
-    "dynamics": "free",
-    "stepping": "free",
-    "record": "free",
-    "segments": "elastic",
-    "vibration": "elastic",
-    "deflection": "elastic",
-    "beam": "beam",
-}
-"""By group, where it is not motion."""
 
 
 @dataclass(frozen=True)
@@ -76,9 +46,10 @@ class Fault:
     with the words ``says`` in what it says. ``scenes`` are where it is planted; ``needs`` says
     of an engine whether it can have it. A ``finer`` fault needs runs at half and a quarter of the
     step to be seen. ``settings`` are those that its cell asks an engine for, on top of the profile.
+    ``kind`` is that of its runs, by its group.
     """
 
-    group: FaultGroup
+    group: str
     name: str
     what: str
     rule: str
@@ -92,11 +63,7 @@ class Fault:
     finer: bool = False
     settings: Callable[[str], Settings] = lambda _: {}
     shown: Callable[[float], str] | None = None
-
-    @property
-    def kind(self) -> RunKind:
-        """What its runs are."""
-        return KINDS.get(self.group, "motion")
+    kind: RunKind = "motion"
 
     @property
     def planted(self) -> float:
@@ -216,9 +183,8 @@ def _healthy(same: Same, name: str, profile: str, settings: Items, options: Item
     """A run as the profile says: the same for all sizes of a fault, at a step, its half and its
     quarter."""
     given = dict(options)
-    free = given.get("drive") == "free"
-    truth = free_truth(same.scene, given["steps"], given["dt_s"]) if free else truth_of(same)
-    start = truth.start  # the cell that is run has asked for it
+    planned = Planned(same.scene, given["dt_s"], given["steps"])
+    start = way_of(same.scene, given.get("drive")).truth(planned).start
     return run(same.scene, start, name, profile, settings=dict(settings), **given)
 
 

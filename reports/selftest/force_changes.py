@@ -13,7 +13,7 @@ import numpy as np
 
 from analytic.forces.kinetostatics import forces
 from models.array import Array
-from models.forces import Forces, SliderForces
+from models.motion import Forces, SliderForces
 from models.scene import Scene
 from reports.selftest.fault import Plant, in_log
 from reports.selftest.logs import moved, spoilt

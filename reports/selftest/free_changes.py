@@ -10,14 +10,12 @@ from typing import Any
 import numpy as np
 
 from analytic.free.release import release
-from models.characteristics import Constant
-from models.loads import Load
-from models.released import Released
+from models.characteristics import Constant, Pulse
+from models.driver import Released
+from models.joints import line_ends
+from models.loads import LineSpring, Load, SlideSpring
 from models.scene import Link, Scene
-from models.spring_ends import line_ends
-from models.springs import LineSpring, SlideSpring
 from models.tabulated import Tabulated
-from models.waves import Pulse
 from reports.judge.cell import CellRunner
 from reports.selftest.fault import Plant
 from sim.engine import Run

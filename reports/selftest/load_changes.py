@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from models.characteristics import Sine
-from models.forces import Forces
 from models.loads import Load
+from models.motion import Forces
 from models.scene import Scene
 from reports.selftest.force_changes import Change, changed_by_scene, largest_n
 from reports.selftest.logs import last

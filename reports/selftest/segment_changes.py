@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from analytic.elastic.segment_start import segment_start
+from analytic.elastic.engine_start import segment_start
+from models.cut_scenes import SegmentedScene
 from models.elastic import Shape
+from models.loads import PinSpring
 from models.motion import State
 from models.scene import Link, Scene
-from models.segmented import SegmentedScene
-from models.springs import PinSpring
 from reports.judge.cell import CellRunner
 from reports.selftest.elastic_runs import truth_of_chain
 from reports.selftest.fault import Plant

@@ -12,11 +12,9 @@ from rich.text import Text
 from reports.judge.cell import Checked
 from reports.judge.rules import RULES
 from reports.output.console import plain_table
-from reports.selftest.all_faults import GROUPS
-from reports.selftest.elastic_runs import BENDING
+from reports.selftest.all_faults import GROUPS, RUNS
 from reports.selftest.fault import PROFILE, Fault
-from reports.selftest.free_runs import FREE_RUNS
-from reports.selftest.trial import STEPS, FaultTrial, Passed, Verdict, passes
+from reports.selftest.trial import FaultTrial, Passed, Verdict, passes
 
 WIDE = 96
 """Columns of a terminal that have room for what a fault is."""
@@ -184,20 +182,8 @@ def _spans(verdicts: Sequence[Verdict]) -> str:
     """How long the runs are, and at which step."""
     kinds = {one.fault.kind for one in verdicts}
     scenes = dict.fromkeys(scene for one in verdicts for scene in one.fault.scenes)
-    free = [
-        f"{scene} {1e3 * dt_s:g} ms, {dt_s * steps:g} s"
-        for scene, (dt_s, steps) in FREE_RUNS.items()
-        if scene in scenes
-    ]
-    bent = [
-        f"{scene} in {own.words}"
-        for kind, runs in BENDING.items()
-        if kind in kinds
-        for scene, own in runs.items()
-        if scene in scenes
-    ]
-    turn = [f"{STEPS} steps a turn, 1 turn"] if kinds - {"free", *BENDING} else []
-    return "; ".join([*turn, *([f"let go: {', '.join(free)}"] if free else []), *bent])
+    words = (text for kind, runs in RUNS.items() if kind in kinds for text in runs.words(scenes))
+    return "; ".join(dict.fromkeys(words))
 
 
 def place_row(verdict: Verdict, place: FaultTrial) -> dict[str, object]:

@@ -13,34 +13,24 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
-from reports.judge.cell import Cell, Checked, check, examined
+from reports.judge.cell import Checked, check, examined
 from reports.judge.rules.rule import Finding
-from reports.selftest.all_faults import FAULTS
-from reports.selftest.elastic_runs import BENDING, BENT, elastic_cell
-from reports.selftest.fault import FOURBAR, PROFILE, Fault, RunKind
-from reports.selftest.free_runs import FREE_RUNS, SWING
-from reports.selftest.unseen import UNSEEN, Unseen
-from reports.selftest.unseen_elastic import UNSEEN_ELASTIC
-from reports.selftest.unseen_free import UNSEEN_FREE
-from reports.workers.isolated import Limits, Lost
-from reports.workers.scheduler import run_all
+from reports.selftest.all_faults import FAULTS, RUNS
+from reports.selftest.fault import PROFILE, Fault, RunKind
+from reports.selftest.fault_runs import STEPS
+from reports.selftest.unseen import Unseen
+from reports.workers.isolated import Limits, Lost, run_all
 from sim.registry import ENGINES, engine
 from sim.settings import profile_of, resolved
 
-STEPS = 360
 DECADES = 12
 """How many powers of ten below the planted size are looked at."""
 CLOSE = 1.1
 """Sizes over each other that are near enough."""
 LIMITS = Limits(600.0, 4.0)
 """A fault takes some seconds, with the search for its smallest size."""
-_PLANTED: Mapping[RunKind, tuple[str, tuple[Unseen, ...]]] = {
-    "free": (SWING, UNSEEN_FREE),
-    "elastic": (BENT, UNSEEN_ELASTIC),
-}
-"""The scene in which what need not be seen is planted, where it is not the lecture's."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +86,7 @@ class Verdict:
 @cache
 def healthy(scene: str, engine: str, steps: int = STEPS, kind: RunKind = "motion") -> Checked:
     """A run of a kind without any fault."""
-    return check(_cell(load_scene(scene), engine, steps, converge=True, kind=kind))
+    return check(RUNS[kind].cell(load_scene(scene), engine, steps, True))
 
 
 def sites(faults: Sequence[Fault], engines: Sequence[str]) -> list[tuple[str, str]]:
@@ -109,7 +99,7 @@ def sites(faults: Sequence[Fault], engines: Sequence[str]) -> list[tuple[str, st
 @cache
 def held(scene: str, name: str, kind: RunKind = "motion") -> bool:
     """Whether an engine can hold a scene; not every engine of a user's own has every joint."""
-    adapter, cell = engine(name), _cell(load_scene(scene), name, STEPS, converge=False, kind=kind)
+    adapter, cell = engine(name), RUNS[kind].cell(load_scene(scene), name, STEPS, False)
     settings = resolved(profile_of(adapter, PROFILE), None)
     try:
         adapter.open(cell.given, cell.truth.start, settings, cell.dt_s, cell.drive)
@@ -139,9 +129,9 @@ class Passed:
 
 def passed_by(engines: Sequence[str], kind: RunKind = "motion", steps: int = STEPS) -> list[Passed]:
     """Plant what need not be seen, in one scene."""
-    scene, unseen = _PLANTED.get(kind, (FOURBAR, UNSEEN))
-    able = [name for name in engines if held(scene, name, kind)]
-    return [_passed(each, load_scene(scene), able, steps, kind) for each in unseen]
+    runs = RUNS[kind]
+    able = [name for name in engines if held(runs.unseen_in, name, kind)]
+    return [_passed(each, load_scene(runs.unseen_in), able, steps, kind) for each in runs.unseen]
 
 
 def _passed(
@@ -149,7 +139,7 @@ def _passed(
 ) -> Passed:
     failed, nothing = {}, []
     for name in filter(each.needs, engines):
-        cell = _cell(scene, name, steps, converge=False, kind=kind)
+        cell = RUNS[kind].cell(scene, name, steps, False)
         full, none = (examined(cell, each.plant(size))[0] for size in (1.0, 0.0))
         failed[name] = tuple(finding.rule for finding in full.failures)
         nothing += [name] * (each.shows and full.errors == none.errors)
@@ -177,7 +167,7 @@ def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) ->
     """A fault in one place."""
 
     def planted(size: float) -> Checked:
-        cell = _cell(scene, engine, steps, converge=fault.finer, kind=fault.kind)
+        cell = RUNS[fault.kind].cell(scene, engine, steps, fault.finer)
         cell = replace(cell, settings=fault.settings(engine))
         return examined(cell, fault.plant(size))[0]
 
@@ -195,21 +185,6 @@ def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) ->
         else None,
         nothing=finding is None and (full.errors, full.reason) == (none.errors, none.reason),
     )
-
-
-def _cell(
-    scene: Scene, engine: str, steps: int, *, converge: bool, kind: RunKind = "motion"
-) -> Cell:
-    """A turn of so many steps; of what is let go, the run that `FREE_RUNS` says, as much finer."""
-    if kind in BENDING:
-        return elastic_cell(scene.name, engine, steps / STEPS, BENDING[kind])
-    if kind == "free":
-        dt_s, of_run = FREE_RUNS[scene.name]
-        dt_s, steps = dt_s * STEPS / steps, of_run * steps // STEPS
-        return Cell(scene, engine, PROFILE, dt_s, steps, drive="free", converge=converge)
-    dt_s = scene.driver.law.period_s / steps
-    forces = kind == "forces"
-    return Cell(scene, engine, PROFILE, dt_s, steps, converge=converge, with_forces=forces)
 
 
 def _named(fault: Fault, checked: Checked) -> Finding | None:

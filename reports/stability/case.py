@@ -8,12 +8,12 @@ from dataclasses import dataclass, field, fields
 from typing import Literal
 
 from analytic.free.toggle_barrier import ToggleBarrier
+from models.cut_scenes import SegmentedScene
 from models.errors import CrankcheckError
+from models.hard import Chain
 from models.motion import State
 from models.scene import Scene
-from models.segmented import SegmentedScene
-from models.window_chain import Chain
-from reports.stability.matrix import PLACE, CaseFacts, Outcome
+from reports.stability.matrix import CaseFacts, Outcome
 from sim.engine import Drive, SettingValue
 
 WITHIN = 1e-2
@@ -23,24 +23,8 @@ TURNS = 2.0
 BEYOND = 10.0
 """How far beyond its values a case may be looked at: by that factor."""
 Scale = Literal["log", "linear", "whole"]
-Judge = Literal["follow", "limit", "chain", "let-go", "toggle", "bend"]
-"""What runs are held to, see `reports.stability.grading`."""
-ERRORS: Mapping[Judge, str] = {
-    "follow": PLACE,
-    "limit": "the crank at its limit, rad",
-    "chain": "the first pin of a free chain, over a rod, and of its energy, over what is exchanged",
-    "let-go": "what is let go, at the same time over the sensitivity, at the run's own angle, and "
-    "of the energy",
-    "toggle": "what a throw is short of being over, rad",
-    "bend": "the deflection, over the largest",
-}
-"""What the errors of each are of, as pure numbers."""
-FREE_JUDGES: tuple[Judge, ...] = ("let-go", "toggle")
-"""The judges of cases of free motion, which are run when asked for."""
-
-
-ELASTIC_JUDGE: Judge = "bend"
-"""That of cases of elastic links, which are run when asked for as well."""
+Judge = str
+"""What runs are compared with, by name, see `reports.stability.yardstick`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +81,7 @@ class Trial:
 
 @dataclass(frozen=True, kw_only=True)
 class Case(CaseFacts):
-    """A family of trials, with what is told of it; the catalogue says its ``group``.
+    """A family of trials, with what is told of it; the catalogue says its ``group`` and ``way``.
 
     ``values`` go from easy to hard. Between the last that holds and the first that does not, a
     bisection looks on its ``scale``: by factors, by differences, or over whole numbers.
@@ -110,16 +94,7 @@ class Case(CaseFacts):
     trial: Callable[[float], Trial]
     scale: Scale = "log"
     judge: Judge = "follow"
-
-    @property
-    def elastic(self) -> bool:
-        """Whether it is one of elastic links."""
-        return self.judge == ELASTIC_JUDGE
-
-    @property
-    def free(self) -> bool:
-        """Whether it is one of free motion."""
-        return self.judge in FREE_JUDGES
+    way: str = ""
 
     def refuse(self, value: float) -> None:
         """Refuse a value that means nothing for the case. Raises CrankcheckError."""
@@ -143,4 +118,4 @@ class Case(CaseFacts):
         """What a reader needs."""
         own = {each.name: getattr(self, each.name) for each in fields(CaseFacts)}
         unit = self.trial(self.values[0]).scene.driver.unit
-        return CaseFacts(**own | {"error_of": ERRORS[self.judge], "driver_unit": unit})
+        return CaseFacts(**own | {"driver_unit": unit})

@@ -7,16 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.nearness import nearness
+from analytic.kinematics import nearness
 from models.array import Array
 from models.joints import joints
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.beside import Beside, Truth
+from reports.compare.beside import Beside, Truth, incomplete
 from reports.compare.branch import HERE_RAD, departure
-from reports.compare.completeness import incomplete
 from reports.compare.errors import Departure
-from reports.compare.series import length
+from reports.compare.tracks import length
 from sim.engine import Run
 
 

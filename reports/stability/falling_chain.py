@@ -7,7 +7,7 @@ import numpy as np
 from analytic.free.window_chain import ChainMotion
 from models.array import Array
 from models.motion import Motion
-from reports.compare.free_chain import ChainErrors, compared
+from reports.compare.free.hard_runs import ChainErrors, compared
 from reports.stability.case import Trial
 from reports.stability.error_series import ErrorSeries, lacking, worst_of
 from sim.engine import Run

@@ -4,60 +4,21 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-import numpy as np
-
-from analytic.kinematics import solve
-from models.array import Array
-from models.motion import Motion, State
-from reports.stability.case import Case, Judge, Trial
-from reports.stability.elastic_error_series import (
-    elastic_error_series,
-    elastic_motion,
-    elastic_start,
-)
-from reports.stability.error_series import ErrorSeries, error_series
-from reports.stability.falling_chain import falling, freely
+from reports.stability.all_cases import YARDSTICKS
+from reports.stability.case import Case, Trial
 from reports.stability.force_error import force_error
-from reports.stability.free_error_series import free_error_series, free_motion, free_start
 from reports.stability.grades import outcome
-from reports.stability.limit import at_limit, held
 from reports.stability.matrix import Graded, Outcome, Picture, label
 from reports.stability.picture import picture
-from reports.stability.toggle import at_toggle, thrown_motion, thrown_start
+from reports.stability.yardstick import Yardstick
 from sim.engine import Run
 from sim.registry import engine as engine_of
 from sim.run import run
 from sim.settings import SettingError
 
 GradedPicture = tuple[Graded, Picture | None]
-
-
-@dataclass(frozen=True)
-class Yardstick:
-    """What runs are held to: how one is seen beside it, how it moves, to be drawn, and the state
-    that they start in."""
-
-    look: Callable[[Trial, Run], ErrorSeries]
-    motion: Callable[[Trial, Array], Motion]
-    start: Callable[[Trial], State] = lambda trial: (
-        trial.start or solve(trial.scene, np.zeros(1)).state()
-    )
-
-
-JUDGES: Mapping[Judge, Yardstick] = {
-    "follow": Yardstick(
-        lambda trial, run: error_series(trial.scene, run, trial.settled_turns),
-        lambda trial, time_s: solve(trial.scene, time_s, bound=False),
-    ),
-    "limit": Yardstick(at_limit, held),
-    "chain": Yardstick(freely, falling),
-    "let-go": Yardstick(free_error_series, free_motion, free_start),
-    "bend": Yardstick(elastic_error_series, elastic_motion, elastic_start),
-    "toggle": Yardstick(at_toggle, thrown_motion, thrown_start),
-}
 
 
 def graded(
@@ -82,18 +43,21 @@ def graded(
     began = time.perf_counter()
     trial = case.trial(value)
     blank = Graded(case.name, engine, profile, value, label(value), "ok", "")
-    asked = forces and case.judge == "follow" and engine_of(engine).forces_of != "nothing"
-    result, done = _graded(case, trial, blank, forces=asked)
+    yardstick = YARDSTICKS[case.judge][1]
+    asked = forces and yardstick.with_forces and engine_of(engine).forces_of != "nothing"
+    result, done = _graded(case, trial, blank, yardstick, forces=asked)
     result = replace(result, wall_s=time.perf_counter() - began)
     if not draw or done is None or result.outcome in case.good:
         return result, None
-    return result, picture(case, trial, result, done, JUDGES[case.judge].motion)
+    return result, picture(case, trial, result, done, yardstick.motion)
 
 
-def _graded(case: Case, trial: Trial, blank: Graded, *, forces: bool) -> tuple[Graded, Run | None]:
+def _graded(
+    case: Case, trial: Trial, blank: Graded, yardstick: Yardstick, *, forces: bool
+) -> tuple[Graded, Run | None]:
     """The grade, and the run where there is one."""
     blank = replace(blank, steps=trial.steps, dt_s=trial.dt_s)
-    state = JUDGES[case.judge].start(trial)
+    state = yardstick.start(trial)
     try:
         done = run(
             trial.given,
@@ -113,7 +77,7 @@ def _graded(case: Case, trial: Trial, blank: Graded, *, forces: bool) -> tuple[G
     if done.motion is None or done.status == "unsupported":
         lost: Outcome = "unsupported" if done.status == "unsupported" else "crashed"
         return replace(blank, outcome=lost, reason=done.reason), None
-    errors = JUDGES[case.judge].look(trial, done)
+    errors = yardstick.look(trial, done)
     grade = outcome(errors, case.within)
     at = grade.sample
     apart = grade.outcome == "diverged"  # what was logged ends before it came apart

@@ -13,7 +13,7 @@ from typing import Any, Literal, get_args
 from pydantic import TypeAdapter
 
 from models.errors import CrankcheckError
-from models.regular import UnreadableError, regular_bytes
+from models.files.inputs import UnreadableError, regular_bytes
 from reports.output.numbers import finite
 
 Outcome = Literal[

@@ -11,7 +11,7 @@ from pathlib import Path
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
 
 from models.errors import few
-from models.regular import UnreadableError
+from models.files.inputs import UnreadableError
 from reports.store.damage import Damage
 from reports.store.folder import Folder, being_written, open_folder
 from reports.store.manifest import MANIFEST, Manifest, read_manifest

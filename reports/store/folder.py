@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from models.regular import UnreadableError
+from models.files.inputs import UnreadableError
 from reports.store.part import NAME, Part, open_part
 from reports.store.schema import TABLES
 

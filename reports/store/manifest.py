@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from models.errors import CrankcheckError
-from models.regular import UnreadableError, regular_bytes
+from models.files.inputs import UnreadableError, regular_bytes
 from reports.output.provenance import crankcheck_version
 from reports.plan.grid import digest
 from reports.store.damage import command, in_line

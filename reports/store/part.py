@@ -15,7 +15,7 @@ from pathlib import Path
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
 import pyarrow.parquet as pq  # type: ignore[import-untyped]  # as above
 
-from models.regular import UnreadableError, regular_bytes
+from models.files.inputs import UnreadableError, regular_bytes
 from reports.output.write import write
 from reports.store.schema import NESTED
 

@@ -14,7 +14,7 @@ import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no stubs
 
 from models.array import Array
 from models.errors import CrankcheckError
-from models.regular import UnreadableError
+from models.files.inputs import UnreadableError
 from reports.store.damage import BUSY, Damage, command, notice
 from reports.store.examine import STOPPED, Examined, examine
 from reports.store.folder import has_parts, paths_of

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import TracebackType
 
 from models.errors import CrankcheckError
-from models.regular import UnreadableError
+from models.files.inputs import UnreadableError
 from reports.describe.frame import run_frame
 from reports.output.frame_file import parquet
 from reports.output.write import check_folder, refuse_link, write

@@ -12,14 +12,14 @@ import numpy as np
 from analytic.kinematics import solve
 from models.array import Array
 from models.motion import State
-from reports.compare.free.kept_motion import released_state
+from reports.compare.free.free_truth import released_state
 from reports.compare.last_turn import trace
 from reports.judge.cell import Cell, examined
 from reports.judge.rows import cell_row, error_rows
 from reports.output.provenance import crankcheck_version
 from reports.workers.isolated import Isolated, Lost
 from sim.engine import Run
-from sim.timing import time_run
+from sim.run import time_run
 
 REPEATS = 2
 """Timed repeats of a cell in one round."""

@@ -26,9 +26,8 @@ from reports.sweep.measured import (
     timed_in_turns,
     timing_row,
 )
-from reports.workers.isolated import Isolated, Limits, Lost
+from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
 from reports.workers.progress import progress_bar
-from reports.workers.scheduler import as_they_end
 
 if TYPE_CHECKING:
     from distributed import Client

@@ -13,7 +13,7 @@ from reports.output.console import plain_table
 from reports.quantities import QUANTITIES, named
 from reports.results.settings_text import value_text
 from reports.tune.attempt import Attempt, Goal, Row, Taken
-from sim.tuning import SearchSpace
+from sim.offers import SearchSpace
 
 OTHERS = {
     f"{name}_pure": f"{name} / {QUANTITIES[name].share}" for name in named("closure", "derived")

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from reports.judge.cell import Cell, Checked, check
+from reports.judge.cell import Cell, Checked, check, unfinished
 from reports.judge.rules import FORCES, PLACES, RATES, TUNABLE, judge
+from reports.workers.isolated import Limits, Lost, run_all
 from sim.engine import Settings
-from sim.registry import engine
-from sim.remedies import remedies
+from sim.offers import remedies
+from sim.registry import ENGINES, engine
 from sim.settings import profile_of, resolved
 
 HELPS = 3.0
@@ -117,3 +118,26 @@ def _of_limit(after: float, before: float) -> str:
     """Two shares in words."""
     instead = f" instead of {before:.2g}" if math.isfinite(before) else ""
     return f"{after:.2g} of its limit{instead}"
+
+
+LIMITS = Limits(3600.0, 16.0)
+"""Far beyond what any sound cell takes: one that hangs, or fills the memory, is a row all the
+same. Longer runs are asked for with one job, which has no limits."""
+
+
+def check_all(
+    cells: Sequence[Cell], jobs: int, done: Callable[[Checked], None] = lambda _: None
+) -> list[Checked]:
+    """Check all cells, in the order of ``cells``; ``done`` hears of each as it ends.
+
+    Parameters
+    ----------
+    jobs : int
+        Processes; 0 for one per processor.
+    """
+    apart = any(cell.engine not in ENGINES for cell in cells)
+    return run_all(advised, cells, jobs, LIMITS, _lost, done, apart)
+
+
+def _lost(cell: Cell, lost: Lost) -> Checked:
+    return unfinished(cell, lost.status, lost.reason)

@@ -1,10 +1,11 @@
-"""A verification on the terminal: failures first with their cure, then the tables, then where the
-numbers come from."""
+"""A verification on the terminal, failures first with their cure, then the tables, then where the
+numbers come from; and as JUnit XML."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import cast
+from xml.etree.ElementTree import Element
 
 from rich.console import Console
 from rich.text import Text
@@ -13,11 +14,10 @@ from reports.judge.cell import Checked
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import Finding
 from reports.output.console import hanging
+from reports.output.junit import case_of, say, suite_of
 from reports.output.numbers import count
 from reports.quantities import QUANTITIES, named
-from reports.verify.cell_table import CellTable
-from reports.verify.footer import footer
-from reports.verify.row_cells import mark
+from reports.verify.cell_table import CellTable, footer, mark
 from reports.way.way import WAYS
 
 REACTION, TORQUE = QUANTITIES["reaction"].head, QUANTITIES["torque"].head
@@ -35,7 +35,7 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
     for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
         chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
         for table in _tables(chosen):
-            own = [one for one in chosen if one.cell.way.table is table]
+            own = [one for one in chosen if one.cell.way.part("table") is table]
             console.print(table.shown(profile, gated, own, console.width), "")
         loaded = [one for one in chosen if one.cell.with_forces and one.errors]
         if loaded:
@@ -67,7 +67,9 @@ def _tables(checked: Sequence[Checked]) -> list[CellTable]:
     """Those of the cells, the most general first."""
     ways = {one.cell.way.name: one.cell.way for one in checked}
     return list(
-        dict.fromkeys(cast(CellTable, ways[name].table) for name in reversed(WAYS) if name in ways)
+        dict.fromkeys(
+            cast(CellTable, ways[name].part("table")) for name in reversed(WAYS) if name in ways
+        )
     )
 
 
@@ -99,3 +101,40 @@ def _summary(checked: Sequence[Checked], failed: Sequence[Checked]) -> Text:
         return Text(f"OUT OF TOLERANCE: {len(failed)} of {what}", "bold red")
     every = "all " if len(gated) > 1 else ""
     return Text(f"WITHIN TOLERANCE: {every}{what}", "bold green")
+
+
+def suite(checked: Sequence[Checked], facts: Mapping[str, str]) -> Element:
+    """One test case per cell; a cell that is shown without being gated is skipped, with its
+    findings in the message."""
+    return suite_of(
+        "verify",
+        [_case(one) for one in checked],
+        facts,
+        time=f"{sum(one.wall_s for one in checked):.3f}",
+        timestamp=facts["made"].removesuffix("+00:00"),
+    )
+
+
+def _case(one: Checked) -> Element:
+    """One cell."""
+    cell = one.cell
+    case = case_of(f"{cell.engine}.{cell.profile}", cell.scene.name, f"{one.wall_s:.3f}")
+    text = "\n".join(_line(finding) for finding in one.failures)
+    head = one.failures[0].text if one.failures else "within tolerance"
+    if not cell.gated:
+        say(case, "skipped", message=f"shown, not gated: {head}")
+    elif one.verdict == "unsupported":
+        say(case, "error", text, message=head, type="unsupported")
+    elif one.failures:
+        say(case, "failure", text, message=head, type=one.failures[0].rule)
+    if one.advice:
+        say(case, "system-out", "\n".join(_line(finding) for finding in one.advice))
+    return case
+
+
+def _line(finding: Finding) -> str:
+    """A finding with its rule and cure."""
+    rule = RULES[finding.rule]
+    return f"{rule.id} {rule.title}: {finding.text}" + (
+        f"\n  cure: {finding.cure}" if finding.cure else ""
+    )

@@ -1,26 +1,29 @@
 """A way: how scenes of a kind are run and compared with the reference.
 
 A kind of scene is a folder of the room `ways`, found by its name, with a value ``WAY``; to add one,
-add the folder and its name in `WAYS`.
+add the folder and its name in `WAYS`. Its parts in other rooms are modules of the folder (`Parts`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence, Set
 from functools import cache
 from importlib import import_module
-from typing import NoReturn, Protocol, cast
+from importlib.util import find_spec
+from types import ModuleType
+from typing import Any, NoReturn, Protocol, cast
 
 from models.array import Array
-from models.forces import Forces
-from models.motion import Motion, State
+from models.motion import Forces, Motion, State
 from models.scene import Scene
 from reports.compare.beside import Truth
+from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned, Springs
 from sim.engine import Drive
 
 WAYS = ("free_elastic", "elastic", "free", "driven")
-"""The kinds, the more special first: a scene is of the first that takes it."""
+"""The kinds, the more special first: a scene is of the first that takes it. A name with a dot is
+that of a package elsewhere."""
 
 
 class StudyLengths(Protocol):
@@ -40,28 +43,88 @@ class StudyLinks(Protocol):
     springs: list[Springs]
 
 
+class Parts:
+    """The parts of a way: each is a module in its folder, or in one of a way that it builds on, and
+    is loaded where it is needed.
+
+    ========== ===============================================================================
+    columns    the columns of its cells, a `reports.judge.rows.ColumnsOf`
+    table      the table of its cells, a `reports.verify.cell_table.CellTable`
+    footer     the lines under the table, `reports.verify.cell_table.Part` each
+    faults     the faults that are planted in its runs, a `reports.selftest.fault_runs.FaultSet`
+    cases      the hard cases of its scenes, by group (`reports.stability.case.Case`)
+    series     what hard runs are compared with, by name (`reports.stability.yardstick.Yardstick`)
+    results    what is said of its stored cells, a `reports.results.result_kind.ResultKind`
+    figures    its figures of a store, by name (`reports.figures.drawing.Drawing`)
+    section    its section of the page (`reports.page.sections.section.WaySection`)
+    log        how its logs are judged, a `reports.own_log.log_kind.LogKind`
+    solving    how its scenes are solved, a `reports.requests.solving.Solving`
+    ========== ===============================================================================
+
+    The value of a module has its name, in capitals.
+    """
+
+    def part(self, name: str) -> object:
+        """The part of that name."""
+        return _part(type(self).__mro__[:-1], name)
+
+    def own_part(self, name: str, default: object = ()) -> object:
+        """The part of that name of the way alone, and of none that it builds on."""
+        module = _module(type(self), name)
+        return getattr(module, name.upper()) if module else default
+
+
+@cache
+def _part(classes: tuple[type, ...], name: str) -> object:
+    found = (_module(cls, name) for cls in classes if cls is not Parts)
+    return getattr(next(module for module in found if module), name.upper())
+
+
+def _module(cls: type, name: str) -> ModuleType | None:
+    """The module of that name in the folder of a class, None where there is none."""
+    whole = f"{cls.__module__}.{name}"
+    return import_module(whole) if find_spec(whole) else None
+
+
 class Way(Protocol):
     """How scenes of a kind are run and compared."""
 
     name: str
     drive: Drive
     """Of a run of such a scene, where none is named."""
+    kinds: Sequence[str]
+    """What its cells are, in words: figures show those of some."""
     closed_form: bool
     """Whether the reference is solved at each instant by itself, with bounds that cost time."""
 
-    @property
-    def table(self) -> object:
-        """The table of its cells, a `reports.verify.cell_table.CellTable`."""
+    limits: Mapping[str, Tolerance]
+    """The tolerances of its runs, by name."""
+    roles: Set[Role]
+    """The roles of the quantities that its cells have columns of, forces apart."""
+    placed: Sequence[str]
+    """The quantities whose largest error is that of place."""
+    unlogged: Sequence[str]
+    """Quantities of the whole run that no column of a log has."""
+
+    noted: bool
+    """Whether the notes of its comparison stand under the tables."""
+    units: str
+    """The units of the numbers of its cells, in words."""
+    no_case: str
+    """The sentence on a hard case that is none of such scenes."""
+    over_g: Sequence[str]
+    """What of its errors is over the sensitivity of the motion, in words."""
+
+    def part(self, name: str) -> object:
+        """The part of that name, as of `Parts`."""
         ...
 
-    @property
-    def log(self) -> object:
-        """What is particular to its logs, a `reports.own_log.log_kind.LogKind`."""
+    def own_part(self, name: str, default: object = ()) -> object:
+        """As of `Parts`."""
         ...
 
-    @property
-    def solving(self) -> object:
-        """How its scenes are solved, a `reports.requests.solving.Solving`."""
+    def roles_of(self, *, with_forces: bool) -> Set[Role]:
+        """The roles of the quantities of a run."""
         ...
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
@@ -81,17 +144,25 @@ class Way(Protocol):
         """Refuse a run that has no reference. Raises CrankcheckError."""
         ...
 
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        """Whether a row of a store is a cell of the kind, or of one that builds on it."""
+        ...
+
     def turn_s(self, scene: Scene) -> float:
         """What lengths of runs are multiples of [s]: a turn of the driver, or a second."""
         ...
 
     def every(self, steps: int, steps_per_turn: float) -> int:
         """How many steps are taken from sample to sample of the log."""
-        return 1
+        ...
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
         """The scene that an engine is given: of elastic links, the segments."""
-        return scene
+        ...
+
+    def moved(self, scene: Scene) -> Scene:
+        """A scene as a run of the kind moves it, where it says otherwise."""
+        ...
 
     def note(self, scene: Scene, duration_s: float) -> str:
         """What is said of a run of that duration [s] beside its numbers; "" for nothing."""
@@ -107,7 +178,7 @@ class Way(Protocol):
     """Options of a length that say something of it."""
     over: str
     """What is drawn of it, in words."""
-    tolerances: Collection[str]
+    targets: Collection[str]
     """The quantities that one target stands for."""
     least_judged: int
     """Steps of a run that was made before, and can be judged."""
@@ -135,7 +206,7 @@ class Way(Protocol):
 
     def held_steps(self, scene: Scene) -> tuple[float, ...]:
         """Steps in a turn that the scene of an engine is exact for; empty for any."""
-        return ()
+        ...
 
     def launch(self, run: Planned) -> Truth | None:
         """What a run starts from, None where it starts as the scene is let go. Raises
@@ -148,19 +219,19 @@ class Way(Protocol):
 
     def judged_by(self, given: GivenAs) -> list[str] | None:
         """The options of `judge` for a log of it; None where no log of it is judged."""
-        return []
+        ...
 
     def given_by(self, study: StudyLinks) -> list[GivenAs]:
         """All that a study gives elastic links as. Raises CrankcheckError."""
-        return [GivenAs()]
+        ...
 
     def key(self, given: GivenAs) -> list[object]:
         """What names a stored result beside what all have."""
-        return []
+        ...
 
     def shortened(self, scene: Scene, lasts_s: float) -> str:
         """What is said of a run that ends before the scene does; "" for nothing."""
-        return ""
+        ...
 
     def motion(self, scene: Scene, time_s: Array) -> Motion:
         """How it moves in truth, to be drawn, with rigid links. Raises CrankcheckError."""
@@ -182,7 +253,7 @@ class Way(Protocol):
 @cache
 def way(name: str) -> Way:
     """The way of that name."""
-    return cast(Way, import_module(f"..ways.{name}", __package__).WAY)
+    return cast(Way, import_module(name if "." in name else f"..ways.{name}", __package__).WAY)
 
 
 def way_of(scene: Scene, drive: Drive | None = None) -> Way:
@@ -205,3 +276,8 @@ def laid_out(
     step = chosen.counted(scene, length, given)
     chosen.refuse(Planned(scene, *step, given, with_forces))
     return step
+
+
+def way_of_row(row: Mapping[Any, Any]) -> Way:
+    """The way of a stored cell."""
+    return next(each for each in map(way, WAYS) if each.stored(row))

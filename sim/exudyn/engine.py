@@ -2,10 +2,297 @@
 
 from __future__ import annotations
 
-from sim.engine import Engine
-from sim.exudyn.library import VERSION
-from sim.exudyn.session import ExudynSession
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from models.array import Array
+from models.errors import EngineError
+from models.motion import State
+from models.scene import Point, Scene
+from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings
+from sim.exudyn.crank_drive import CrankCourse, CrankDrive, refuse_undriven
+from sim.exudyn.library import VERSION, exu, items, plain, quiet
+from sim.exudyn.loads import Applied, Present, apply_loads, follows_rates
+from sim.exudyn.passive import Springs, apply_friction
+from sim.exudyn.reactions import reactions
 from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, of_rigid, placing
+from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_drive, simulation
+from sim.exudyn.system import PlaneSystem, build, held_beams, node_masses, rounding_n
+from sim.measure import across, arms
+
+LEVELS = ("Coordinates", "Coordinates_t", "Coordinates_tt")
+
+
+def widths(made: PlaneSystem) -> list[int]:
+    """How many coordinates each node has, in turn: x, y, angle, or x, y and the tangent's."""
+    return [4 if name in made.looked else 3 for name in made.node]
+
+
+def beam_angles(
+    made: PlaneSystem, looked: Mapping[str, float], levels: Sequence[Array]
+) -> dict[str, Array]:
+    """Angles of the tangents of nodes of beams, the first within half a turn of where they
+    ``looked`` [rad] and each within that of the one before: of samples of every step, or turns are
+    lost."""
+    angles = {}
+    for row, (name, node) in enumerate(made.node.items()):
+        if name in looked:
+            place = levels[len(LEVELS) * row] + made.system.GetNode(node)["referenceCoordinates"]
+            angle = np.arctan2(place[:, 3], place[:, 2])
+            angles[name] = np.unwrap(np.concatenate([[looked[name]], angle]))[1:]
+    return angles
+
+
+def body_poses(
+    made: PlaneSystem, levels: Sequence[Array], angles: Mapping[str, Array]
+) -> dict[str, BodyPose]:
+    """Poses by body, of samples (T, width) of the three levels of each node in turn, and of the
+    ``angles`` (T,) of nodes of beams."""
+    poses = {}
+    for row, (name, node) in enumerate(made.node.items()):
+        moved, rate, push = (levels[len(LEVELS) * row + k] for k in range(len(LEVELS)))
+        place = moved + made.system.GetNode(node)["referenceCoordinates"]
+        if name in angles:
+            poses[name] = _tangent_pose(place, rate, push, angles[name])
+        else:
+            poses[name] = _pose(place, rate, push, made.centre[name])
+    return poses
+
+
+def _pose(place: Array, rate: Array, push: Array, centre: Point) -> BodyPose:
+    """The frame in which ``centre`` is where the node is, from coordinates and their rates."""
+    theta, omega, alpha = place[:, 2], rate[:, 2], push[:, 2]
+    arm = arms(theta, centre)
+    turned = across(arm)
+    return BodyPose(
+        origin=place[:, :2] - arm,
+        theta=theta,
+        velocity=rate[:, :2] - omega[:, None] * turned,
+        omega=omega,
+        origin_acceleration=push[:, :2] - alpha[:, None] * turned + omega[:, None] ** 2 * arm,
+        alpha=alpha,
+    )
+
+
+def _tangent_pose(place: Array, rate: Array, push: Array, theta: Array) -> BodyPose:
+    """A frame along the tangent of a beam, which is at those angles."""
+    (x, y), (u, v), (a, b) = (each[:, 2:].T for each in (place, rate, push))
+    far = x**2 + y**2
+    omega = (x * v - y * u) / far
+    return BodyPose(
+        origin=place[:, :2],
+        theta=theta,
+        velocity=rate[:, :2],
+        omega=omega,
+        origin_acceleration=push[:, :2],
+        alpha=(x * b - y * a) / far - 2.0 * omega * (x * u + y * v) / far,
+    )
+
+
+LEAST_DT_S = 1e-9
+"""exudyn takes an end of a run that is 1e-10 s away for reached."""
+
+
+class ExudynSession:
+    """One system with its solver. exudyn's clock begins at 0, whatever the time of the law. Turns
+    of the nodes of beams are counted from step to step while these are recorded; over steps that
+    are not, up to half a turn."""
+
+    def __init__(
+        self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+    ) -> None:
+        checked(settings)
+        if dt_s < LEAST_DT_S:
+            raise EngineError(
+                f"dt: found {dt_s:g} s; exudyn ends a step to 1e-10 s, so it takes "
+                f"{LEAST_DT_S:g} s or more"
+            )
+        refuse_undriven(scene, drive)
+        settings = of_drive(settings, drive)
+        self._scene, self._settings, self._dt, self._drive = scene, settings, dt_s, drive
+        self._start_s, self._done = state.time_s, 0
+        self._heard: list[str] = []
+        with quiet(self._heard):
+            self._model = build(scene, state, prescribed=drive == "prescribed")
+            self._system = self._model.system
+            self._looked = dict(self._model.looked)
+            self._applied = self._loaded(state, drive)
+            self._springs = Springs(scene, state, self._model, self._applied.turning)
+            self._crank = CrankDrive(scene, self._model, settings, drive, state.time_s, dt_s)
+            self._sensors = self._sense()
+            self._system.Assemble()
+            self._asked = simulation(
+                settings,
+                dt_s,
+                of_rates=follows_rates(scene, drive),
+                rounding_n=rounding_n(scene, state),
+            )
+            self._solver = self._initialized()
+            course = self._crank.course
+            first = None if course is None else self._set_off(course)
+            self._multipliers = Multipliers(self._system, first)
+
+    def _loaded(self, state: State, drive: Drive) -> Applied:
+        """Add what acts from outside and in the joints."""
+        scene, applied = self._scene, Applied(self._scene, self._model)
+        if scene.loads or scene.friction:
+            present = Present(scene, state, self._model)
+            apply_loads(scene, state, drive, self._dt, applied, present)
+            apply_friction(scene, drive, self._model, applied, present)
+        return applied
+
+    def _initialized(self) -> Any:
+        """The solver. Raises EngineError for a load that has no size at the start."""
+        try:
+            return initialized(self._system, self._asked, self._settings)
+        except ValueError:  # as exudyn has it
+            if self._applied.fault:
+                raise EngineError(self._applied.fault) from None
+            raise
+
+    def _sense(self) -> list[Any]:
+        """A sensor for each level of each body's coordinates."""
+        return [
+            self._system.AddSensor(
+                items.SensorNode(
+                    nodeNumber=node,
+                    storeInternal=True,
+                    writeToFile=False,
+                    outputVariableType=getattr(exu.OutputVariableType, level),
+                )
+            )
+            for node in self._model.node.values()
+            for level in LEVELS
+        ]
+
+    def _set_off(self, course: CrankCourse) -> Array:
+        """Start with the rates that go with the crank's, and accelerations that go with its own;
+        the multipliers that go with these, which exudyn does not work out then.
+
+        exudyn leaves out what a driver's acceleration adds to its initial ones, and the trapezoidal
+        rule would alternate about the true ones ever after.
+        """
+        own, rates = exu.ConfigurationType.Initial, self._system.systemData
+        law = self._scene.driver.law
+        _, omega, alpha = (float(x) for x in law.at(np.array(self._start_s)))
+        ratio = per_drive(self._solver, self._system)
+        if self._asked.timeIntegration.generalizedAlpha.useIndex2Constraints:
+            told = course.speed(None, 0.0, None, 0.0)
+            rates.SetODE2Coordinates_t(
+                np.add(rates.GetODE2Coordinates_t(own), (told - omega) * ratio), own
+            )
+        push: Array = np.add(rates.GetODE2Coordinates_tt(), alpha * ratio)
+        rates.SetODE2Coordinates_tt(push, own)
+        first = multipliers(self._solver, self._system, push)
+        self._asked.timeIntegration.generalizedAlpha.computeInitialAccelerations = False
+        self._solver.InitializeSolver(self._system, self._asked)
+        return first
+
+    def facts(self) -> Facts:
+        """The system as exudyn holds it now; its bodies have their centres at their nodes."""
+        held_masses = self._model.masses()
+        nodes = node_masses(self._scene, self._model)
+        loads = [self._system.GetLoad(load)["loadVector"] for load in self._model.weight.values()]
+        gravity = loads[0] if loads else (0.0, 0.0)
+        settings = self._settings if self._scene.beams else of_rigid(self._settings)
+        return Facts(
+            version=VERSION,
+            mass_kg={name: mass for name, (mass, _) in held_masses.items()} | nodes,
+            inertia_kg_m2={name: inertia for name, (_, inertia) in held_masses.items()},
+            centre_m=dict(self._model.centre),
+            gravity_m_s2=(float(gravity[0]), float(gravity[1])),
+            start=self.read(),
+            settings=dict(settings) | held(self._asked, self._solver, self._settings),
+            velocity_shift=0.0,
+            acceleration_shift=0.0,
+            springs=self._springs.held(),
+            beams=held_beams(self._scene, self._model),
+        )
+
+    def step(self, steps: int) -> None:
+        """Advance without logging. Raises EngineError where exudyn goes no further."""
+        if stopped := self._advance(steps, log=False):
+            raise EngineError(f"exudyn: {stopped}")
+
+    def record(self, steps: int, every: int) -> Log:
+        """Advance; exudyn's sensors keep all steps, of which every ``every``-th is taken."""
+        at = self._done + every * np.arange(steps // every + 1, dtype=np.float64)
+        began = time.perf_counter()
+        with quiet(self._heard):
+            self._solver.InitializeSolverOutput(self._system, self._asked)  # empties the sensors
+        stopped = self._advance(steps, log=True)
+        wall = time.perf_counter() - began
+        kept = [self._system.GetSensorStoredData(each) for each in self._sensors]
+        clock = kept[0][:, 0]
+        # Of a step that was cut the last part ends at the sample.
+        rows = np.searchsorted(clock, (at + 1e-6) * self._dt, side="right") - 1
+        there = np.abs(clock[rows] - at * self._dt) < 1e-3 * self._dt
+        every_step = [each[:, 1:] for each in kept]
+        levels = [each[rows] for each in every_step]
+        angles = beam_angles(self._model, self._looked, every_step)
+        good = np.logical_and.reduce([there, *(np.isfinite(own).all(axis=1) for own in levels)])
+        count = len(at) if good.all() else int(np.argmin(good))
+        angles = {name: own[rows][:count] for name, own in angles.items()}
+        self._looked |= {name: float(own[-1]) for name, own in angles.items() if count}
+        poses = self._shown([own[:count] for own in levels], at[:count], angles)
+        diverged = bool(stopped) or count < len(at)
+        warnings = tuple(dict.fromkeys(self._heard))
+        return Log(poses, (count - 1) * every, diverged, warnings, wall, stopped)
+
+    def record_forces(self, steps: int, every: int) -> Log:
+        """As `record`, with the multipliers of each state as forces."""
+        done = self._done
+        with self._multipliers.kept(done):
+            log = self.record(steps, every)
+        at = done + every * np.arange(len(log.poses.time_s), dtype=np.float64)
+        lambdas = self._multipliers.at(self._dt * at)
+        torque = self._crank.torque(log.poses, lambdas, self._multipliers)
+        return replace(
+            log,
+            forces=reactions(
+                self._scene, self._model, self._multipliers, lambdas, log.poses, torque
+            ),
+        )
+
+    def read(self) -> Poses:
+        """The current state."""
+        state = self._system.systemData
+        ends = np.cumsum(widths(self._model))[:-1]
+        levels = [np.split(np.array(getattr(state, f"GetODE2{level}")()), ends) for level in LEVELS]
+        of_nodes = [own[None] for node in zip(*levels, strict=True) for own in node]
+        angles = beam_angles(self._model, self._looked, of_nodes)
+        return self._shown(of_nodes, np.array([float(self._done)]), angles)
+
+    def _shown(self, levels: Sequence[Array], at: Array, angles: Mapping[str, Array]) -> Poses:
+        """Poses of samples, after so many steps, of the three levels of each node in turn, and of
+        the angles of those of beams."""
+        return Poses(self._start_s + self._dt * at, body_poses(self._model, levels, angles))
+
+    def _advance(self, steps: int, *, log: bool) -> str:
+        """Step in one go or, where steps may be cut, so that each ends in time. Why exudyn goes no
+        further, in its own words; empty where it does."""
+        self._asked.solution.sensors.active = log
+        if self._crank.course is not None:
+            self._crank.course.reach(self._done + steps)
+        done, self._done = self._done, self._done + steps
+        clock, length = self._solver.it, 1 if self._solver.it.adaptiveStep else steps
+        with quiet(self._heard):
+            try:
+                for start in range(done, self._done, length or 1):
+                    # It would count steps from its start, and times up to a rounding of its own.
+                    clock.startTime = clock.currentTime = start * self._dt
+                    clock.endTime = (start + length) * self._dt
+                    self._asked.solution.file.writeInitialValues = start == done
+                    if not self._solver.SolveSteps(self._system, self._asked):
+                        return str(self._solver.GetErrorString())
+            except (RuntimeError, ValueError) as error:  # all of exudyn's are
+                return self._applied.fault or plain(str(error))
+        return ""
+
 
 ENGINE = Engine(
     "exudyn",

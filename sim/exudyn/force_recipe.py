@@ -9,20 +9,22 @@ from models.errors import EngineError
 from models.joints import (
     Prism,
     bodies,
+    centre_of,
+    frames,
     joints,
     less,
     local_point,
+    mass_of,
     riding_body,
     sliding_angle,
     turned,
 )
 from models.laws import ConstantSpeed
 from models.motion import State
-from models.poses import centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene
 from sim.engine import Settings
 from sim.exudyn.settings import BY_NEED
-from sim.force_recipes import ForceRecipe
+from sim.offers import ForceRecipe
 
 PROGRAM = '''"""{title}"""
 

@@ -9,7 +9,7 @@ from models.motion import State
 from models.scene import Scene
 from sim.engine import Settings
 from sim.exudyn.settings import BY_NEED, INTEGRATORS, JACOBIANS
-from sim.tuning import Knob, SearchSpace, Work
+from sim.offers import Knob, SearchSpace, Work
 
 STEP_US, ITERATION_US, MATRIX_US = 12.036, 0.074, 0.0188
 DIGITS_PER_ITERATION = 8.0

@@ -3,22 +3,190 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from models.characteristics import Constant
-from models.errors import EngineError, few
-from models.joints import bodies, sliding_angle
+from models.characteristics import Constant, Staircase
+from models.errors import CrankcheckError, EngineError, few
+from models.joints import (
+    Prism,
+    Slot,
+    block_name,
+    bodies,
+    frames,
+    joints,
+    riding_body,
+    sliding_angle,
+)
 from models.loads import Load
 from models.motion import State
-from models.scene import Point, Scene
-from models.staircase import Staircase
+from models.scene import GROUND, Point, Scene
 from sim.engine import Drive
-from sim.exudyn.applied import Applied, Size, massless_blocks
-from sim.exudyn.jumps import StepMeans
-from sim.exudyn.present import Present
+from sim.exudyn.library import exu, items
+from sim.exudyn.system import ANGLE, Index, PlaneSystem
 from sim.load_magnitudes import ahead, known_ahead
+
+KIND = exu.OutputVariableType
+
+
+class Present:
+    """The present of a system, for what acts on it by its state."""
+
+    def __init__(self, scene: Scene, state: State, made: PlaneSystem) -> None:
+        self._scene, self._made = scene, made
+        self._start_rad = {name: frame.theta for name, frame in frames(scene, state).items()}
+        self._ends = {slide.slider.name: self._ends_of(slide) for slide in joints(scene).slides}
+
+    def _ends_of(self, slide: Prism | Slot) -> tuple[Index, Index]:
+        """Markers of the point that slides and of that which the line passes through."""
+        slider = slide.slider
+        return (
+            self._made.marker(self._scene, riding_body(slide), slider.point),
+            self._made.marker_at(slider.on, slider.through_m),
+        )
+
+    def angle(self, system: Any, body: str) -> tuple[float, float]:
+        """Of a body or the ground: angle [rad] and rate [rad/s]."""
+        if body == GROUND:
+            return 0.0, 0.0
+        node = self._made.node[body]
+        turned = float(system.GetNodeOutput(node, KIND.Coordinates)[ANGLE])
+        rate = float(system.GetNodeOutput(node, KIND.Coordinates_t)[ANGLE])
+        return self._start_rad[body] + turned, rate
+
+    def line(self, system: Any, name: str, turned_rad: float = 0.0) -> Point:
+        """The direction of the line of a slider in the plane, or one turned against it."""
+        slider = self._scene.sliders[name]
+        angle = self.angle(system, slider.on)[0] + slider.direction_rad + turned_rad
+        return math.cos(angle), math.sin(angle)
+
+    def slider(self, system: Any, name: str) -> tuple[float, float]:
+        """Of a slider: displacement [m] and speed [m/s] as seen from its guide."""
+        tip, start = self._ends[name]
+        x, y = self._apart(system, tip, start, KIND.Position)
+        u, v = self._apart(system, tip, start, KIND.Velocity)
+        c, s = self.line(system, name)
+        _, omega = self.angle(system, self._scene.sliders[name].on)
+        return c * x + s * y, c * (u + omega * y) + s * (v - omega * x)
+
+    def _apart(self, system: Any, tip: Index, start: Index, what: Any) -> Point:
+        x, y, _ = system.GetMarkerOutput(tip, what) - system.GetMarkerOutput(start, what)
+        return float(x), float(y)
+
+
+Size = Callable[[Any, float], float]
+"""A size [N or N m], of the system and of the time on exudyn's clock."""
+Vector = Callable[[Any, float], Point]
+"""A force [N], of the same."""
+
+
+def massless_blocks(scene: Scene) -> dict[str, str]:
+    """The sliders whose block is no body in exudyn, by the name of the block."""
+    return {block_name(slot.slider): slot.slider.name for slot in joints(scene).slots}
+
+
+class Applied:
+    """Adds forces and torques to a system: numbers, or what exudyn calls back for. ``fault`` is why
+    one of them has no size any more.
+
+    It calls with the time and in the state that its Newton's method is at, so that a load belongs
+    to the end of the step, as all forces of an implicit step do. A block without mass is no body
+    here: a force on it is one on the body whose point rides on the line, a torque on it one on the
+    guide, which it turns with.
+    """
+
+    def __init__(self, scene: Scene, made: PlaneSystem) -> None:
+        self._scene, self._made = scene, made
+        self._massless = massless_blocks(scene)
+        self.fault = ""
+        self._rider = {slide.slider.name: riding_body(slide) for slide in joints(scene).slides}
+
+    def turning(self, body: str) -> str:
+        """The body that a body turns as: of a block without mass, its guide."""
+        slider = self._massless.get(body)
+        return body if slider is None else self._scene.sliders[slider].on
+
+    def on(self, body: str, point: str) -> Index:
+        """A marker at a point of a body, or of what rides for a block without mass."""
+        slider = self._massless.get(body)
+        return self._made.marker(self._scene, body, point) if slider is None else self.tip(slider)
+
+    def tip(self, slider: str) -> Index:
+        """A marker at the point that slides."""
+        point = self._scene.sliders[slider].point
+        return self._made.marker(self._scene, self._rider[slider], point)
+
+    def force(self, marker: Index, force: Vector | Point, *, in_body: bool = False) -> None:
+        """Add a force, in the frame of the ground or of the body."""
+        told = (
+            self._called(lambda *now: (*force(*now), 0.0))
+            if callable(force)
+            else _fixed(*force, 0.0)
+        )
+        self._made.system.AddLoad(
+            items.LoadForceVector(markerNumber=marker, bodyFixed=in_body, **told)
+        )
+
+    def torque(self, body: str, torque: Size | float) -> None:
+        """Add a torque on a body or a block; the ground feels none."""
+        turning = self.turning(body)
+        if turning == GROUND:
+            return
+        told = (
+            self._called(lambda *now: (0.0, 0.0, torque(*now)))
+            if callable(torque)
+            else _fixed(0.0, 0.0, torque)
+        )
+        marker = self._made.marker_at(turning, (0.0, 0.0))
+        self._made.system.AddLoad(items.LoadTorqueVector(markerNumber=marker, **told))
+
+    def _called(self, vector: Callable[[Any, float], tuple[float, float, float]]) -> dict[str, Any]:
+        """A load as what exudyn calls."""
+
+        def called(system: Any, time_s: float, _: object) -> list[float]:
+            try:
+                return list(vector(system, time_s))
+            except CrankcheckError as error:
+                self.fault = str(error)  # exudyn would tell it with a traceback
+                raise
+
+        return {"loadVectorUserFunction": called}
+
+
+def _fixed(*vector: float) -> dict[str, Any]:
+    """A load as numbers."""
+    return {"loadVector": list(vector)}
+
+
+class StepMeans:
+    """The mean of a staircase about each step's end, later and earlier times counting less and less
+    up to a step away.
+
+    A step weighs its two ends alike, so that a jump that only one of them feels acts half a step
+    too early or too late, wherever in the step it is; with these means the impulse over both steps
+    is right, and belongs to the right instant. Before ``start_s`` there is no step: what jumps then
+    or at once is on from there.
+    """
+
+    def __init__(self, stairs: Staircase, start_s: float, dt_s: float) -> None:
+        self._start_s, self._dt = start_s, dt_s
+        rises = zip(stairs.places, stairs.values, (0.0, *stairs.values), strict=False)
+        self._jumps = [(place, value - before) for place, value, before in rises]
+
+    def at(self, time_s: float) -> float:
+        """The mean at the end of a step, or at the start [N or N m]."""
+        return math.fsum(height * self._share(time_s, place) for place, height in self._jumps)
+
+    def _share(self, time_s: float, place: float) -> float:
+        """How much of a jump counts."""
+        if place <= self._start_s:
+            return 1.0
+        since = min(max((time_s - place) / self._dt, -1.0), 1.0)
+        if time_s <= self._start_s:  # the half of the mean that there is
+            return (1.0 + since) ** 2
+        return 1.0 - 0.5 * (1.0 - since) ** 2 if since > 0.0 else 0.5 * (1.0 + since) ** 2
 
 
 def apply_loads(

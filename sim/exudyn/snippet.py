@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
 from sim.exudyn.settings import AS_SHIPPED, BY_NEED, MOST_DENSE, of_drive
-from sim.snippets import SnippetWriter, Stepping, comment
+from sim.offers import SnippetWriter, Stepping, comment
 
 WIDTH = 96
 DRIVES: Mapping[Drive, str] = {
@@ -28,7 +28,7 @@ def exudyn_snippet(
 
     The integrator and its step, which can only be the whole system's, and how far Newton's method
     goes, never less far than it would. What else differs from exudyn's defaults might spoil the
-    rest of a user's system and stands in a comment; see `sim.snippets.snippet`.
+    rest of a user's system and stands in a comment; see `sim.offers.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = of_drive(defaults | dict(settings), drive)
@@ -51,18 +51,18 @@ def exudyn_snippet(
 def _steps(stepping: Stepping, drive: Drive) -> list[str]:
     """The length of a step, and how it goes with the speed and with frames."""
     per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
-    told = [
-        f"{per_turn} steps a turn of a crank at {speed}. At another speed: dt = 2 pi / ({per_turn} "
-        "speed)."
-    ]
-    if stepping.substeps:
+    counted, told = stepping.counted_in(drive), list[str]()
+    if counted == "turns":
+        told = [
+            f"{per_turn} steps a turn of a crank at {speed}. At another speed: dt = 2 pi / "
+            f"({per_turn} speed)."
+        ]
+    if counted == "frames":
         frame, number = f"{stepping.dt_s * stepping.substeps:.6g} s", stepping.substeps
         told = [
             f"A frame of {frame} has numberOfSteps = {number}. A crank at {speed} has {per_turn} "
             "of these steps in a turn; a faster one needs more of them in a frame, in proportion."
         ]
-    if drive == "free":  # no speed of the crank says how long it may be
-        told = []
     return [
         *comment(told, WIDTH),
         f"dt = {stepping.dt_s!r}",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -10,6 +12,7 @@ from models.array import Array
 from sim.engine import Settings, SettingValue
 from sim.exudyn.library import exu, quiet
 from sim.exudyn.settings import BY_NEED, MOST_DENSE
+from sim.exudyn.system import Index
 
 FREE = 1e-9
 """A singular value of the constraints, over the largest, of a motion that they do not hold."""
@@ -95,11 +98,11 @@ def per_drive(solver: Any, system: Any) -> Array:
     asked[-1] = 1.0
     moved = np.asarray(np.linalg.lstsq(held_by, asked, rcond=None)[0])
     _, sizes, ways = np.linalg.svd(held_by)
-    free = ways[np.count_nonzero(sizes > FREE * sizes[0]) :]
-    if len(free):
+    loose = ways[np.count_nonzero(sizes > FREE * sizes[0]) :]
+    if len(loose):
         solver.ComputeMassMatrix(system)
-        heavy = free @ np.array(solver.GetSystemMassMatrix())
-        moved -= free.T @ np.linalg.lstsq(heavy @ free.T, heavy @ moved, rcond=None)[0]
+        heavy = loose @ np.array(solver.GetSystemMassMatrix())
+        moved -= loose.T @ np.linalg.lstsq(heavy @ loose.T, heavy @ moved, rcond=None)[0]
     return moved
 
 
@@ -140,3 +143,46 @@ def held(asked: Any, solver: Any, settings: Settings) -> dict[str, SettingValue]
     if asked.timeIntegration.computeLoadsJacobian:
         told["loads_jacobian_used"] = "enable"
     return told
+
+
+class Multipliers:
+    """Multipliers that exudyn is asked for at the end of each of its steps.
+
+    ``first`` are those of the start, where the system does not hold them itself.
+    """
+
+    def __init__(self, system: Any, first: Array | None) -> None:
+        self._system, self._first = system, first
+        self._times_s: list[float] = []
+        self._rows: list[Array] = []
+
+    def rows(self, index: Index) -> list[int]:
+        """Which of them are those of a joint."""
+        return [int(row) for row in self._system.systemData.GetObjectLTGAE(index)]
+
+    @contextmanager
+    def kept(self, steps_done: int) -> Iterator[None]:
+        """Keep those of now, ``steps_done`` steps after the start, and of each step meanwhile."""
+        state = self._system.systemData
+        now = np.array(state.GetAECoordinates())
+        self._times_s = [float(state.GetTime())]
+        self._rows = [now if steps_done or self._first is None else self._first]
+        self._system.SetPostStepUserFunction(self._keep)
+        try:
+            yield
+        finally:
+            self._system.SetPostStepUserFunction(0)
+
+    def _keep(self, system: Any, time_s: float) -> bool:
+        """What exudyn calls; a stretch calls it at its own start as well."""
+        if time_s > self._times_s[-1]:
+            self._times_s.append(time_s)
+            self._rows.append(np.array(system.systemData.GetAECoordinates()))
+        return True
+
+    def at(self, time_s: Array) -> Array:
+        """Those of some of the steps, by times on exudyn's clock; a row each."""
+        clock = np.array(self._times_s)
+        # Of a step that was cut the last part ends at the step.
+        near = 0.5 * (clock[1:] + clock[:-1])
+        return np.array(self._rows)[np.searchsorted(near, time_s)]

@@ -9,14 +9,220 @@ have a tangent in place of an angle.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from models.elastic import Beam
 from models.errors import EngineError
-from models.joints import Prism, Slot, bodies, joints, riding_body, sliding_angle, turned
+from models.joints import (
+    Frame,
+    Prism,
+    Slot,
+    bodies,
+    centre_of,
+    frames,
+    joints,
+    less,
+    local_point,
+    mass_of,
+    riding_body,
+    sliding_angle,
+    turned,
+)
 from models.motion import State
-from models.poses import centre_of, frames, mass_of
-from models.scene import GROUND, Scene
-from sim.exudyn.beams import add_elements, add_node
+from models.scene import GROUND, Point, Scene
 from sim.exudyn.library import exu, items
-from sim.exudyn.plane_system import PlaneSystem
+
+ANGLE = 2
+"""The coordinate of a node that is its angle."""
+Index = Any
+"""exudyn's own numbers of nodes, objects, markers and loads."""
+
+
+@dataclass(frozen=True)
+class PlaneSystem:
+    """A system that is not assembled yet: of the bodies by name, in the order they were added.
+
+    ``centre`` is where the node of a body lies in the frame of its link [m]. ``hinge`` has, by pin,
+    the joints of its first body with each of the others, ``prismatic`` the joint of each slider;
+    ``weight`` is the load of each body's gravity. Nodes of beams are in ``node`` alone, and where
+    they look at the start [rad] in ``looked``; the elements of each beam are in ``elements``. A
+    system lives as long as its ``container``.
+    """
+
+    container: Any
+    system: Any
+    ground: Index
+    body: dict[str, Index] = field(default_factory=dict)
+    node: dict[str, Index] = field(default_factory=dict)
+    centre: dict[str, Point] = field(default_factory=dict)
+    hinge: dict[str, dict[tuple[str, str], Index]] = field(default_factory=dict)
+    prismatic: dict[str, Index] = field(default_factory=dict)
+    weight: dict[str, Index] = field(default_factory=dict)
+    looked: dict[str, float] = field(default_factory=dict)
+    elements: dict[str, list[Index]] = field(default_factory=dict)
+
+    def marker(self, scene: Scene, name: str, point: str) -> Index:
+        """A new marker at a point of a body or of the ground."""
+        return self.marker_at(name, local_point(scene, name, point))
+
+    def marker_at(self, name: str, place: Point) -> Index:
+        """A new marker at a place in the frame of a body or of the ground [m]."""
+        x, y = less(place, self.centre.get(name, (0.0, 0.0)))
+        if name in self.looked:
+            if (x, y) != (0.0, 0.0):
+                raise EngineError(
+                    f"{name}: something acts {y:g} m beside it; exudyn's beams take forces on "
+                    "their line, give that link segments (--springs plain)"
+                )
+            return self.system.AddMarker(items.MarkerNodeRigid(nodeNumber=self.node[name]))
+        body = self.ground if name == GROUND else self.body[name]
+        return self.system.AddMarker(
+            items.MarkerBodyRigid(bodyNumber=body, localPosition=[x, y, 0.0])
+        )
+
+    def crank_markers(self, link: str, base: str = GROUND) -> list[Index]:
+        """New markers of the angles of a base and of a body."""
+        return [self.angle_marker(base), self.angle_marker(link)]
+
+    def place_markers(self, link: str, coordinate: int) -> list[Index]:
+        """New markers of a coordinate of the ground, which is 0, and of one of a body's centre."""
+        own = items.MarkerNodeCoordinate(nodeNumber=self.node[link], coordinate=coordinate)
+        return [self.angle_marker(GROUND), self.system.AddMarker(own)]
+
+    def angle_marker(self, name: str) -> Index:
+        """A new marker of the angle of a body or of the ground, which both count from the start.
+
+        Raises EngineError for the node of a beam, whose angle is no coordinate.
+        """
+        if name in self.looked:
+            raise EngineError(
+                f"{name}: something turns it, and the nodes of exudyn's beams have no angle; give "
+                "that link segments (--springs plain)"
+            )
+        if name == GROUND:
+            node, coordinate = self.system.AddNode(items.NodePointGround()), 0
+        else:
+            node, coordinate = self.node[name], ANGLE
+        return self.system.AddMarker(
+            items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate)
+        )
+
+    def weigh(self, scene: Scene, name: str, body: Index) -> None:
+        """Add gravity to a body or an element."""
+        if any(scene.gravity_m_s2):
+            marker = self.system.AddMarker(items.MarkerBodyMass(bodyNumber=body))
+            self.weight[name] = self.system.AddLoad(
+                items.LoadMassProportional(
+                    markerNumber=marker, loadVector=[*scene.gravity_m_s2, 0.0]
+                )
+            )
+
+    def masses(self) -> Mapping[str, tuple[float, float]]:
+        """Mass [kg] and inertia about the centre of mass [kg m^2] of the bodies, as exudyn has
+        them."""
+        held = {name: self.system.GetObject(body) for name, body in self.body.items()}
+        return {name: (float(o["mass"]), float(o["inertia"])) for name, o in held.items()}
+
+
+EPSILON = 2.0**-52
+
+
+def add_node(made: PlaneSystem, name: str, frame: Frame, state: State) -> None:
+    """Add a node of a beam: its place, and its tangent, longer than 1 by the strain there."""
+    c, s = math.cos(frame.theta), math.sin(frame.theta)
+    long, faster = 1.0 + state.strain.get(name, 0.0), state.strain_rate.get(name, 0.0)
+    made.centre[name] = (0.0, 0.0)
+    made.node[name] = made.system.AddNode(
+        items.NodePoint2DSlope1(
+            referenceCoordinates=[*frame.origin, long * c, long * s],
+            initialVelocities=[
+                *frame.velocity,
+                faster * c - long * frame.omega * s,
+                faster * s + long * frame.omega * c,
+            ],
+        )
+    )
+    made.looked[name] = frame.theta
+
+
+def add_elements(scene: Scene, made: PlaneSystem, beam: Beam) -> None:
+    """Add the elements between the nodes of a beam, straight at rest wherever these stand.
+
+    An element is a cubic in its own length (absolute nodal coordinates); it bends by EI times the
+    curvature of its axis over its stretch, and stretches by EA (|r'| - 1). Source: exudyn's own
+    manual, ObjectANCFCable2D and NodePoint2DSlope1; J. Gerstmayr, H. Irschik, On the correct
+    representation of bending and axial deformation in the absolute nodal coordinate formulation,
+    J. Sound and Vibration 318 (2008).
+    """
+    made.elements[beam.name] = [
+        made.system.AddObject(
+            items.ObjectANCFCable2D(
+                length=beam.element_m,
+                massPerLength=beam.density_kg_m,
+                bendingStiffness=beam.flexural_n_m2,
+                axialStiffness=beam.axial_n,
+                bendingDamping=beam.damping_s * beam.flexural_n_m2,
+                axialDamping=beam.damping_s * beam.axial_n,
+                nodeNumbers=[made.node[near], made.node[far]],
+            )
+        )
+        for near, far in zip(beam.nodes, beam.nodes[1:], strict=False)
+    ]
+    for i, element in enumerate(made.elements[beam.name]):
+        made.weigh(scene, f"{beam.name} {i}", element)
+
+
+def held_beams(scene: Scene, made: PlaneSystem) -> Mapping[str, tuple[Beam, ...]]:
+    """Of each beam what exudyn has of it, by element: a beam of one element each."""
+    return {
+        name: tuple(
+            _held(made.system.GetObject(element), name, pair)
+            for element, pair in zip(
+                made.elements[name], zip(beam.nodes, beam.nodes[1:], strict=False), strict=True
+            )
+        )
+        for name, beam in scene.beams.items()
+    }
+
+
+def _held(own: Mapping[str, float], name: str, nodes: tuple[str, str]) -> Beam:
+    """An element; one whose two dampings are not of one time has none that is a number."""
+    flexural, axial = float(own["bendingStiffness"]), float(own["axialStiffness"])
+    times = float(own["bendingDamping"]) / flexural, float(own["axialDamping"]) / axial
+    one = math.isclose(*times, rel_tol=1e-12)
+    return Beam(
+        name,
+        nodes,
+        float(own["length"]),
+        float(own["massPerLength"]),
+        flexural,
+        axial,
+        times[0] if one else math.nan,
+    )
+
+
+def node_masses(scene: Scene, made: PlaneSystem) -> dict[str, float]:
+    """The mass of each node [kg], half of that of the elements beside it, as exudyn has these."""
+    found: dict[str, float] = {}
+    for elements in held_beams(scene, made).values():
+        for one in elements:
+            for node in one.nodes:
+                half = 0.5 * one.density_kg_m * one.length_m
+                found[node] = found.get(node, 0.0) + half
+    return found
+
+
+def rounding_n(scene: Scene, state: State) -> float:
+    """What rounding leaves of the axial force of a beam [N]: its strain is a difference of places
+    over the length of an element. 0 without beams."""
+    reach = max([scene.longest_m, *(math.hypot(*place) for place in state.position.values())])
+    return max(
+        (EPSILON * beam.axial_n * reach / beam.element_m for beam in scene.beams.values()),
+        default=0.0,
+    )
 
 
 def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:

@@ -2,10 +2,213 @@
 
 from __future__ import annotations
 
-from sim.engine import Engine
-from sim.mujoco.session import MujocoSession
-from sim.mujoco.settings import AS_SHIPPED, TUNED, checked, holds, in_seconds
-from sim.mujoco.stepped import VERSION
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+
+import numpy as np
+
+from models.array import Array
+from models.errors import EngineError
+from models.mjcf.document import build
+from models.mjcf.forces import SpringTendon, planned, spring_tendons
+from models.mjcf.options import Writing, has_control
+from models.motion import State
+from models.scene import Point, Scene
+from models.tree import Tree, driven_freedom, plan
+from sim import drive as drives
+from sim.engine import Drive, Engine, Facts, Log, Poses, Settings, SettingValue
+from sim.mujoco.loading import Loading
+from sim.mujoco.reactions import JointForces, reactions
+from sim.mujoco.settings import (
+    AS_SHIPPED,
+    INTEGRATORS,
+    TUNED,
+    checked,
+    held_iterations,
+    held_share,
+    holds,
+    in_seconds,
+    integrator,
+    used,
+    velocity_shift,
+    weight_share,
+    writing,
+)
+from sim.mujoco.stepped import VERSION, SteppedModel, compiled, heard
+from sim.settings import SettingError
+from sim.tree_poses import body_poses
+
+
+class MujocoSession(SteppedModel):
+    """A scene in MuJoCo. Velocities of all integrators but RK4 lag by half a step."""
+
+    def __init__(
+        self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+    ) -> None:
+        super().__init__(state.time_s, dt_s, velocity_shift(settings, drive))
+        self._scene, self._settings, self._drive = scene, settings, drive
+        chosen = writing(scene, settings, dt_s, drive)
+        self._tree = tree = _tree(scene, state, chosen)
+        self._limbs = tree.limbs
+        self._closed = ", ".join(dict.fromkeys(c.point for c in tree.closures))
+        with heard(self._warnings.append):
+            model = compiled(build(scene, state, chosen, tree))
+        self._weights = model.body_invweight0.copy()
+        model.body_invweight0[:] *= weight_share(scene, settings, drive)
+        self._hold(model, keyframe=0)
+        self._servo = chosen.servo_gain is not None
+        self._controlled = has_control(scene, chosen)
+        self._free = chosen.free
+        staged = self._free and integrator(settings, drive) == "RK4"
+        self._loading = Loading(
+            scene, self._model, self._limbs, drive, state.time_s, dt_s if staged else None
+        )
+        self._tendons = spring_tendons(scene, state, tree)
+        driven, sense = driven_freedom(scene, tree.limbs)
+        self._crank = int(self._model.joint(driven).dofadr[0])
+        if not self._free:
+            start = drives.start_speed(scene.driver.law, state.time_s, dt_s, self._shift)
+            self._data.qvel[self._crank] = sense * start
+        self._pushes = np.empty(0)
+        self._forward()
+
+    def facts(self) -> Facts:
+        """The model as MuJoCo holds it now."""
+        model = self._model
+        names = [limb.body for limb in self._limbs]
+        opt = model.opt
+        settings: dict[str, SettingValue] = {
+            **used(self._settings, self._drive),
+            **holds(self._settings, self._dt, self._drive),
+            "close": self._closed,
+            "timestep_s": float(opt.timestep),
+            "tolerance": float(opt.tolerance),
+            **held_iterations(self._scene, self._settings, self._drive, int(opt.iterations)),
+            "integrator": INTEGRATORS[int(opt.integrator)],
+        }
+        if self._free:
+            share = self._share_of_weights()
+            settings |= held_share(self._scene, self._settings, self._drive, share)
+        if model.neq:
+            settings["solref_timeconst_s"] = float(model.eq_solref[0, 0])
+            settings["solref_dampratio"] = float(model.eq_solref[0, 1])
+            impedance = ("solimp_dmin", "solimp_dmax", "solimp_width")
+            settings |= zip(impedance, map(float, model.eq_solimp[0, :3]), strict=True)
+        return Facts(
+            version=VERSION,
+            mass_kg={n: float(model.body(n).mass[0]) for n in names},
+            inertia_kg_m2={n: self._inertia(n) for n in names},
+            centre_m={n: _pair(model.body(n).ipos) for n in names},
+            gravity_m_s2=(float(opt.gravity[0]), float(opt.gravity[1])),
+            start=self._start(),
+            settings=settings,
+            velocity_shift=self._shift,
+            acceleration_shift=0.0,
+            springs={tendon.spring.name: self._spring(tendon) for tendon in self._tendons},
+        )
+
+    def _share_of_weights(self) -> float:
+        """Of the inverse weights as compiled, those that the bodies have now."""
+        share = float(self._model.body_invweight0.sum() / self._weights.sum())
+        return float(f"{share:.12g}")
+
+    def record_forces(self, steps: int, every: int) -> Log:
+        """As `record`, with the forces of `mj_forward` at each kept state."""
+        joint_forces = JointForces(self._model, self._limbs, self._loading.first, self._tendons)
+        log = self._recorded(steps, every, joint_forces.look)
+        return replace(log, forces=reactions(self._scene, self._tree, log.poses, joint_forces))
+
+    def _spring(self, tendon: SpringTendon) -> tuple[float, float, float]:
+        """Rate, damping and the slack length or angle of a spring, as `Facts` has them."""
+        model, k = self._model, int(self._model.tendon(tendon.name).id)
+        slack = tendon.sense * float(model.tendon_lengthspring[k, 0]) + tendon.shift
+        return float(model.tendon_stiffness[k]), float(model.tendon_damping[k]), slack
+
+    def _inertia(self, body: str) -> float:
+        """Inertia about the centre of mass; a free crank has that of its hinge as well."""
+        inertia = float(self._model.body(body).inertia[2])
+        if self._free and body == self._scene.driver.link:
+            inertia += float(self._model.dof_armature[self._crank])
+        return inertia
+
+    def _roll(self, steps: int) -> Array:
+        with self._loading.in_stages(self._done, steps):
+            return super()._roll(steps)
+
+    @property
+    def _stays(self) -> bool:
+        return not self._model.nu
+
+    def _start(self) -> Poses:
+        """The current state; the accelerations of the first are there from the opening."""
+        if self._done or self._model.nu:  # by what the law asks for, which the opening left out
+            return self.read()
+        return self._placed(self._full_state()[None], np.zeros(1), self._data.qacc[None].copy())
+
+    def _controls(self, steps: int) -> Array | None:
+        """The controls of each of the next steps; None where the model has no actuator.
+
+        A load that is known ahead is held through a step at its size in the middle of what the
+        step makes of the velocity. At the start of a step of RK4 it would come half a step late:
+        of first order, where this is of second. Where nothing drives the crank, a step of RK4 sees
+        it in its stages instead (`Loading.in_stages`), which is of fourth.
+        """
+        if not self._model.nu:
+            return None
+        middle = self._done + np.arange(steps, dtype=np.float64) + 0.5 + self._shift
+        loads = self._loading.at_times(self._start_s + self._dt * middle)
+        return np.hstack([self._driving(steps), loads]) if self._controlled else loads
+
+    def _driving(self, steps: int) -> Array:
+        """The control of the crank in each of the next steps, (steps, 1)."""
+        law, end = self._scene.driver.law, self._done + steps
+        if self._servo:  # the speed that the step leads to is its mean speed
+            return drives.chords(law, self._start_s, self._dt, self._done, end - 1)[:, None]
+        if len(self._pushes) < end + 1:
+            longer = max(end + 1, 2 * len(self._pushes))
+            self._pushes = drives.pushes(law, self._start_s, self._dt, longer, self._shift)
+        return self._pushes[self._done : end, None]
+
+    def _placed(self, states: Array, at: Array, push: Array) -> Poses:
+        """Poses of states with their joint accelerations (T, nv)."""
+        lag = self._shift * self._dt
+        poses = body_poses(self._limbs, *self._joints(states), push, lag)
+        return Poses(self._start_s + self._dt * at, poses, lag)
+
+    def _control_at(self, at: Array) -> Array | None:
+        """The law's own speed or acceleration at the steps, and the sizes of the loads."""
+        if not self._model.nu:
+            return None
+        time_s = self._start_s + self._dt * at
+        loads = self._loading.at_times(time_s)
+        if not self._controlled:
+            return loads
+        _, omega, alpha = self._scene.driver.law.at(time_s)
+        return np.column_stack([omega if self._servo else alpha, loads])
+
+    @contextmanager
+    def _at_work(self) -> Iterator[None]:
+        """As of any model; and loads follow the motion."""
+        with super()._at_work(), self._loading.following():
+            yield
+
+
+def _pair(vector: Array) -> Point:
+    """The first two of a vector, in the plane."""
+    return float(vector[0]), float(vector[1])
+
+
+def _tree(scene: Scene, state: State, chosen: Writing) -> Tree:
+    """The tree; a fault that only the setting ``close`` causes is a fault of the setting."""
+    try:
+        return planned(scene, state, chosen)
+    except EngineError as error:
+        if not chosen.close:
+            raise
+        able = ", ".join(closure.point for closure in plan(scene, state).closures)
+        raise SettingError(f"setting {error}; by default {able}") from None
+
 
 ENGINE = Engine(
     "mujoco",

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from models.characteristics import Constant
-from models.driven_freedom import driven_freedom
 from models.errors import EngineError
 from models.joints import joined_at
 from models.laws import ConstantSpeed
-from models.mjcf import build
-from models.mjcf_friction import planned
+from models.mjcf.document import build
+from models.mjcf.forces import planned
 from models.motion import State
 from models.scene import Scene
-from models.tree import Tree
+from models.tree import Tree, driven_freedom
 from sim.engine import Settings
-from sim.force_recipes import ForceRecipe
 from sim.mujoco.settings import writing
+from sim.offers import ForceRecipe
 
 PROGRAM = '''"""Reactions and driving torque of {scene} in MuJoCo, over one turn of {driver}."""
 

@@ -3,22 +3,144 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
+import mujoco  # type: ignore[import-untyped]  # ships no stubs  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.array import Array
-from models.forces import Forces, SliderForces
-from models.joints import block_name, joined_at, joints, local_point, riding_body
-from models.mjcf_friction import rubbing_freedom
-from models.mjcf_loads import point_of_application
+from models.joints import block_name, joined_at, joints, line_ends, local_point, riding_body
+from models.loads import LineSpring, PinSpring, SlideSpring, Spring
+from models.mjcf.forces import SpringTendon, point_of_application, rubbing_freedom
+from models.motion import Forces, SliderForces
 from models.scene import GROUND, Point, Scene, Slider
-from models.spring_ends import line_ends
-from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from models.tree import Limb, Tree
 from sim.engine import Poses
-from sim.mujoco.joint_forces import JointForces
-from sim.mujoco.outside_forces import springs_between_points_are_outside
-from sim.mujoco.wrench import Wrench
+from sim.measure import arms, directions
+
+
+@dataclass(frozen=True)
+class Wrench:
+    """A ``force`` (T, 2) [N] and its ``moment`` (T,) [N m] about ``place`` (T, 2) [m]."""
+
+    force: Array
+    moment: Array
+    place: Array
+
+    def moment_about(self, place: Array) -> Array:
+        """The moment about another place."""
+        x, y = (self.place - place).T
+        return np.asarray(self.moment + x * self.force[:, 1] - y * self.force[:, 0])
+
+    def __neg__(self) -> Wrench:
+        return Wrench(-self.force, -self.moment, self.place)
+
+    def __sub__(self, other: Wrench) -> Wrench:
+        """About the place of the first."""
+        moment = self.moment - other.moment_about(self.place)
+        return Wrench(self.force - other.force, moment, self.place)
+
+
+PROBE = """<mujoco>
+  <worldbody>
+    <site name="still" pos="0 1 0"/>
+    <body>
+      <joint axis="0 0 1"/>
+      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+      <site name="moving" pos="1 0 0"/>
+    </body>
+  </worldbody>
+  <tendon>
+    <spatial stiffness="1" springlength="0">
+      <site site="still"/>
+      <site site="moving"/>
+    </spatial>
+  </tendon>
+</mujoco>"""
+
+
+@lru_cache
+def springs_between_points_are_outside() -> bool:
+    """Whether the springs of spatial tendons are among them, as in 4.0.0, or seem to come through
+    the joints, as those of fixed tendons do; asked of the MuJoCo that is installed."""
+    model = mujoco.MjModel.from_xml_string(PROBE)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    mujoco.mj_rnePostConstraint(model, data)
+    return bool(data.cfrc_ext[1].any())
+
+
+class JointForces:
+    """Forces in the joints of the states that it is shown, one row a state.
+
+    After `mj_forward`, `mj_rnePostConstraint` has the force that each body is given by its parent
+    (``cfrc_int``): inertia and gravity of all that hangs on it, less what the loops take over. That
+    of the crank is without the flywheel, which is no body. The forces at the pins that close the
+    loops are the multipliers of their connects, three rows each in the frame of the world, that of
+    the first body first.
+    """
+
+    def __init__(
+        self,
+        model: Any,
+        limbs: tuple[Limb, ...],
+        first_load: int,
+        tendons: tuple[SpringTendon, ...] = (),
+    ) -> None:
+        self._bodies = np.array([model.body(limb.body).id for limb in limbs])
+        self._roots = model.body_rootid[self._bodies]
+        self._limbs = limbs
+        self._wrenches: list[Array] = []
+        self._centres: list[Array] = []
+        self._loops: list[Array] = []
+        self._friction: list[Array] = []
+        self._first_load, self._sizes = first_load, list[Array]()
+        self._senses = np.array([tendon.sense for tendon in tendons])
+        self._pulls: list[Array] = []
+
+    def look(self, model: Any, data: Any) -> None:
+        """Take the forces of a state; `mj_forward` has seen it."""
+        mujoco.mj_rnePostConstraint(model, data)
+        self._wrenches.append(data.cfrc_int[self._bodies, 2:5])
+        self._centres.append(data.subtree_com[self._roots, :2])
+        loops = np.zeros((model.neq, 3))
+        # Equalities come first among the rows of constraints; one that is off has none. Friction
+        # follows them, a row for each joint that has some.
+        loops[data.efc_id[: data.ne : 3]] = data.efc_force[: data.ne].reshape(-1, 3)
+        self._loops.append(loops[:, :2])
+        friction = np.zeros(model.nv)
+        rubbing = slice(data.ne, data.ne + data.nf)
+        friction[data.efc_id[rubbing]] = data.efc_force[rubbing]
+        self._friction.append(friction)
+        self._sizes.append(data.ctrl[self._first_load :].copy())
+        longer = data.ten_length - model.tendon_lengthspring[:, 0]
+        pulls = model.tendon_stiffness * longer + model.tendon_damping * data.ten_velocity
+        self._pulls.append(self._senses * pulls)
+
+    def from_parent(self, limb: Limb) -> Wrench:
+        """What the parent exerts on a limb, about the place where MuJoCo has it: the centre of mass
+        of the tree that the limb is part of."""
+        k = self._limbs.index(limb)
+        given = np.array([each[k] for each in self._wrenches])
+        return Wrench(given[:, 1:], given[:, 0], np.array([each[k] for each in self._centres]))
+
+    def of_load(self, load: int) -> Array:
+        """The size of a load, (T,)."""
+        return np.array([each[load] for each in self._sizes])
+
+    def of_spring(self, spring: int) -> Array:
+        """What a spring pulls its q back with, (T,)."""
+        return np.array([each[spring] for each in self._pulls])
+
+    def of_friction(self, joint: int) -> Array:
+        """What friction does along a coordinate, (T,)."""
+        return np.array([each[joint] for each in self._friction])
+
+    def at_loop(self, equality: int) -> Array:
+        """What a connect exerts on its first body, (T, 2)."""
+        return np.array([each[equality] for each in self._loops])
 
 
 def reactions(scene: Scene, tree: Tree, poses: Poses, joint_forces: JointForces) -> Forces:
@@ -164,7 +286,7 @@ class _Reactions:
         if load.point is None:
             return at.body, Wrench(np.zeros_like(place), size, place)
         angle = at.direction_rad + (self._theta(at.body) if at.turns else np.zeros_like(size))
-        force = size[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        force = size[:, None] * directions(angle)
         return at.body, Wrench(force, np.zeros_like(size), place)
 
     def _ends(self, spring: Spring, pull: Array) -> list[tuple[str, Wrench]]:
@@ -190,18 +312,14 @@ class _Reactions:
 
     def _along(self, slider: Slider) -> Array:
         """The direction of the line of a slider, (T, 2)."""
-        angle = self._theta(slider.on) + slider.direction_rad
-        return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        return directions(self._theta(slider.on) + slider.direction_rad)
 
     def _point(self, body: str, point: str) -> Array:
         return self._place(body, local_point(self._scene, body, point))
 
     def _place(self, body: str, local: Point) -> Array:
         """Where a body has a place of its frame, (T, 2)."""
-        theta = self._theta(body)
-        c, s = np.cos(theta), np.sin(theta)
-        x, y = local
-        arm = np.stack([c * x - s * y, s * x + c * y], axis=-1)
+        arm = arms(self._theta(body), local)
         return arm if body == GROUND else arm + self._poses.bodies[body].origin
 
     def _theta(self, body: str) -> Array:

@@ -2,7 +2,216 @@
 
 from __future__ import annotations
 
-from sim.mujoco.own_model.read import read_model
-from sim.own_models import Reader
+import copy
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import numpy as np
+
+from models.errors import EngineError, suggestion
+from models.motion import State
+from models.scene import Scene
+from sim.engine import Drive, Engine, Poses, Session, Settings
+from sim.measure import gaps
+from sim.mujoco.own_model.closures import ModelError, body_name, name_of, scene_name
+from sim.mujoco.own_model.component import component, loose_joints
+from sim.mujoco.own_model.disturbing import disturbances
+from sim.mujoco.own_model.file import files, load, text_of
+from sim.mujoco.own_model.linkage import linkage, nearly
+from sim.mujoco.own_model.planar_model import PlanarModel, limbs_of
+from sim.mujoco.own_model.scene import scene_of
+from sim.mujoco.own_model.session import OwnModelSession
+from sim.mujoco.own_model.tour import tour
+from sim.mujoco.own_model.variants import (
+    OFF,
+    RECOMMENDED,
+    advice,
+    applied,
+    checked,
+    diff,
+    held,
+    patched,
+    profiles,
+)
+from sim.mujoco.stepped import VERSION, compiled_file
+from sim.own_models import MOST_TURNS, Advised, Disturbance, Reader, Tour
+from sim.tree_poses import body_poses
+
+
+@dataclass(frozen=True, eq=False)
+class ReadModel:
+    """An MJCF file as it was read: `sim.own_models.OwnModel`."""
+
+    path: Path
+    planar: PlanarModel
+
+    @property
+    def scene(self) -> Scene:
+        """Without a branch; its driver turns at 1 rad/s from where it is drawn."""
+        return self.planar.read.scene
+
+    @property
+    def dt_s(self) -> float:
+        """The file's own step [s]."""
+        return float(self.planar.model.opt.timestep)
+
+    @cached_property
+    def _present(self) -> list[Disturbance]:
+        return disturbances(self.planar.linkage)
+
+    @property
+    def disturbances(self) -> list[Disturbance]:
+        """Also points of a link that may have been meant to be one."""
+        called = self.planar.read.names
+        near = [
+            Disturbance(
+                "near points",
+                f"{called[each.link]}: {each.first} and {each.second} are {each.distance_m:.3g} m "
+                "apart",
+            )
+            for each in nearly(self.planar.read.points, self.planar.linkage)
+        ]
+        return [*self._present, *near]
+
+    @property
+    def files(self) -> list[Path]:
+        """The file, and those that it includes."""
+        return files(self.path)
+
+    def drawn(self) -> Poses:
+        """The pose that the file asks for: as drawn, or that of the keyframe."""
+        limbs = self.planar.limbs
+        q = np.array(limbs.senses) * self.planar.qpos[list(limbs.positions)]
+        still = np.zeros((1, len(q)))
+        poses = body_poses(limbs.limbs, q[None], still, still)
+        return Poses(np.zeros(1), {name: poses[limb] for name, limb in limbs.shown.items()})
+
+    def coordinate_rad(self) -> float:
+        """What the driven joint reads in that pose."""
+        planar = self.planar
+        return float(planar.qpos[planar.model.jnt_qposadr[planar.driven]])
+
+    def open_m(self) -> Mapping[str, float]:
+        """By how much each joint is open in that pose [m]."""
+        return {name: float(gap[0]) for name, gap in gaps(self.scene, self.drawn()).items()}
+
+    def loose(self) -> list[str]:
+        """The joints that can still move where the driven one is held."""
+        return loose_joints(self.planar.linkage.component)
+
+    def welds(self) -> list[str]:
+        """The welds that make bodies of the linkage one."""
+        component = self.planar.linkage.component
+        return [
+            f"{' and '.join(body_name(component.model, body) for body in each.bodies)}"
+            for each in component.closures
+            if each.kind == "weld"
+        ]
+
+    def tour(self, scene: Scene, states: Sequence[State]) -> Tour:
+        """Hold the model in states of its closed form."""
+        try:
+            return tour(self.planar, scene, states)
+        except ModelError as error:
+            raise ModelError(f"{self.path}: {error}") from None
+
+    def engine(self, advised: Advised) -> Engine:
+        """MuJoCo with this model, and the lines to tell of it as profiles."""
+
+        def opened(
+            scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+        ) -> Session:
+            return OwnModelSession(self.planar, scene, state, settings, dt_s, drive)
+
+        present = dict.fromkeys(each.kind for each in self._present if each.kind in OFF)
+        lines = profiles(present, advised)
+        return Engine("mujoco", lines, version=lambda: VERSION, check=checked, open=opened)
+
+    def patch(self, dt_s: float, advised: Advised) -> str:
+        """The recommended settings as a diff, that was applied and compiled; in words, where the
+        file does not hold all that it would change."""
+        planar = self.planar
+        told = advice(planar.model, dt_s, advised)
+        try:
+            raw = text_of(self.path)
+            new = patched(raw, planar.loops, int(planar.model.neq), told)
+            found = compiled_file(self.path, new)
+            text = diff(self.path, raw, new)
+        except EngineError as error:
+            return f"{error}: {told.words()}\n"
+        line = profiles((), advised)[RECOMMENDED]
+        settings = {name: setting.value for name, setting in line.settings.items()}
+        wanted = copy.copy(planar.model)
+        applied(wanted, planar.loops, settings, dt_s)
+        if held(found, planar.loops, settings) != held(wanted, planar.loops, settings):
+            return f"what it includes overrides the file itself: {told.words()}\n"
+        return text
+
+
+def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
+    """The model of a file, driven by one of its joints, from one of its keyframes if one is named.
+
+    Raises
+    ------
+    ModelError
+        See `load`, `component`, `linkage` and `scene_of`; no keyframe of that name, or one that is
+        not finite, or a hinge that is many turns away.
+    """
+    model = load(path)
+    names = [name_of(model, mujoco.mjtObj.mjOBJ_KEY, index) for index in range(model.nkey)]
+    if key is not None and key not in names:
+        there = [name for name in names if name]
+        hint = suggestion(key, there, "it has") if there else "the model has none with a name"
+        raise ModelError(f"--key {key!r}: no keyframe of that name; {hint}")
+    keyframe = None if key is None else names.index(key)
+    if keyframe is not None:
+        _refuse_not_finite(path, model, keyframe)
+        model = _moved(model, keyframe)
+    try:
+        joined = linkage(component(model, joint))
+        scene = scene_of(joined, scene_name(path.stem, "model", ()), f"read off {path.name}")
+    except ModelError as error:
+        raise ModelError(f"{path}: {error}") from None
+    planar = PlanarModel(model, joined, scene, limbs_of(joined, scene), keyframe)
+    _refuse_many_turns(path, planar)
+    return ReadModel(path, planar)
+
+
+def _refuse_many_turns(path: Path, planar: PlanarModel) -> None:
+    """Refuse a pose with hinges so far round that the rounding of their angles would be judged."""
+    for body in planar.linkage.component.bodies:
+        for joint in body.joints:
+            turns = float(planar.qpos[planar.model.jnt_qposadr[joint.index]]) / math.tau
+            if joint.kind == "hinge" and not abs(turns) <= MOST_TURNS:
+                raise ModelError(
+                    f"{path}: joint {joint.name} reads {turns:.3g} turns in this pose; take whole "
+                    f"turns off it, to within {MOST_TURNS}"
+                )
+
+
+def _refuse_not_finite(path: Path, model: Any, keyframe: int) -> None:
+    for what in ("qpos", "mpos", "mquat"):
+        if not np.isfinite(getattr(model, f"key_{what}")[keyframe]).all():
+            name = name_of(model, mujoco.mjtObj.mjOBJ_KEY, keyframe)
+            raise ModelError(f"{path}: keyframe {name}: its {what} is not finite")
+
+
+def _moved(model: Any, keyframe: int) -> Any:
+    """The model with its mocap bodies where the keyframe has them: they are ground."""
+    moved = copy.copy(model)
+    places = model.key_mpos[keyframe].reshape(-1, 3)
+    turns = model.key_mquat[keyframe].reshape(-1, 4)
+    for body in np.flatnonzero(model.body_mocapid >= 0):
+        mocap = int(model.body_mocapid[body])
+        turn = np.array(turns[mocap])
+        mujoco.mju_normalize4(turn)
+        moved.body_pos[body], moved.body_quat[body] = places[mocap], turn
+    return moved
+
 
 READER: Reader = read_model

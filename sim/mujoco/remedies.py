@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from itertools import islice
 
-from models.closings import closings
 from models.motion import State
 from models.scene import Scene
+from models.tree import closings
 from sim.engine import Settings
-from sim.remedies import Remedies
+from sim.offers import Remedies
 
 MOST_CLOSINGS = 8
 STIFFER: tuple[Settings, ...] = ({"solref_timeconst_steps": 2}, {"solref_dampratio": 0.3})

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
-from models import mjcf, mjcf_options
+from models.joints import inertia_scale
+from models.loads import SegmentSpring
+from models.mjcf import document, options
 from models.motion import State
-from models.poses import inertia_scale
 from models.scene import Scene
-from models.springs import SegmentSpring
 from sim.engine import Drive, Profile, Setting, Settings, SettingValue
 from sim.settings import check_choices, check_ranges
 
@@ -40,9 +41,13 @@ RANGES = {
 MORE_ITERATIONS = {"friction": 20, "springs": 20, "free_weight_share": 4}
 """What causes need more iterations than pins as stiff as the compiled weights make them."""
 OF_DRIVES = ("flywheel_ratio", "servo_gain", "servo_integrator")
-"""What a free crank does not have."""
 OF_FREE = ("free_timeconst_steps", "free_inverse_weight_share")
-"""What is given to a free crank alone."""
+NOT_USED: Mapping[Drive, tuple[str, ...]] = {
+    "prescribed": OF_FREE,
+    "servo": OF_FREE,
+    "free": OF_DRIVES,
+}
+"""The settings that a drive has no use for."""
 
 FREE_STEPS, FREE_WEIGHT_SHARE = 32.0, 1e-7
 """Time constant of the loop closures in steps, and the share of the bodies' inverse weights, where
@@ -71,7 +76,7 @@ AS_SHIPPED = Profile(
         "islands": Setting("enable", "default"),
         "contact": Setting("enable", "default"),
         "close": Setting("", "the pins that `models.tree` chooses; names with + or , between"),
-        "flywheel_ratio": Setting(mjcf_options.FLYWHEEL_RATIO, "the drive, not an engine default"),
+        "flywheel_ratio": Setting(options.FLYWHEEL_RATIO, "the drive, not an engine default"),
         "servo_gain": Setting(1e3, "of the drive `servo`, over inertia scale times peak speed"),
         "servo_integrator": Setting("Euler", "default; takes the place of integrator under servo"),
         "free_timeconst_steps": Setting(0.0, "not used: let go, loops close as they do driven"),
@@ -86,26 +91,26 @@ TUNED = Profile(
     | {
         "integrator": Setting("RK4", "between the samples the motion is smooth: 500 x less error"),
         "tolerance": Setting(
-            mjcf_options.TOLERANCE,
+            options.TOLERANCE,
             "over flywheel_ratio, as MuJoCo's stopping rule is scaled by the inertia of the whole "
             "model, flywheel included; low enough for cranks of 0.01 rad/s, and 25 % faster than 0",
         ),
         "iterations": Setting(2, "pins give a quadratic problem: Newton is there after one"),
         "solref_timeconst_steps": Setting(
-            mjcf_options.STIFF_STEPS,
+            options.STIFF_STEPS,
             "with dampratio, 3 dt of stiffness: at 2 dt (the least MuJoCo allows) RK4 resolves the "
             "closing spring badly, above 4 dt it gives way more; found by `crankcheck tune` over "
             "several scenes",
         ),
         "solref_dampratio": Setting(
-            mjcf_options.STIFF_DAMPING,
+            options.STIFF_DAMPING,
             "as above; against 4 dt at 1 the worst of all shipped scenes has 1.6 times less error, "
             "and 3 times less in accelerations",
         ),
         "solimp_dmin": Setting(
-            mjcf_options.STIFF_IMPEDANCE, "the most MuJoCo allows: give way by 0.01 % only"
+            options.STIFF_IMPEDANCE, "the most MuJoCo allows: give way by 0.01 % only"
         ),
-        "solimp_dmax": Setting(mjcf_options.STIFF_IMPEDANCE, "as dmin: no dependence on the gap"),
+        "solimp_dmax": Setting(options.STIFF_IMPEDANCE, "as dmin: no dependence on the gap"),
         "servo_integrator": Setting(
             "discrete",
             "a stiff servo explodes under explicit integrators, and implicitfast solves the loops "
@@ -133,7 +138,7 @@ def checked(settings: Settings) -> None:
     check_ranges(settings, RANGES)
 
 
-def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf_options.Writing:
+def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> options.Writing:
     """The choices of the MJCF text that the settings amount to."""
     checked(settings)
     held = holds(settings, dt_s, drive)
@@ -144,7 +149,7 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf
     dmin, dmax = float(settings["solimp_dmin"]), float(settings["solimp_dmax"])
     solimp = (dmin, dmax, float(settings["solimp_width"]), 0.5, 2.0)
     damping, driven = float(settings["solref_dampratio"]), holds(settings, dt_s, "prescribed")
-    return mjcf_options.Writing(
+    return options.Writing(
         close=tuple(p.strip() for p in re.split("[+,]", str(settings["close"])) if p.strip()),
         option={
             "timestep": dt_s,
@@ -181,24 +186,27 @@ def _iterating(scene: Scene, settings: Settings, drive: Drive) -> str:
         return "friction"
     if scene.springs and integrator(settings, drive) == "discrete":
         return "springs"
-    return "free_weight_share" if drive == "free" and weight_share(scene, settings) != 1 else ""
+    return "free_weight_share" if weight_share(scene, settings, drive) != 1 else ""
 
 
-def weight_share(scene: Scene, settings: Settings) -> float:
+def weight_share(scene: Scene, settings: Settings, drive: Drive) -> float:
     """Of the inverse weights as compiled, those that the bodies of what is let go are given.
 
     Rounding goes up as the weights go down, and makes chains of elastic segments ring, which
     nothing damps: theirs go down less.
     """
-    asked = float(settings["free_inverse_weight_share"])
+    asked = float(used(settings, drive).get("free_inverse_weight_share", 1.0))
     ringing = any(isinstance(spring, SegmentSpring) for spring in scene.springs.values())
     return max(asked, SEGMENTS_SHARE) if ringing and asked < 1.0 else asked
 
 
-def held_share(scene: Scene, settings: Settings, found: float) -> dict[str, SettingValue]:
+def held_share(
+    scene: Scene, settings: Settings, drive: Drive, found: float
+) -> dict[str, SettingValue]:
     """The share that a model was ``found`` with, as settings: that asked for, and beside it that of
     segments."""
-    asked, given = float(settings["free_inverse_weight_share"]), weight_share(scene, settings)
+    asked = float(settings["free_inverse_weight_share"])
+    given = weight_share(scene, settings, drive)
     if given != asked and found == given:
         return {"free_inverse_weight_share": asked, "free_inverse_weight_share_of_segments": found}
     return {"free_inverse_weight_share": found}
@@ -220,8 +228,7 @@ def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
     pins that close the loops, which depend on the scene."""
     ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
     steps = closing_steps(settings, drive)
-    unused = ("close", *not_used(drive))
-    return {name: value for name, value in settings.items() if name not in unused} | {
+    return {name: value for name, value in used(settings, drive).items() if name != "close"} | {
         "integrator": integrator(settings, drive),
         "tolerance": tolerance / ratio if drive == "prescribed" else tolerance,
         "solref_timeconst_steps": steps,
@@ -229,14 +236,14 @@ def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
     }
 
 
-def not_used(drive: Drive) -> tuple[str, ...]:
-    """The settings that a drive has no use for."""
-    return OF_DRIVES if drive == "free" else OF_FREE
+def used(settings: Settings, drive: Drive) -> Settings:
+    """The settings that a drive has a use for."""
+    return {name: value for name, value in settings.items() if name not in NOT_USED[drive]}
 
 
 def closing_steps(settings: Settings, drive: Drive) -> float:
     """Time constant of the loops in steps; 0 where it is told in seconds."""
-    own = float(settings["free_timeconst_steps"]) if drive == "free" else 0.0
+    own = float(used(settings, drive).get("free_timeconst_steps", 0.0))
     return own or float(settings["solref_timeconst_steps"])
 
 
@@ -267,4 +274,4 @@ def text(
     drive: Drive = "prescribed",
 ) -> str:
     """The MJCF text that a run with these settings loads."""
-    return mjcf.build(scene, state, writing(scene, settings, dt_s, drive))
+    return document.build(scene, state, writing(scene, settings, dt_s, drive))

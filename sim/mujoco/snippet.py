@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings, SettingValue
 from sim.mujoco.settings import AS_SHIPPED, closing_steps
-from sim.snippets import SnippetWriter, Stepping
+from sim.offers import SnippetWriter, Stepping
 
 IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
 INSET = "  "
@@ -24,7 +24,7 @@ def mujoco_snippet(
 
     A class for the loop's own connects, and the step and integrator, which can only be the whole
     model's. What else differs from MuJoCo's defaults would change the rest of a user's model and
-    stands in a comment; see `sim.snippets.snippet`.
+    stands in a comment; see `sim.offers.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = defaults | dict(settings)
@@ -92,9 +92,10 @@ def _how_to_scale(complete: Settings, stepping: Stepping, drive: Drive) -> str:
     per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
     steps = float(complete["solref_timeconst_steps"])
     stiff = f", and solref = {steps:g} timestep." if steps else "."
-    if drive == "free":  # no speed of the crank says how long it may be
+    counted = stepping.counted_in(drive)
+    if counted == "nothing":
         return f"Let go: timestep = {stepping.dt_s:g} s{stiff}"
-    if not stepping.substeps:
+    if counted == "turns":
         return (
             f"{per_turn} steps a turn of a crank at {speed}. At another speed: timestep = 2 pi / "
             f"({per_turn} speed)" + stiff

@@ -10,7 +10,7 @@ import numpy as np
 
 from models.array import Array
 from sim.engine import Session, Settings
-from sim.mujoco.session import MujocoSession
+from sim.mujoco.engine import MujocoSession
 from sim.mujoco.settings import text
 from sim.spoil import Opening, Post, Spoiler, WrongSetting, rounded
 

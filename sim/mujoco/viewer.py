@@ -9,14 +9,14 @@ import mujoco.viewer  # type: ignore[import-untyped]  # as above
 import numpy as np
 
 from models.laws import Law
-from models.mjcf import build
-from models.mjcf_friction import planned
-from models.mjcf_options import exact, has_control
+from models.mjcf.document import build
+from models.mjcf.forces import planned
+from models.mjcf.options import exact, has_control
 from models.motion import State
 from models.scene import Scene
 from sim.engine import Drive
 from sim.mujoco.loading import Loading
-from sim.viewing import Viewer
+from sim.offers import Viewer
 
 
 def show(scene: Scene, start: State) -> None:

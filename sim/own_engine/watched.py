@@ -14,9 +14,9 @@ from typing import Any, cast
 
 import numpy as np
 
-from models.errors import CrankcheckError, EngineError, shown
-from models.joints import bodies
-from models.motion import State
+from models.errors import CrankcheckError, EngineError, few, shown
+from models.joints import bodies, joined_at
+from models.motion import Forces, SliderForces, State
 from models.scene import Scene
 from sim.engine import (
     BodyPose,
@@ -29,7 +29,6 @@ from sim.engine import (
     Session,
     Settings,
 )
-from sim.own_engine.reported_forces import wrong_forces
 from sim.own_engine.spelling import failure
 
 PAIRS = ("origin", "velocity", "origin_acceleration")
@@ -181,11 +180,9 @@ def _pose(pose: object, size: int) -> str:
     if not isinstance(pose, BodyPose):
         return f"{shown(pose)}, and has to give a BodyPose"
     for each in fields(BodyPose):
-        values, shape = getattr(pose, each.name), (size, 2) if each.name in PAIRS else (size,)
-        kind = values.dtype if isinstance(values, np.ndarray) else None
-        if kind is None or values.shape != shape or kind != np.float64:
-            what = f"{kind} of shape {values.shape}" if kind is not None else shown(values)
-            return f"{each.name} as {what}, and has to give float64 of shape {shape}"
+        shape = (size, 2) if each.name in PAIRS else (size,)
+        if text := _wrong(each.name, getattr(pose, each.name), shape):
+            return text
     return ""
 
 
@@ -209,3 +206,49 @@ def _facts(facts: Facts) -> Iterator[str]:
 
 def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and math.isfinite(value)
+
+
+def wrong_forces(scene: Scene, forces: object, size: int) -> str:
+    """What is wrong with forces of so many samples; nothing of whether they are true."""
+    if not isinstance(forces, Forces):
+        return f"gave {shown(forces)} for forces, and has to give Forces"
+    pins = joined_at(scene)
+    for what, given, wanted in (
+        ("pins", forces.pins, pins),
+        ("sliders", forces.sliders, scene.sliders),
+    ):
+        if not isinstance(given, Mapping) or list(given) != list(wanted):
+            named = few(list(wanted), 12) or "none"
+            return f"gave {shown(list(given))} for {what}, and the scene has {named}, in this order"
+    for point, by_body in forces.pins.items():
+        if not isinstance(by_body, Mapping) or tuple(by_body) != pins[point]:
+            names = ", ".join(pins[point])
+            return (
+                f"gave for pin {point} {shown(by_body)}, and its bodies are {names}, in this order"
+            )
+    return next((f"gave {text}" for text in _wrong_arrays(forces, size) if text), "")
+
+
+def _wrong_arrays(forces: Forces, size: int) -> Iterator[str]:
+    """What is wrong with each series, which is to be float64 of its shape: "" where nothing is."""
+    for point, by_body in forces.pins.items():
+        for body, force in by_body.items():
+            yield _wrong(f"the force of pin {point} on {body}", force, (size, 2))
+    for name, slider in forces.sliders.items():
+        if not isinstance(slider, SliderForces):
+            yield f"for slider {name} {shown(slider)}, and has to give SliderForces"
+            return
+        yield _wrong(f"the normal force of slider {name}", slider.normal, (size,))
+        yield _wrong(f"the moment of slider {name}", slider.moment, (size,))
+    yield _wrong("torque", forces.torque, (size,))
+    yield _wrong("the time_s of forces", forces.time_s, (size,))
+
+
+def _wrong(what: str, values: object, shape: tuple[int, ...]) -> str:
+    """What of an array is not as it has to be."""
+    found = shown(values)
+    if isinstance(values, np.ndarray):
+        if values.shape == shape and values.dtype == np.float64:
+            return ""
+        found = f"{values.dtype} of shape {values.shape}"
+    return f"{what} as {found}, and has to give float64 of shape {shape}"

@@ -28,9 +28,9 @@ from models.array import Array
 from models.errors import EngineError
 from models.scene import Scene
 from sim.engine import Settings
-from sim.pymunk.chain_springs import chain_springs
-from sim.pymunk.pushes import moves_freely
+from sim.pymunk.native import moves_freely
 from sim.pymunk.space import SpaceModel
+from sim.pymunk.spring_steps import chain_springs
 
 HALVINGS = 3.0
 """How often an error is halved in a step, at least, in the position of the start. One is what holds

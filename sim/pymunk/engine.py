@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 
 import numpy as np
 import pymunk
@@ -17,11 +18,10 @@ from sim import drive as drives
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
 from sim.pymunk.acting import Acting
 from sim.pymunk.arcs import Arcs
-from sim.pymunk.body_rows import FIELDS, WIDTH, finite, pose, rows_of
-from sim.pymunk.chain_springs import chain_springs
+from sim.pymunk.bodies import FIELDS, WIDTH, finite, pose, rows_of
 from sim.pymunk.convergence import iterations
 from sim.pymunk.driven_joint import DrivenJoint, driven_joint
-from sim.pymunk.pushes import moves_freely
+from sim.pymunk.native import moves_freely
 from sim.pymunk.reactions import BEFORE, Reactions
 from sim.pymunk.settings import (
     AS_SHIPPED,
@@ -34,6 +34,7 @@ from sim.pymunk.settings import (
     springs_as_forces,
 )
 from sim.pymunk.space import SpaceModel, build
+from sim.pymunk.spring_steps import chain_springs
 
 ROOM = 64
 """Numbers of memory to spare: the buffer may not grow memory that is not its own."""
@@ -54,8 +55,7 @@ class PymunkSession:
         self._model: SpaceModel = build(
             scene,
             state,
-            servo=drive == "servo",
-            free=drive == "free",
+            drive=drive,
             exact_lines=exact_lines(settings),
             with_springs=not springs_as_forces(settings),
             delay_s=VELOCITY_SHIFT * dt_s,
@@ -110,36 +110,34 @@ class PymunkSession:
 
     def record(self, steps: int, every: int) -> Log:
         """Advance; one batch call per logged step appends all bodies to one buffer."""
-        at = self._done + every * np.arange(steps // every + 1, dtype=np.float64)
-        began = time.perf_counter()
-        self._make_room(len(at))
-        self._log()
-        self._advance(steps, every)
-        rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
-        wall = time.perf_counter() - began
-        rows = rows.reshape(len(at), -1, WIDTH)
-        count = finite(rows)
-        poses = self._poses(rows[:count], at[:count])
-        return Log(poses, (count - 1) * every, count < len(at), (), wall)
+        log, _ = self._recorded(steps, every)
+        return log
 
     def record_forces(self, steps: int, every: int) -> Log:
         """As `record`, with the forces of each logged step; the first sample has none."""
-        at = self._done + every * np.arange(steps // every + 1, dtype=np.float64)
         bent = self._arcs is not None
         reactions = Reactions(self._scene, self._model, self._rows, self._dt, bent=bent)
+        log, rows = self._recorded(steps, every, reactions)
+        count = len(log.poses.time_s)
+        before, after = rows[1::2][: max(count - 1, 0)], rows[0::2][:count]
+        return replace(log, forces=reactions.forces(before, after, log.poses.time_s))
+
+    def _recorded(
+        self, steps: int, every: int, reactions: Reactions | None = None
+    ) -> tuple[Log, Array]:
+        """The log, and the rows of the buffer: with ``reactions`` each step has two."""
+        at = self._done + every * np.arange(steps // every + 1, dtype=np.float64)
+        each = 1 if reactions is None else 2
         began = time.perf_counter()
-        self._make_room(2 * len(at))
+        self._make_room(each * len(at))
         self._log()
-        self._each(steps, every, reactions)
-        self._done += steps
+        self._advance(steps, every, reactions)
         rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
         wall = time.perf_counter() - began
-        rows = rows.reshape(2 * len(at) - 1, -1, WIDTH)
-        before, after = rows[1::2], rows[0::2]
-        count = finite(after)
-        poses = self._poses(after[:count], at[:count])
-        forces = reactions.forces(before[: max(count - 1, 0)], after[:count], poses.time_s)
-        return Log(poses, (count - 1) * every, count < len(at), (), wall, forces=forces)
+        rows = rows.reshape(each * (len(at) - 1) + 1, -1, WIDTH)
+        count = finite(rows[::each])
+        poses = self._poses(rows[::each][:count], at[:count])
+        return Log(poses, (count - 1) * every, count < len(at), (), wall), rows
 
     def read(self) -> Poses:
         """The current state."""
@@ -160,10 +158,10 @@ class PymunkSession:
         """Append the current state of all bodies to the buffer."""
         pymunk.batch.get_space_bodies(self._space, FIELDS, self._buffer)
 
-    def _advance(self, steps: int, every: int) -> None:
+    def _advance(self, steps: int, every: int, reactions: Reactions | None = None) -> None:
         """Step; log after every ``every``-th step, or never if it is 0."""
-        if self._acting or self._arcs is not None:
-            self._each(steps, every)
+        if reactions or self._acting or self._arcs is not None:
+            self._each(steps, every, reactions)
         elif self._coasts:
             self._coast(steps, every)
         else:

@@ -22,13 +22,11 @@ import pymunk
 import pymunk.batch
 
 from models.array import Array
-from models.forces import Forces
-from models.joints import turned
-from models.poses import centre_of, mass_of
+from models.joints import centre_of, mass_of, turned
+from models.motion import Forces
 from models.scene import Scene
-from sim.forces_by_body import forces_by_body
-from sim.momentum_balance import JointPushes, MomentumGain, joint_pushes
-from sim.pymunk.pushes import Push, Pushes, moves_freely
+from sim.momentum_balance import JointPushes, MomentumGain, forces_by_body, joint_pushes
+from sim.pymunk.native import Push, Pushes, moves_freely
 from sim.pymunk.space import SpaceModel
 
 BEFORE = (

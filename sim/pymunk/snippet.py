@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
+from sim.offers import SnippetWriter, Stepping, comment
 from sim.pymunk.settings import AS_SHIPPED
-from sim.snippets import SnippetWriter, Stepping, comment
 
 WIDTH = 96
 DRIVES: Mapping[Drive, str] = {
@@ -19,6 +19,19 @@ DRIVES: Mapping[Drive, str] = {
     "before each step, with the size and the place of its end.",
 }
 """How the crank of the measured runs was driven."""
+OF_FREE = {
+    ("springs", "forces"): (
+        "Dampers: not those of DampedSpring and DampedRotarySpring, but forces set before each "
+        "step, from the lengths at its end (crankcheck, sim/pymunk/spring_steps.py). Springs "
+        "without damping need nothing of the kind."
+    ),
+    ("free_paths", "arcs"): (
+        "Pins: where error_bias is 0, anchors are set before each step for the arcs that they "
+        "go in it (crankcheck, sim/pymunk/arcs.py). Without that errors still fall as dt^2, "
+        "but places at the same crank angle are 10 to 400 times as far off."
+    ),
+}
+"""What is said of free motion, by the setting that needs it."""
 
 
 def pymunk_snippet(
@@ -29,7 +42,7 @@ def pymunk_snippet(
 
     The bias of the mechanism's own joints, and the iterations and step, which can only be the
     whole space's. What else differs from pymunk's defaults would change the rest of a user's space
-    and stands in a comment; see `sim.snippets.snippet`.
+    and stands in a comment; see `sim.offers.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = defaults | dict(settings)
@@ -52,10 +65,11 @@ def pymunk_snippet(
 
 def _steps(stepping: Stepping, drive: Drive) -> list[str]:
     """The next step, or the steps of a frame."""
-    if drive == "free":  # no speed of the crank says how long it may be
+    counted = stepping.counted_in(drive)
+    if counted == "nothing":
         return [f"dt = {stepping.dt_s!r}", "space.step(dt)  # steps all that the space holds"]
     per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
-    if not stepping.substeps:
+    if counted == "turns":
         return [
             f"dt = {stepping.dt_s!r}  # 2 pi / ({per_turn} speed), here for a crank at {speed}",
             f"space.step(dt)  # {per_turn} times a turn; steps all that the space holds",
@@ -85,18 +99,8 @@ def _notes(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
             "sim/pymunk/rail.py). "
             "Loops of pins need nothing of the kind."
         )
-    if complete["springs"] == "forces" and drive == "free":
-        notes.append(
-            "Dampers: not those of DampedSpring and DampedRotarySpring, but forces set before each "
-            "step, from the lengths at its end (crankcheck, sim/pymunk/spring_steps.py). Springs "
-            "without damping need nothing of the kind."
-        )
-    if complete["free_paths"] == "arcs" and drive == "free":
-        notes.append(
-            "Pins: where error_bias is 0, anchors are set before each step for the arcs that they "
-            "go in it (crankcheck, sim/pymunk/arcs.py). Without that errors still fall as dt^2, "
-            "but places at the same crank angle are 10 to 400 times as far off."
-        )
+    if drive == "free":
+        notes += [note for choice, note in OF_FREE.items() if choice in complete.items()]
     if complete["error_bias"] == defaults["error_bias"]:
         notes.append(
             "error_bias is a loss in a second, whatever the speed: errors are those of the speeds "

@@ -21,21 +21,23 @@ from models.joints import (
     Joints,
     Prism,
     Slot,
+    along,
     bodies,
+    centre_of,
+    frames,
     joints,
     less,
     local_point,
+    mass_of,
     riding_body,
     sliding_angle,
     turned,
 )
 from models.motion import State
-from models.poses import along, centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene, Slider, span
+from sim.engine import Drive
 from sim.momentum_balance import Hinge
-from sim.pymunk.native_springs import NativeSpring, native_springs
-from sim.pymunk.pin_friction import PinFriction, pin_friction
-from sim.pymunk.pushes import moves_freely
+from sim.pymunk.native import NativeSpring, PinFriction, moves_freely, native_springs, pin_friction
 from sim.pymunk.rail import Rail
 
 FAR = 1e3
@@ -70,18 +72,17 @@ def build(
     scene: Scene,
     state: State,
     *,
-    servo: bool = False,
-    free: bool = False,
+    drive: Drive = "prescribed",
     exact_lines: bool = True,
     with_springs: bool = False,
     delay_s: float = 0.0,
 ) -> SpaceModel:
     """The space of ``scene`` at ``state``.
 
-    The crank is dynamic under ``servo``, with a motor, and where it is ``free``, without one.
+    A crank that is not prescribed is dynamic: with a motor under a servo, free without one.
     Points on lines run in Chipmunk's grooves or, with ``exact_lines``, on a `Rail` where the groove
     is in error. ``with_springs`` the space has those of the scene. Velocities are those of
-    ``delay_s`` later (see `models.poses.frames`).
+    ``delay_s`` later (see `models.joints.frames`).
 
     Raises
     ------
@@ -89,7 +90,8 @@ def build(
         A link without mass that has to move freely, or a massless block that no body carries.
     """
     driver = scene.driver
-    _check_drive(scene, servo=servo, free=free)
+    _check_drive(scene, drive)
+    pinned = drive != "prescribed" or driver.is_inner
     space = pymunk.Space()
     space.gravity = scene.gravity_m_s2
     ties = joints(scene)
@@ -98,7 +100,7 @@ def build(
     made: dict[str, pymunk.Body] = {GROUND: space.static_body}
     centre: dict[str, Point] = {GROUND: (0.0, 0.0)}
     for name in bodies(scene):
-        kinematic = name == driver.link and not (servo or free or driver.is_inner)
+        kinematic = name == driver.link and not pinned
         turns = kinematic and driver.slider is None
         pivot = scene.driver_pivot
         centre[name] = local_point(scene, name, pivot) if turns else centre_of(scene, name)
@@ -111,11 +113,11 @@ def build(
         space.add(body)
     motor = None
     crank = made[driver.link]
-    if servo or (driver.is_inner and not free):
+    if pinned and drive != "free":
         rate = where[driver.link].omega - where[driver.base].omega
         motor = pymunk.SimpleMotor(crank, made[driver.base], rate)
         space.add(_plain(motor))
-    hinges = _pins(scene, ties, made, centre, pinned=servo or free or driver.is_inner)
+    hinges = _pins(scene, ties, made, centre, pinned=pinned)
     for constraint in hinges.values():
         if constraint is not None:
             space.add(_plain(constraint))
@@ -123,7 +125,7 @@ def build(
     gears: dict[str, pymunk.Constraint] = {}
     for slide in ties.slides:
         name = slide.slider.name
-        if name == driver.slider and not free:
+        if name == driver.slider and not pinned:
             continue  # a kinematic body, which is told where it is
         lines[name] = _line(scene, state, slide, made, centre, exact_lines)
         space.add(_plain(lines[name]))
@@ -141,7 +143,7 @@ def build(
     return SpaceModel(space, made, centre, crank, motor, hinges, lines, gears, rubs, springs)
 
 
-def _check_drive(scene: Scene, *, servo: bool, free: bool) -> None:
+def _check_drive(scene: Scene, drive: Drive) -> None:
     """Raise EngineError for a joint that pymunk has nothing to drive with."""
     driver = scene.driver
     if not driver.is_crank and any(load.over == "angle" for load in scene.loads.values()):
@@ -149,9 +151,9 @@ def _check_drive(scene: Scene, *, servo: bool, free: bool) -> None:
             f"{scene.name}: a load goes with the driver's angle, and pymunk is given that of a "
             f"crank alone; this driver is {driver.joint}"
         )
-    if driver.slider is None or free:
+    if driver.slider is None or drive == "free":
         return
-    if driver.is_inner or servo:
+    if driver.is_inner or drive == "servo":
         what = "between two moving bodies" if driver.is_inner else "by a servo"
         raise EngineError(
             f"{scene.name}: pymunk has no motor along a line, and drives no slider {what}; drive "

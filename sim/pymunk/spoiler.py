@@ -127,10 +127,10 @@ def _closing(model: SpaceModel) -> pymunk.PivotJoint | pymunk.GrooveJoint | pymu
     """The last joint that holds a point: of two bodies that both can move freely where there is
     one, else of one of them and the ground or the crank."""
     kinds = (pymunk.PivotJoint, pymunk.GrooveJoint, pymunk.PinJoint)
-    free = pymunk.Body.DYNAMIC
+    dynamic = pymunk.Body.DYNAMIC
     holding = [c for c in model.space.constraints if isinstance(c, kinds)]
-    both = [c for c in holding if c.a.body_type == c.b.body_type == free]
-    return (both or [c for c in holding if c.b.body_type == free])[-1]
+    both = [c for c in holding if c.a.body_type == c.b.body_type == dynamic]
+    return (both or [c for c in holding if c.b.body_type == dynamic])[-1]
 
 
 SPOILER: Spoiler = PymunkSpoiler()

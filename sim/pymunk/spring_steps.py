@@ -1,19 +1,21 @@
 """The springs and dampers of a scene, given like loads: with the lengths and rates of the end of
-the step.
-"""
+the step."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 
-from models.joints import Prism, Slot, joints, less, riding_body, turned
+import numpy as np
+import pymunk.batch
+
+from models.array import Array
+from models.joints import less, line_ends, whole_turns
+from models.loads import LineSpring, PinSpring, SegmentSpring, SlideSpring, Spring
 from models.scene import Point, Scene
-from models.spring_ends import line_ends, whole_turns
-from models.springs import LineSpring, PinSpring, SlideSpring, Spring
-from sim.pymunk.pushes import Pushes
+from sim.pymunk.bodies import Course, Frames, SliderCourse, frames_at_end, rows_of
+from sim.pymunk.native import Pushes
 from sim.pymunk.space import SpaceModel
-from sim.pymunk.step_end import Course, Frames, SliderCourse, anchor_of, frames_at_end
 
 
 class SpringSteps:
@@ -29,7 +31,6 @@ class SpringSteps:
     ) -> None:
         start = frames_at_end(model, 0.0)
         self._steps: list[_OnLine | _InPin | _OnSlide] = []
-        slides = {slide.slider.name: slide for slide in joints(scene).slides}
         for name, spring in scene.springs.items():
             if name in model.springs or spring in but:
                 continue
@@ -38,8 +39,7 @@ class SpringSteps:
             elif isinstance(spring, PinSpring):
                 self._steps.append(_InPin(spring, start, dt_s))
             else:
-                slide, track = slides[spring.slider], tracks[spring.slider]
-                self._steps.append(_OnSlide(scene, model, spring, slide, track))
+                self._steps.append(_OnSlide(spring, tracks[spring.slider]))
 
     def __bool__(self) -> bool:
         return bool(self._steps)
@@ -111,24 +111,71 @@ class _InPin:
 class _OnSlide:
     """A spring along the line of a slider."""
 
-    def __init__(
-        self,
-        scene: Scene,
-        model: SpaceModel,
-        spring: SlideSpring,
-        slide: Prism | Slot,
-        track: SliderCourse,
-    ) -> None:
-        self.spring, self._slide, self._track = spring, slide, track
-        self._rider = riding_body(slide)
-        self._anchor = anchor_of(scene, model, self._rider, slide.slider.point)
+    def __init__(self, spring: SlideSpring, track: SliderCourse) -> None:
+        self.spring, self._track = spring, track
 
     def push(self, frames: Frames, pushes: Pushes) -> None:
-        slider, rider = self._slide.slider, self._rider
-        pull = self.spring.pull(self._track.course.value, self._track.course.rate)
-        fx, fy = turned((-pull, 0.0), frames[slider.on].theta + slider.direction_rad)
-        if isinstance(self._slide, Slot):
-            pushes.note(slider.name, (fx, fy, 0.0))
-        place = frames[rider].at(self._anchor)
-        pushes.force(rider, frames[rider], place, (fx, fy))
-        pushes.force(slider.on, frames[slider.on], place, (-fx, -fy))
+        course = self._track.course
+        self._track.push(-self.spring.pull(course.value, course.rate), frames, pushes)
+
+
+TURNING = pymunk.batch.BodyFields.ANGLE | pymunk.batch.BodyFields.ANGULAR_VELOCITY
+TORQUE = pymunk.batch.BodyFields.TORQUE
+
+
+def chain_springs(scene: Scene) -> tuple[SegmentSpring, ...]:
+    """The springs between the segments of the elastic links of a scene; no others that it has."""
+    return tuple(one for one in scene.springs.values() if isinstance(one, SegmentSpring))
+
+
+class ChainSprings:
+    """What springs in pins of a chain of segments do, all at once, with the angles and rates of the
+    end of each step: one by one, as `SpringSteps` has them, they would take most of a run's time.
+    """
+
+    def __init__(self, model: SpaceModel, springs: Sequence[SegmentSpring], dt_s: float) -> None:
+        self._space, self._dt, self._rows = model.space, dt_s, rows_of(model)
+        self.numbers = {one.name: (one.rate, one.damping, one.free) for one in springs}
+        """Rate, damping and the angle at which it is slack, of each by name."""
+        self._angles, self._torques = pymunk.batch.Buffer(), pymunk.batch.Buffer()
+        self._first, self._second = (
+            np.array([self._rows[one.bodies[k]] for one in springs]) for k in (0, 1)
+        )
+        self._rate, self._damping, self._free = (
+            np.array([getattr(one, key) for one in springs]) for key in ("rate", "damping", "free")
+        )
+        theta = self._turning()[:, 0]
+        # Of each body, from each spring.
+        self._share = np.zeros((len(theta), len(springs)))
+        self._share[self._first, range(len(springs))] = 1.0
+        self._share[self._second, range(len(springs))] = -1.0
+        opened = theta[self._second] - theta[self._first]
+        self._whole = np.array(
+            [whole_turns(one, angle) for one, angle in zip(springs, opened.tolist(), strict=True)]
+        )
+        self._course = Course(opened + self._whole, dt_s)
+
+    def by_body(self) -> dict[str, float]:
+        """The torques on all bodies in the next step [N m]."""
+        torques = self._next().tolist()
+        return {name: torques[row] for name, row in self._rows.items()}
+
+    def push(self) -> None:
+        """Have them act in the next step, where nothing else does."""
+        self._torques.set_float_buf(self._next())
+        pymunk.batch.set_space_bodies(self._space, TORQUE, self._torques)
+
+    def _next(self) -> Array:
+        """The torques in the next step [N m], by row of a batch."""
+        theta, omega = self._turning().T
+        theta = theta + self._dt * omega
+        q = theta[self._second] - theta[self._first] + self._whole
+        self._course.go_on(q)
+        pull = self._rate * (q - self._free) + self._damping * self._course.rate
+        return np.asarray(self._share @ pull)
+
+    def _turning(self) -> Array:
+        """Angle and angular velocity of all bodies of the space, (rows, 2)."""
+        self._angles.clear()
+        pymunk.batch.get_space_bodies(self._space, TURNING, self._angles)
+        return np.frombuffer(self._angles.float_buf()).reshape(-1, 2)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from analytic.mechanism.fourbar import FourBar
-from models.files import parse_scene
+from models.files.reading import parse_scene
 from models.scene import Scene
 
 TEXT = """

@@ -13,7 +13,7 @@ from mpmath import mp, mpf
 
 from analytic.kinematics import solve
 from models.array import Array
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.motion import Motion
 from models.moved_scene import moved

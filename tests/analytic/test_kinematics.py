@@ -14,13 +14,12 @@ from hypothesis import given
 
 from analytic import prepared
 from analytic.dyads.plane import EPS
-from analytic.kinematics import reach, solve, solve_driven
-from analytic.nearness import nearness
+from analytic.kinematics import nearness, reach, solve, solve_driven
 from analytic.structure.mobility import sides_of
 from models import moved_scene as transform
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.motion import Motion
 from models.moved_scene import mirrored
 from models.scene import Scene

@@ -13,11 +13,10 @@ import pytest
 
 from analytic.dyads.plane import EPS
 from analytic.kinematics import solve
-from analytic.mechanism.coriolis import coriolis
 from analytic.mechanism.cycle import Along
-from analytic.mechanism.travel import travel
+from analytic.mechanism.travel import coriolis, travel
 from models.array import Array
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.laws import Accelerating
 from models.scene import Scene
 from tests.analytic.four_bars import fourbar

@@ -13,7 +13,8 @@ from unittest import mock
 import pytest
 
 from models.errors import CrankcheckError, SceneError
-from models.files import (
+from models.files.inputs import MOST_TEXT
+from models.files.reading import (
     find_scenes,
     kinds,
     load_scene,
@@ -26,7 +27,6 @@ from models.files import (
     shipped,
 )
 from models.laws import Oscillating
-from models.regular import MOST_TEXT
 
 GOOD = """
 name = "good"

@@ -26,7 +26,7 @@ import typer
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
-from models.files import shipped
+from models.files.reading import shipped
 from reports.workers.isolated import Isolated, Limits, Lost
 from tests.worlds import fuzzing
 from tests.worlds.fuzzing import (

@@ -8,15 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.characteristics import Characteristic, Constant, Polynomial, Sine
+from models.characteristics import Characteristic, Constant, Polynomial, Sine, Staircase
 from models.errors import CrankcheckError, SceneError
-from models.files import load_scene, parse_scene
-from models.friction import ConstantFriction, CoulombFriction
-from models.interpolation import slopes, spline
-from models.loads import Load
-from models.scene_text import scene_text
-from models.staircase import Staircase
-from models.tabulated import Tabulated
+from models.files.assemble import scene_text
+from models.files.reading import load_scene, parse_scene
+from models.loads import ConstantFriction, CoulombFriction, Load
+from models.tabulated import Tabulated, slopes, spline
 
 PRESS = """
 name = "press"

@@ -16,13 +16,12 @@ import pytest
 
 import models
 from models import tree
-from models.closings import closings
 from models.errors import EngineError
-from models.files import load_scene, shipped
-from models.mjcf import build
-from models.mjcf_options import Writing
+from models.files.reading import load_scene, shipped
+from models.mjcf.document import build
+from models.mjcf.options import Writing
 from models.scene import Scene
-from models.tree import plan
+from models.tree import closings, plan
 from tests.worlds.runs import start_of
 
 

@@ -14,15 +14,15 @@ import pytest
 
 from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve, solve_driven
+from models.array import numbers, samples
 from models.errors import CrankcheckError, EngineError
-from models.files import load_scene, scene_texts
+from models.files.inputs import names_in
+from models.files.reading import load_scene, scene_texts
+from models.hard import Chain
 from models.laws import ConstantSpeed
-from models.mjcf import build
-from models.mjcf_options import Writing
+from models.mjcf.document import build
+from models.mjcf.options import Writing
 from models.motion import Crossing, Motion
-from models.one_or_more import names_in
-from models.samples import numbers, samples
-from models.window_chain import Chain
 from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes
 from sim.run import run
 from tests.second_opinions import newton

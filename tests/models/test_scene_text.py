@@ -17,10 +17,10 @@ import pytest
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError
-from models.files import every_shipped, load_scene, parse_scene
+from models.files.assemble import scene_text
+from models.files.reading import every_shipped, load_scene, parse_scene
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.scene import Scene
-from models.scene_text import scene_text
 from tests.worlds.runs import driven_by
 
 LAWS = [

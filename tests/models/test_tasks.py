@@ -11,8 +11,8 @@ import pytest
 
 from models.errors import CrankcheckError, SceneError
 from models.lectures.formula import DEEPEST, FUNCTIONS, LONGEST_TEXT, parse_formula
-from models.lectures.tasks.coupler import CouplerTask
 from models.lectures.tasks.files import KINDS, find_task, load_task, shipped_tasks
+from models.lectures.tasks.positions import CouplerTask
 
 HEAD = 'name = "x"\nsource = "a test"\n'
 A, B = "{ point_m = [0.0, 0.0], angle_deg = 0.0 }", "{ point_m = [0.1, 0.0], angle_deg = 10.0 }"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from models.driver_course import driver_course
+from models.driver import driver_course
 from models.joints import block_name, local_point
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene

@@ -24,16 +24,13 @@ from scipy.integrate import DOP853, OdeSolution  # type: ignore[import-untyped] 
 
 from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly
-from analytic.multibody.configuration import Configuration
-from analytic.multibody.generalised_forces import GeneralisedForces
-from analytic.multibody.joint_forces import joint_forces
+from analytic.multibody.bodies import Configuration
+from analytic.multibody.dynamics import Saddle, joint_forces
+from analytic.multibody.generalised_forces import GeneralisedForces, edges
 from analytic.multibody.multibody_motion import Baumgarte, Method, Projection
-from analytic.multibody.saddle import Saddle
-from analytic.multibody.switches import edges
-from models.array import Array
+from models.array import Array, samples
 from models.errors import CrankcheckError
 from models.motion import Motion
-from models.samples import samples
 
 PROJECTED = Projection()
 MOST_PROJECTIONS = 10

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from models.driver_course import driver_course
-from models.forces import Forces
-from models.friction import CoulombFriction
+from models.driver import driver_course
 from models.joints import local_point, sliding_body
-from models.motion import Motion
+from models.loads import CoulombFriction
+from models.motion import Forces, Motion
 from models.scene import GROUND, Scene
 from tests.second_opinions.body_samples import BodySamples, cross
 

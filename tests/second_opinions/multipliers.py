@@ -21,12 +21,11 @@ from itertools import chain
 
 import numpy as np
 
-from analytic.multibody.joint_forces import joint_forces
+from analytic.multibody.dynamics import joint_forces
 from models.array import Array
-from models.driver_course import driver_course
+from models.driver import driver_course
 from models.errors import CrankcheckError
-from models.forces import Forces
-from models.motion import Motion
+from models.motion import Forces, Motion
 from models.scene import Scene
 from tests.second_opinions.body_samples import BodySamples, body_samples, cross, weights_and_loads
 from tests.second_opinions.constraints import Constraints

@@ -18,11 +18,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from models.array import Array
+from models.array import Array, samples
 from models.errors import CrankcheckError
 from models.joints import local_point
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
-from models.samples import samples
 from models.scene import GROUND, Point, Scene, Slider
 from tests.second_opinions.constraints import Constraints
 

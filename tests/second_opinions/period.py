@@ -19,13 +19,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.free.arc import Arc
-from analytic.free.chart import Chart
+from analytic.free.chart import Arc, Chart
 from analytic.free.machine import Machine
 from analytic.kinematics import repeats_after
 from models.array import Array
+from models.driver import Released
 from models.errors import CrankcheckError
-from models.released import Released
 from models.scene import Scene
 
 SCAN = 720

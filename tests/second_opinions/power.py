@@ -16,7 +16,7 @@ from itertools import chain
 import numpy as np
 
 from models.array import Array
-from models.driver_course import driver_course
+from models.driver import driver_course
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
@@ -38,7 +38,7 @@ def power_balance(
     scene: Scene, motion: Motion, torque: Array, friction: Mapping[str, Array] | None = None
 ) -> PowerBalance:
     """The power of a driving torque [N m] beside what the motion, the loads, the springs and the
-    friction, by joint as in `models.forces.Forces`, take up."""
+    friction, by joint as in `models.motion.Forces`, take up."""
     used, scale = np.zeros(len(motion.time_s)), np.zeros(len(motion.time_s))
     bodies = body_samples(scene, motion)
     parts = []

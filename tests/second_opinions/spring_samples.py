@@ -1,6 +1,6 @@
 """What springs and dampers exert on the bodies, in plain arrays over a motion.
 
-Shares nothing with `analytic.forces.springs`.
+Shares nothing with `analytic.forces.force_elements`.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ import numpy as np
 
 from models.array import Array
 from models.joints import block_name, local_point, sliding_body
+from models.loads import LineSpring, PinSpring, SlideSpring
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene
-from models.springs import LineSpring, PinSpring, SlideSpring
 from tests.second_opinions.body_samples import body_samples, cross
 
 Push = tuple[str, Point, Array, Array]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.laws import Accelerating, FromRest, Oscillating
 from models.scene import GROUND, Link, Point, Scene
 from sim.engine import Run, SettingValue

@@ -11,7 +11,7 @@ import pytest
 
 from analytic.kinematics import solve
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.contract.clauses import CLAUSES
 from reports.contract.ruling import SCENES, put_to
 from reports.contract.subject import Subject, numbers

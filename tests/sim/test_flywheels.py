@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from analytic.lectures.regulation.cycle_scene import cycle_scene
 from analytic.lectures.regulation.flywheel import WantedFlywheel, wanted_flywheel
-from analytic.lectures.regulation.steady_cycle import SteadyCycle
+from analytic.lectures.regulation.steady_cycle import SteadyCycle, cycle_scene
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.characteristics import Polynomial
-from models.files import load_scene
+from models.driver import Released
+from models.files.reading import load_scene
 from models.loads import Load
-from models.released import Released
 from models.scene import Driver, Scene
 from tests.worlds.runs import ran
 from tests.worlds.tiers import slow, slowly

@@ -14,12 +14,11 @@ import pytest
 from analytic.forces import kinetostatics
 from models.characteristics import Constant, Sine
 from models.errors import EngineError
-from models.files import load_scene
-from models.friction import ConstantFriction
+from models.files.reading import load_scene
 from models.hard import double_parallelogram
-from models.loads import Load
+from models.loads import ConstantFriction, Load
 from models.scene import Scene
-from sim.force_recipes import force_recipe
+from sim.offers import force_recipe
 from sim.registry import offering
 from tests.worlds.runs import acted_on, start_of, tuned
 from tests.worlds.tiers import few

@@ -11,12 +11,12 @@ import pytest
 
 from analytic.free.window_chain import ChainMotion
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
+from models.hard import Chain
 from models.laws import ConstantSpeed, Oscillating
-from models.mjcf_options import has_control
+from models.mjcf.options import has_control
 from models.motion import State
 from models.scene import Driver
-from models.window_chain import Chain
 from reports.contract.subject import numbers
 from sim.check import refuse_other_model
 from sim.drive import pace, period

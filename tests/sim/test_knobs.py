@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 
 from benchmarks.step_cost import exudyn, fit, mujoco, points, pymunk, start
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.scene import Scene
 from sim.exudyn import knobs as exudyn_knobs
-from sim.exudyn.session import ExudynSession
+from sim.exudyn.engine import ExudynSession
 from sim.mujoco import knobs as mujoco_knobs
 from sim.mujoco.knobs import EVALUATIONS
 from sim.mujoco.settings import INTEGRATORS
+from sim.offers import Knob, Work, rungs, search_space
 from sim.pymunk import knobs as pymunk_knobs
 from sim.pymunk.knobs import PASS_US, RAIL_US
 from sim.registry import offering
-from sim.tuning import Knob, Work, rungs, search_space
 from tests.worlds.runs import ran, tuned
 from tests.worlds.tiers import slowly
 

@@ -12,22 +12,20 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 import pytest
 
-from analytic.forces.springs import spring_lengths as true_lengths
+from analytic.forces.force_elements import spring_lengths as true_lengths
 from analytic.free.machine import Machine
 from analytic.kinematics import chunks, solve
 from models.errors import EngineError
-from models.files import load_scene, shipped
-from models.mjcf import build
+from models.files.reading import load_scene, shipped
+from models.joints import line_ends, whole_turns
+from models.loads import LineSpring, PinSpring, SlideSpring
+from models.mjcf.document import build
 from models.scene import GROUND, Scene
-from models.spring_ends import line_ends, whole_turns
-from models.springs import LineSpring, PinSpring, SlideSpring
 from models.tree import plan
 from sim.check import refuse_other_model
-from sim.energy import energy
 from sim.engine import Poses
-from sim.measure import gaps, motion
+from sim.measure import energy, gaps, motion, spring_lengths
 from sim.registry import ENGINES
-from sim.spring_lengths import spring_lengths
 from sim.tree_poses import body_poses
 from tests.worlds.runs import acted_on, ran, start_of
 

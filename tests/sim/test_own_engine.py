@@ -11,14 +11,13 @@ import pytest
 
 from analytic.kinematics import solve
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
 from sim import registry
 from sim.engine import Run
 from sim.own_engine import known, spelling
 from sim.own_engine.watched import BrokenContractError
 from sim.registry import brought, capability, declaration, engine
-from sim.run import run
-from sim.timing import time_run
+from sim.run import run, time_run
 from tests.worlds.own_engines import CODE, fresh, installed, with_faults
 
 FOURBAR = load_scene("fourbar-lecture-1")

@@ -17,7 +17,7 @@ import pytest
 from analytic.kinematics import solve
 from models.characteristics import Constant
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.hard import double_parallelogram
 from models.loads import Load
 from models.scene import Scene
@@ -25,7 +25,7 @@ from models.tree import plan
 from sim.engine import Facts, Run
 from sim.pymunk.space import build
 from sim.registry import ENGINES, available, declaration, engine
-from sim.timing import time_run
+from sim.run import time_run
 from tests.worlds import runs
 from tests.worlds.runs import acted_on, start_of
 from tests.worlds.tiers import slowly

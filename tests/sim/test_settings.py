@@ -14,12 +14,12 @@ import numpy as np
 import pymunk
 import pytest
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from sim.engine import Facts, Settings, SettingValue
 from sim.exudyn.engine import ENGINE
 from sim.exudyn.solver import simulation
+from sim.offers import remedies
 from sim.registry import ENGINES, engine, offering
-from sim.remedies import remedies
 from sim.settings import SettingError, resolved
 from tests.worlds import runs
 from tests.worlds.runs import driven_by, ran, start_of, tuned

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.contract.subject import numbers
 from sim.engine import Session
 from sim.registry import engine, offering

@@ -1,7 +1,7 @@
 """A scene as somebody else might write it in MJCF: in any plane, with frames and axes anywhere.
 
-Nothing here is taken from `models.mjcf`: bodies are placed one by one in space, so that what reads
-such a model is held to another writer.
+Nothing here is taken from `models.mjcf.document`: bodies are placed one by one in space, so that
+what reads such a model is held to another writer.
 """
 
 from __future__ import annotations
@@ -14,9 +14,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from models.array import Array
-from models.joints import bodies, joints, local_point
+from models.joints import Frame, bodies, centre_of, frames, joints, local_point, mass_of
 from models.motion import State
-from models.poses import Frame, centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene
 from models.tree import Freedom, Limb, LoopPin, plan
 

@@ -33,15 +33,15 @@ from hypothesis import strategies as st
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import EngineError
-from models.files import parse_scene
+from models.files.assemble import scene_text
+from models.files.reading import parse_scene
 from models.laws import ConstantSpeed
 from models.motion import State
 from models.moved_scene import moved, scaled
 from models.scene import GROUND, Link, Point, Scene, Slider, span
-from models.scene_text import scene_text
 from models.tree import plan
-from reports.compare.curvature import curvature
-from reports.judge.tolerance import DEFAULTS
+from reports.compare.hardness import curvature
+from reports.quantities import DEFAULTS
 from sim.pymunk.settings import TUNED
 from sim.pymunk.space import build
 from tests.worlds.strategies import (

@@ -5,13 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from models.array import Array
-from models.joints import block_name, joints, local_point, riding_body
-from models.poses import centre_of, mass_of
+from models.joints import (
+    block_name,
+    centre_of,
+    joints,
+    line_ends,
+    local_point,
+    mass_of,
+    riding_body,
+)
+from models.loads import LineSpring, PinSpring, SlideSpring
 from models.scene import GROUND, Scene
-from models.spring_ends import line_ends
-from models.springs import LineSpring, PinSpring, SlideSpring
 from sim.engine import BodyPose, Log
-from sim.spring_lengths import spring_lengths
+from sim.measure import spring_lengths
 
 
 def turned(pose: BodyPose, local: tuple[float, float]) -> Array:

@@ -20,7 +20,7 @@ from unittest import mock
 from typer.main import get_command
 from typer.testing import CliRunner
 
-from analytic.free import window_count
+from analytic.free import integration
 from sim.engine import Status
 
 ACTING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
@@ -157,7 +157,7 @@ def attempt(
             contextlib.chdir(home / "work"),
             _native_errors(home / "native") as native,
             _watched(home) as elsewhere,
-            mock.patch.object(window_count, "MOST_WINDOWS", MOST_WINDOWS),
+            mock.patch.object(integration, "MOST_WINDOWS", MOST_WINDOWS),
             warnings.catch_warnings(record=True) as caught,
             counter if counted else contextlib.nullcontext(),
         ):

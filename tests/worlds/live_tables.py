@@ -14,7 +14,7 @@ import openpyxl
 import pytest
 
 from analytic.kinematics import solve
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import Motion
 from models.scene import Link, Scene
 from reports.lectures.drawing.workbook.formula_table import FormulaTable

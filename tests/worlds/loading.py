@@ -13,12 +13,20 @@ import numpy as np
 from analytic.kinematics import reach
 from analytic.structure.mobility import analyse
 from models.characteristics import Characteristic, Constant, Polynomial, Sine
-from models.friction import ConstantFriction, CoulombFriction, Friction
 from models.joints import block_name
 from models.laws import Accelerating, Oscillating
-from models.loads import Load, Over
+from models.loads import (
+    ConstantFriction,
+    CoulombFriction,
+    Friction,
+    LineSpring,
+    Load,
+    Over,
+    PinSpring,
+    SlideSpring,
+    Spring,
+)
 from models.scene import GROUND, Driver, Point, Scene
-from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from models.tabulated import Interpolation, Tabulated
 from tests.worlds.strategies import (
     KINDS,

@@ -7,7 +7,7 @@ import random
 import re
 from collections.abc import Callable, Iterator
 
-from models.files import every_shipped
+from models.files.reading import every_shipped
 
 Rng = random.Random
 NUMBER = re.compile(r"(?<![\w.-])-?\d+\.\d*(?:e[+-]?\d+)?(?![\w.])")

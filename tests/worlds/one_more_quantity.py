@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import Motion
 from reports.quantities import ACCELERATION, QUANTITIES
 from reports.quantities.quantity import Criterion, Measure, Quantity
@@ -63,7 +63,7 @@ def main() -> None:
     from reports.history.table import COLUMNS
     from reports.history.version_result import FOLLOWED
     from reports.judge.cell import Cell, check
-    from reports.judge.frames import cell_frame, error_frame
+    from reports.judge.rows import cell_frame, error_frame
     from reports.page.sections.convergence import DIAGRAMS
     from reports.results.changes.runs import COMPARED
     from reports.store.schema import table

@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from models.files import load_scene, parse_scene
+from models.files.reading import load_scene, parse_scene
 from models.hard import double_parallelogram
 from models.scene import Scene
 from reports.logs.channel import Channel

@@ -11,12 +11,10 @@ import numpy as np
 from analytic.structure.mobility import sides_of
 from models import moved_scene
 from models.array import Array
-from models.friction import ConstantFriction, Friction
+from models.driver import Released
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
-from models.loads import Load, Stroke
-from models.released import Released
+from models.loads import ConstantFriction, Friction, Load, Spring, Stroke
 from models.scene import Driver, Scene
-from models.springs import Spring
 
 OPPOSITE: dict[Stroke, Stroke] = {"both": "both", "forward": "backward", "backward": "forward"}
 

@@ -8,9 +8,8 @@ from pathlib import Path
 
 from reports.judge.cell import Checked
 from reports.own_model.account import Account, Line, checked_line, read_here
-from reports.own_model.judged import JudgedModel
-from reports.own_model.request import ModelRequest
-from reports.own_model.running import judged_lines
+from reports.own_model.assembly import ModelRequest
+from reports.own_model.judged import JudgedModel, judged_lines
 
 FACTS = {"crankcheck": "0.0.0", "made": "2026-01-02T03:04:05+00:00"}
 SLIDER_CRANK = """<mujoco model="engine">

@@ -9,13 +9,11 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.array import Array
-from models.files import load_scene
-from models.friction import ConstantFriction, Friction
+from models.files.reading import load_scene
 from models.laws import Law
-from models.loads import Load
+from models.loads import ConstantFriction, Friction, Load, Spring
 from models.motion import State
 from models.scene import Scene
-from models.springs import Spring
 from sim.engine import Engine, Poses, Run, Settings
 from sim.registry import engine
 from sim.run import run

@@ -13,7 +13,7 @@ from numpy.random import Generator
 
 from analytic.kinematics import solve
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import Motion
 from models.scene import Scene
 from reports.causes import Case, Cause, causes

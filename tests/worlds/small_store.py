@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from models.files import find_scene, load_scene, read_text
+from models.files.reading import find_scene, load_scene, read_text
 from reports.judge.cell import Cell
 from reports.store.manifest import Manifest
 from reports.store.writer import Writer

@@ -9,17 +9,17 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from models.files import shipped
+from models.files.reading import shipped
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.judge.frames import cell_frame, error_frame
+from reports.judge.rows import cell_frame, error_frame
 from reports.output.provenance import provenance
 from reports.plan.grid import digest
 from reports.results.changes.runs import CellName, StoredCell, StoredRun
 from reports.store.manifest import Manifest
 from reports.store.writer import Writer
 from reports.sweep.measured import measured
-from reports.verify.all_cells import check_all
+from reports.verify.advised import check_all
 from sim.registry import engine
 
 Plant = Callable[[pd.DataFrame], None]

@@ -19,8 +19,7 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from analytic.kinematics import solve
-from analytic.nearness import nearness
+from analytic.kinematics import nearness, solve
 from analytic.structure.mobility import analyse
 from models.errors import ReachError
 from models.laws import ConstantSpeed, Law, Oscillating

@@ -12,12 +12,9 @@ import numpy as np
 
 from models.array import Array
 from models.characteristics import Constant, Sine
-from models.forces import Forces
-from models.friction import ConstantFriction
-from models.loads import Load
-from models.motion import State
+from models.loads import ConstantFriction, LineSpring, Load, Spring
+from models.motion import Forces, State
 from models.scene import Scene
-from models.springs import LineSpring, Spring
 from sim.engine import (
     BodyPose,
     Drive,

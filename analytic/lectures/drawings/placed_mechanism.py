@@ -73,3 +73,29 @@ class PlacedMechanism:
 def quarter_turn(vector: Array) -> Array:
     """The vector turned by a quarter turn counter-clockwise."""
     return np.array([-vector[1], vector[0]])
+
+
+@dataclass(frozen=True)
+class BodyRates:
+    """A body by its point at ``place`` [m], with that point's ``velocity`` [m/s] and
+    ``acceleration`` [m/s^2], (2,) each, and by ``omega`` [rad/s] and ``alpha`` [rad/s^2]."""
+
+    place: Array
+    velocity: Array
+    acceleration: Array
+    omega: float
+    alpha: float
+
+    def velocity_at(self, place: Array) -> Array:
+        """Of the body's point at a place [m/s], (2,)."""
+        return np.asarray(self.velocity + self.omega * quarter_turn(place - self.place))
+
+    def acceleration_at(self, place: Array) -> Array:
+        """Of the body's point at a place [m/s^2], (2,)."""
+        arm = place - self.place
+        turning = self.alpha * quarter_turn(arm) - self.omega**2 * arm
+        return np.asarray(self.acceleration + turning)
+
+
+STILL = BodyRates(np.zeros(2), np.zeros(2), np.zeros(2), 0.0, 0.0)
+"""The ground."""

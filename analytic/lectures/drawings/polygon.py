@@ -7,21 +7,96 @@ positions, so that the two are two computations.
 
 Source: lecture "Phan tich dong hoc", part III: v_B = v_A + v_BA; a_B = a_A + a^n + a^t;
 v_A2 = v_A1 + v_A2A1; a_A2 = a_A1 + a^k + a^r, a^k = 2 omega v_A2A1 turned in the sense of omega.
+
+Each crossing is an equation of two ways to a point, over one link and over another; on each, one
+vector has a known direction u and an unknown length::
+
+    base1 + known1 + a u1  =  base2 + known2 + b u2
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
-from analytic.lectures.drawings.body_rates import BodyRates
-from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
-from analytic.lectures.drawings.vector_equation import SUPERSCRIPTS, Kind
+from analytic.lectures.drawings.placed_mechanism import BodyRates, PlacedMechanism
 from models.array import Array
 from models.scene import GROUND
+
+Kind = Literal["whole", "rotation", "normal", "tangential", "coriolis", "sliding"]
+"""``whole``: of a point against the ground; ``rotation``: of a point about another of its link;
+``sliding``: of a point against the one of another body that lies under it."""
+SUPERSCRIPTS: dict[Kind, str] = {
+    "whole": "", "rotation": "", "normal": "n", "tangential": "t", "coriolis": "k", "sliding": "r",
+}  # fmt: skip
+PARALLEL = 1e-9
+"""Sine of the angle between two directions below which they do not cross anywhere near."""
+
+
+FLAT = 1e-2
+"""Sine of the angle below which directions cross so flatly that a hand can not draw it."""
+
+
+class ParallelError(Exception):
+    """The two directions of a vector equation are parallel: it has no solution, or many."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """A vector of an equation: of what (``subscript``, as CB for C about B), what kind, and its
+    value (2,); ``direction`` says in words what it is parallel or perpendicular to."""
+
+    subscript: str
+    kind: Kind
+    value: Array
+    direction: str = ""
+
+
+@dataclass(frozen=True)
+class EquationSide:
+    """One side of the equation: from the point ``base`` of the polygon at ``start`` (2,) over
+    ``known`` vectors, and on along the direction of ``unknown``, whose value is a unit vector."""
+
+    base: str
+    start: Array
+    known: Sequence[Term]
+    unknown: Term
+
+    @property
+    def before(self) -> Array:
+        """Where the unknown vector begins (2,)."""
+        return np.asarray(self.start + sum((term.value for term in self.known), np.zeros(2)))
+
+    def with_length(self, length: float) -> tuple[Term, ...]:
+        """All vectors of the way, the unknown one with its length, which may be below 0."""
+        last = self.unknown
+        return (
+            *self.known,
+            Term(last.subscript, last.kind, length * last.value, last.direction),
+        )
+
+
+def sine_between(one: EquationSide, other: EquationSide) -> float:
+    """The sine of the angle from the direction of one way to that of the other."""
+    u, v = one.unknown.value, other.unknown.value
+    return float(u[0] * v[1] - u[1] * v[0])
+
+
+def crossing(one: EquationSide, other: EquationSide) -> tuple[float, float]:
+    """The lengths of the unknown vectors of both ways. Raises ParallelError."""
+    u, v = one.unknown.value, other.unknown.value
+    gap = other.before - one.before
+    sine = sine_between(one, other)
+    if abs(sine) < PARALLEL:
+        raise ParallelError
+    return (
+        float(gap[0] * v[1] - gap[1] * v[0]) / sine,
+        float(gap[0] * u[1] - gap[1] * u[0]) / sine,
+    )
+
 
 Quantity = Literal["velocity", "acceleration"]
 SYMBOLS: Mapping[Quantity, str] = {"velocity": "v", "acceleration": "a"}

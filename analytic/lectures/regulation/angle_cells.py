@@ -8,12 +8,18 @@ collocation: with s nodes the borders are right to the order 2 s.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.lectures.regulation.turning_machine import TurningMachine, follows_speed
+from analytic.structure.mobility import analyse
 from models.array import Array
+from models.characteristics import Constant, FourierSum, Sine
+from models.loads import Load
 
 NODES = 5
 CELLS = 120
@@ -96,3 +102,105 @@ class AngleCells:
         cell, share = self.places(u)
         inner = np.sum(integrals_to(share) * series[cell], axis=1)
         return np.asarray(before[cell] + self.widths[cell] * inner)
+
+
+LOOKS = 720
+"""Of a turn, for where a slider passes a row of a table."""
+HALVINGS = 44
+
+
+@lru_cache(maxsize=16)
+def breaks(machine: TurningMachine) -> Array:
+    """The angles u of a cycle at which loads over angle or displacement are not smooth [rad]."""
+    found = [np.zeros(0)]
+    u = looks(machine)
+    for load in machine.scene.loads.values():
+        if load.slider is not None and load.stroke != "both":
+            found.append(crossings(_slider(machine, load, "speed"), u, [0.0]))
+        if isinstance(load.characteristic, Constant):
+            continue
+        if load.over == "displacement":
+            at = _slider(machine, load, "s")
+            found.append(crossings(at, u, load.characteristic.kinks))
+        elif load.over == "angle":
+            found += [_rows(machine, load), _short_waves(machine, load)]
+    found += [_turnings(machine, joint, u) for joint in machine.scene.friction]
+    return np.concatenate(found)
+
+
+def _short_waves(machine: TurningMachine, load: Load) -> Array:
+    """Quarters of the shortest wave of a load over the angle, where even cells would miss it."""
+    own = load.characteristic
+    if not isinstance(own, Sine | FourierSum):
+        return np.zeros(0)
+    waves = len(own.sines) if isinstance(own, FourierSum) else 1
+    quarters = round(4.0 * max(waves, 1) * machine.cycle_rad / own.period)
+    if quarters <= CELLS * machine.cycle_rad / math.tau:
+        return np.zeros(0)
+    return np.linspace(0.0, machine.cycle_rad, quarters + 1)
+
+
+def rated_breaks(machine: TurningMachine, speed: Callable[[Array], Array]) -> Array:
+    """The same of loads over a speed, where the driver has speeds [rad/s] by the angle u."""
+    found = [np.zeros(0)]
+    for load in filter(follows_speed, machine.scene.loads.values()):
+
+        def of(u: Array, load: Load = load) -> Array:
+            chunk = machine.mechanism(u)
+            own = chunk.bodies[load.body].omega if load.slider is None else None
+            rate = own if load.slider is None else chunk.sliders[load.slider].speed
+            return machine.way * np.asarray(rate) * speed(u)
+
+        found.append(crossings(of, looks(machine), load.characteristic.kinks))
+    return np.concatenate(found)
+
+
+def looks(machine: TurningMachine) -> Array:
+    """Angles of a cycle, its ends among them [rad]."""
+    return np.linspace(0.0, machine.cycle_rad, LOOKS * round(machine.cycle_rad / math.tau) + 1)
+
+
+def crossings(of: Callable[[Array], Array], u: Array, levels: Iterable[float]) -> Array:
+    """The angles between those of ``u`` at which a quantity passes levels [rad], by bisection."""
+    values = np.broadcast_to(of(u), u.shape)
+    above = [(level, values >= level) for level in levels]
+    hits = [(level, k) for level, up in above for k in np.flatnonzero(up[1:] != up[:-1])]
+    if not hits:
+        return np.zeros(0)
+    level, first = (np.array(each) for each in zip(*hits, strict=True))
+    low, high, side = u[first], u[first + 1], values[first] >= level
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        same = (np.broadcast_to(of(middle), middle.shape) >= level) == side
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return np.asarray(0.5 * (low + high))
+
+
+def _slider(machine: TurningMachine, load: Load, what: str) -> Callable[[Array], Array]:
+    """The displacement or the speed of a load's slider, over the angle."""
+    assert load.slider is not None
+    slider = load.slider
+    return lambda u: np.asarray(getattr(machine.mechanism(u).sliders[slider], what))
+
+
+def _rows(machine: TurningMachine, load: Load) -> Array:
+    """Where the driver's angle is that of a row of a table that repeats."""
+    rows, period = np.array(load.characteristic.kinks), load.characteristic.repeats_after
+    if not rows.size or period is None:
+        return np.zeros(0)
+    first = np.mod(machine.way * (rows - machine.start_rad), period)
+    count = round(machine.cycle_rad / period)
+    return np.asarray((first + period * np.arange(count)[:, None]).ravel())
+
+
+def _turnings(machine: TurningMachine, joint: str, u: Array) -> Array:
+    """Where the motion in a joint turns round, and its friction with it."""
+    if joint in machine.scene.sliders:
+        return crossings(lambda x: np.asarray(machine.mechanism(x).sliders[joint].speed), u, [0.0])
+    first, second = analyse(machine.scene).pins[joint][:2]
+
+    def rate(x: Array) -> Array:
+        chunk = machine.mechanism(x)
+        return np.asarray(chunk.bodies[second].omega - chunk.bodies[first].omega)
+
+    return crossings(rate, u, [0.0])

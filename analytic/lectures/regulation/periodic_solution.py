@@ -1,16 +1,28 @@
 """The kinetic energy of a machine over a cycle that it repeats, in cells of its angle.
 
 With T = J w^2 / 2 the equation of the machine is dT/du = M(u, w) + D; D is a constant torque of the
-drive.
+drive. In every cell T is a polynomial that satisfies it in Gauss's nodes; each Newton step solves
+the linear equation of what is left, cell by cell, with T at the start and D open, and these follow
+from T(cycle) = T(0) and, where a mean speed is asked for, from that.
+
+Mean speed is (w_max + w_min) / 2, that of the coefficient of fluctuation.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.regulation.angle_cells import LEGENDRE, AngleCells, integrals_to
+from analytic.lectures.regulation.angle_cells import (
+    INSIDE,
+    LEGENDRE,
+    WHOLE,
+    AngleCells,
+    integrals_to,
+    rated_breaks,
+)
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.array import Array
 from models.errors import CrankcheckError
@@ -75,3 +87,245 @@ class WantedSpeed:
 
     mean_rad_s: float | None
     extremes: tuple[float, float] | None = None
+
+
+MOST_STEPS = 80
+LEFT = 0.2
+"""The least that a Newton step leaves of the energy anywhere: an energy is above 0."""
+DONE = 1e-13
+"""The last step, over the largest energy."""
+RESTING = 1e-4
+"""The least speed over the largest: below it a machine stands."""
+NUDGE = 1e-6
+"""By what share of itself a speed is changed for the slope of torques over it."""
+
+
+def repeated(
+    machine: TurningMachine,
+    cells: AngleCells,
+    flywheel: float,
+    guess: PeriodicSolution | float,
+    wanted: WantedSpeed,
+) -> PeriodicSolution:
+    """The solution that the machine repeats.
+
+    ``guess`` is a speed [rad/s] to begin with, or a solution, in cells of its own. Raises
+    StallError where the energy runs out on the way, CrankcheckError for tables of loads that end
+    before.
+    """
+    return _Newton(machine, cells, flywheel, wanted).solved(guess)
+
+
+class _Newton:
+    """The steps towards a solution that repeats."""
+
+    def __init__(
+        self, machine: TurningMachine, cells: AngleCells, flywheel: float, wanted: WantedSpeed
+    ) -> None:
+        self.machine, self.cells, self.flywheel, self.wanted = machine, cells, flywheel, wanted
+        self.inertia = machine.inertia(cells.nodes)[0] + flywheel
+        self.at_borders = machine.inertia(cells.borders)[0] + flywheel
+        self.steady = machine.steady_torque(cells.nodes)
+        if not np.all(self.at_borders > 0.0):
+            where = math.degrees(machine.theta(cells.borders[self.at_borders <= 0.0])[0]) % 360.0
+            raise StallError(
+                f"{machine.scene.name}: no mass moves with the driver at {where:.6g} deg, so that "
+                "no energy carries the machine on; give masses, or a flywheel"
+            )
+
+    def solved(self, guess: PeriodicSolution | float) -> PeriodicSolution:
+        solution = self._begun(guess)
+        last = np.inf
+        for _ in range(MOST_STEPS):
+            full = self._step(solution)
+            change = max(
+                float(np.max(np.abs(full.energy - solution.energy))),
+                float(np.max(np.abs(full.at_borders - solution.at_borders))),
+            ) / float(np.max(np.abs(solution.energy)))
+            least = min(
+                float(np.min(full.energy / solution.energy)),
+                float(np.min(full.at_borders / solution.at_borders)),
+            )
+            if least >= LEFT:
+                if change <= DONE or (change < 1e-9 and change >= 0.5 * last):
+                    if self._holds(full):
+                        return full
+                    break
+                last = change
+            share = 1.0 if least >= LEFT else (1.0 - LEFT) / (1.0 - least)
+            solution = self._mixed(solution, full, share)
+        raise StallError(self._stalled(solution))
+
+    def _begun(self, guess: PeriodicSolution | float) -> PeriodicSolution:
+        """What the steps begin with."""
+        if isinstance(guess, float):
+            square = 0.5 * guess**2
+            return self._solution(square * self.inertia, square * self.at_borders, 0.0, 1.0)
+        nodes = self.cells.nodes
+        energy = guess.energy_at(nodes.ravel()).reshape(nodes.shape)
+        return self._solution(energy, guess.energy_at(self.cells.borders), guess.drive, guess.gain)
+
+    def _holds(self, solution: PeriodicSolution) -> bool:
+        """Whether a solution is one of a machine that goes on, at the speed that was asked for; the
+        steps may come to rest where it all but stops as well."""
+        (_, *high), (_, *low) = self._extremes(solution)
+        fast, slow = (math.sqrt(2.0 * energy / inertia) for energy, inertia in (high, low))
+        mean = self.wanted.mean_rad_s
+        return slow > RESTING * fast and (
+            mean is None or abs(0.5 * (fast + slow) - mean) <= 1e-9 * mean
+        )
+
+    def _solution(
+        self, energy: Array, at_borders: Array, drive: float, gain: float
+    ) -> PeriodicSolution:
+        """With the torque at the nodes that goes with the energy. Raises CrankcheckError."""
+        torque = self.steady
+        if self.machine.is_rated:
+            speed = np.sqrt(2.0 * energy / self.inertia)
+            torque = torque + self.machine.rated_torque(self.cells.nodes, speed)
+        return PeriodicSolution(
+            self.machine, self.cells, self.flywheel, self.inertia, self.at_borders,
+            energy, at_borders, torque, drive, gain,
+        )  # fmt: skip
+
+    def _mixed(
+        self, solution: PeriodicSolution, full: PeriodicSolution, share: float
+    ) -> PeriodicSolution:
+        """A share of the way; less of it where a table of a load would end."""
+        why: CrankcheckError | None = None
+        for _ in range(40):
+            try:
+                return self._solution(
+                    solution.energy + share * (full.energy - solution.energy),
+                    solution.at_borders + share * (full.at_borders - solution.at_borders),
+                    solution.drive + share * (full.drive - solution.drive),
+                    full.gain,
+                )
+            except CrankcheckError as error:
+                share, why = 0.5 * share, why or error
+        assert why is not None
+        raise why
+
+    def _slope(self, solution: PeriodicSolution) -> Array:
+        """dM/dT at the nodes [1]."""
+        if not self.machine.is_rated:
+            return np.zeros_like(solution.energy)
+        speed, nodes = solution.speed, self.cells.nodes
+        low = self.machine.rated_torque(nodes, speed * (1.0 - NUDGE))
+        by_speed = (solution.torque - self.steady - low) / (NUDGE * speed)
+        return np.asarray(by_speed / (self.inertia * speed))
+
+    def _step(self, solution: PeriodicSolution) -> PeriodicSolution:
+        """The solution of the equation that is linear about a solution."""
+        slope, wide = self._slope(solution), self.cells.widths[:, None]
+        left = solution.torque - slope * solution.energy  # M = left + slope T
+        matrix = np.eye(INSIDE.shape[0]) - wide[:, :, None] * INSIDE * slope[:, None, :]
+        right = np.stack([np.ones_like(left), wide * (left @ INSIDE.T),
+                          wide * (np.ones_like(left) @ INSIDE.T)], axis=2)  # fmt: skip
+        # T at the nodes of a cell, from T at its first border, from what is left, and from D.
+        within = np.linalg.solve(matrix, right)
+        torques = slope[:, :, None] * within
+        torques[:, :, 1] += left
+        torques[:, :, 2] += 1.0
+        over = wide * np.einsum("j,cjk->ck", WHOLE, torques)
+        start = np.zeros((len(over) + 1, 3))
+        start[0, 0] = 1.0  # T at the borders, from T(0), from what is left, and from D
+        for k, row in enumerate(over):
+            start[k + 1] = start[k] * (1.0 + row[0])
+            start[k + 1, 1:] += row[1:]
+        first, drive = self._open(solution, start, torques)
+        known = np.array([first, 1.0, drive])
+        borders = start @ known
+        energy = within[:, :, 0] * borders[:-1, None] + within[:, :, 1] + drive * within[:, :, 2]
+        torque = (
+            torques[:, :, 0] * borders[:-1, None]
+            + torques[:, :, 1]
+            + drive * (torques[:, :, 2] - 1.0)
+        )
+        return PeriodicSolution(
+            self.machine, self.cells, self.flywheel, self.inertia, self.at_borders,
+            energy, borders, torque, drive, float(start[-1, 0]),
+        )  # fmt: skip
+
+    def _open(
+        self, solution: PeriodicSolution, start: Array, torques: Array
+    ) -> tuple[float, float]:
+        """T at the start and D, from what is to be periodic, and the mean speed."""
+        gain, gained, driven = start[-1]
+        mean = self.wanted.mean_rad_s
+        if mean is None:
+            return float(gained / (1.0 - gain)), 0.0
+        periodic = np.array([gain - 1.0, driven])
+        row, right = np.zeros(2), mean
+        for u, energy, inertia in self._extremes(solution):
+            speed = np.sqrt(2.0 * energy / inertia)
+            weights = self._weights(u, start, torques)
+            row += 0.5 * weights[[0, 2]] / (inertia * speed)
+            right -= 0.5 * (speed + (weights[1] - energy) / (inertia * speed))
+        first, drive = np.linalg.solve(np.array([periodic, row]), np.array([-gained, right]))
+        return float(first), float(drive)
+
+    def _weights(self, u: float, start: Array, torques: Array) -> Array:
+        """T at an angle, from T(0), from what is left, and from D."""
+        cell, share = (each[0] for each in self.cells.places(np.array([u])))
+        inner = self.cells.widths[cell] * (integrals_to(np.array(share)) @ torques[cell])
+        found = start[cell] * (1.0 + inner[0])
+        found[1:] += inner[1:]
+        return np.asarray(found)
+
+    def _extremes(self, solution: PeriodicSolution) -> list[tuple[float, float, float]]:
+        """Angle, energy and inertia where the speed is largest, and where smallest."""
+        if self.wanted.extremes is not None:
+            u = np.array(self.wanted.extremes)
+            energy, inertia = solution.energy_at(u), solution.inertia_at(u)
+        else:
+            u = self.cells.nodes.ravel()
+            energy, inertia = solution.energy.ravel(), self.inertia.ravel()
+            square = energy / inertia
+            at = [int(np.argmax(square)), int(np.argmin(square))]
+            u, energy, inertia = u[at], energy[at], inertia[at]
+        return list(zip(u.tolist(), energy.tolist(), inertia.tolist(), strict=True))
+
+    def _stalled(self, solution: PeriodicSolution) -> str:
+        """Where the energy runs out."""
+        scene, worst = self.machine.scene, int(np.argmin(solution.energy / self.inertia))
+        where = np.degrees(self.machine.theta(self.cells.nodes.ravel()[worst])) % 360.0
+        mean = self.wanted.mean_rad_s
+        of = "" if mean is None else f" with a mean speed of {mean:.6g} rad/s"
+        return (
+            f"{scene.name}: no steady cycle{of}: its masses hold too little energy, and it comes "
+            f"to rest near {scene.driver.link} {where:.4g} deg; put a flywheel on, as large as "
+            "a wanted coefficient of fluctuation takes"
+        )
+
+
+RESOLVED, MOST_HALVINGS, MOST_CELLS = 1e-8, 16, 12_000
+"""What the highest polynomial of a cell may have of the energy, over the largest, of which what it
+leaves out is a hundredth; how often cells are halved for it, and how many there may be."""
+
+
+def resolved(solution: PeriodicSolution, wanted: WantedSpeed) -> PeriodicSolution:
+    """The solution in cells so narrow that their polynomials follow it: a machine that comes
+    quickly to the speed of its motor, or a load of short waves, takes narrower ones.
+
+    Raises CrankcheckError where no cells are narrow enough.
+    """
+    machine = solution.machine
+    for _ in range(MOST_HALVINGS):
+        rough = np.flatnonzero(solution.roughness > RESOLVED)
+        if not rough.size:
+            return solution
+        if len(solution.cells.widths) + rough.size > MOST_CELLS:
+            break
+        own = solution.cells
+        more = [own.borders, own.borders[rough] + 0.5 * own.widths[rough]]
+        if machine.is_rated:
+            more.append(rated_breaks(machine, solution.speed_at))
+        cells = AngleCells.of(machine.cycle_rad, np.concatenate(more))
+        solution = repeated(machine, cells, solution.flywheel, solution, wanted)
+    where = machine.theta(solution.cells.borders[np.argmax(solution.roughness)])
+    raise CrankcheckError(
+        f"{machine.scene.name}: no steady cycle is told: near {machine.scene.driver.link} "
+        f"{np.degrees(where) % 360.0:.4g} deg torques change too fast for {MOST_CELLS} cells of a "
+        "cycle; give loads of longer waves, or a motor that is less steep over the speed"
+    )

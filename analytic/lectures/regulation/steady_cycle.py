@@ -7,7 +7,7 @@ I. I. Artobolevskii, Theory of Mechanisms, on the regulation of periodic fluctua
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +15,10 @@ import numpy as np
 from analytic.lectures.regulation.periodic_solution import PeriodicSolution
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.array import Array
+from models.characteristics import Constant
+from models.driver import Released
+from models.loads import Load
+from models.scene import Driver, Scene
 
 NO_WORK = 1e-12
 """A work of the cycle below this, over all that is turned over in it, is rounding."""
@@ -140,3 +144,28 @@ class SteadyCycle:
         """The driver's own angle, in [0, 2 pi) of the first turn, on into the next ones."""
         theta = float(self.machine.theta(np.array(u)))
         return float(np.mod(theta, self.machine.cycle_rad))
+
+
+DRIVE = "drive"
+
+
+def with_flywheel(scene: Scene, inertia_kg_m2: float) -> Scene:
+    """The scene with a flywheel more on its driver."""
+    link = scene.links[scene.driver.link]
+    heavier = replace(link, inertia_kg_m2=link.inertia_kg_m2 + inertia_kg_m2)
+    return replace(scene, links={**scene.links, link.name: heavier})
+
+
+def cycle_scene(cycle: SteadyCycle, cycles: float = 5.0, *, flywheel: bool = True) -> Scene:
+    """The scene of a cycle, with its flywheel if asked for, let go at its start with the speed that
+    the cycle has there, for so many cycles; the constant torque of the drive is a load of it."""
+    machine = cycle.machine
+    scene = with_flywheel(machine.scene, cycle.solution.flywheel) if flywheel else machine.scene
+    start = machine.way * float(cycle.solution.speed_at(np.zeros(1))[0])
+    law = Released(machine.start_rad, start, cycles * cycle.period_s)
+    loads = dict(scene.loads)
+    if cycle.drive_n_m:
+        name = DRIVE if DRIVE not in loads else f"{DRIVE}-of-the-cycle"
+        torque = Constant(machine.way * cycle.drive_n_m)
+        loads[name] = Load(name, scene.driver.link, None, torque)
+    return replace(scene, driver=Driver(scene.driver.link, law), loads=loads)

@@ -15,12 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linprog  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.lectures.schemes.freedom_names import named_twists, names_of_freedoms
 from analytic.lectures.schemes.screws import (
     Vector,
     across,
     force,
     kernel,
+    named_twists,
+    names_of_freedoms,
     rank,
     reciprocal,
     rotation,

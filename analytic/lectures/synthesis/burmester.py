@@ -20,8 +20,7 @@ from collections.abc import Sequence
 import numpy as np
 from flint import acb, acb_mat, acb_poly, arb, ctx
 
-from analytic.lectures.synthesis.guided_body import Dyad
-from analytic.lectures.synthesis.pose import Pose
+from analytic.lectures.synthesis.pose import Dyad, Pose
 from models.array import Array
 from models.errors import CrankcheckError
 

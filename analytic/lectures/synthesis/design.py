@@ -2,12 +2,175 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
-from analytic.lectures.synthesis.asked import PrecisionPosition
-from analytic.lectures.synthesis.construction import Step
-from models.lectures.draft import SPEED_RAD_S, Draft
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.kinematics import solve_driven
+from analytic.lectures.synthesis.pose import Dyad, Pose
+from models.array import Array
+from models.lectures.draft import SPEED_RAD_S, Draft, bar, plate
+from models.motion import Motion
+from models.scene import Scene
+
+
+@dataclass(frozen=True)
+class AskedAngle:
+    """A link has an angle [rad], whole turns apart."""
+
+    link: str
+    angle: float
+
+    def value(self, motion: Motion) -> NDArray[np.complex128]:
+        """Where a motion has it, as a turn exp(i angle), (T,)."""
+        return np.asarray(np.exp(1j * motion.links[self.link].theta))
+
+    def off(self, motion: Motion) -> Array:
+        """How far a motion is from it [rad], (T,), with its sign."""
+        off = motion.links[self.link].theta - self.angle
+        return np.asarray(off - math.tau * np.round(off / math.tau))
+
+
+@dataclass(frozen=True)
+class AskedPlace:
+    """A point is at a place [m]."""
+
+    point: str
+    place: complex
+
+    def value(self, motion: Motion) -> NDArray[np.complex128]:
+        """Where a motion has it [m], (T,)."""
+        place = motion.points[self.point].position
+        return np.asarray(place[:, 0] + 1j * place[:, 1])
+
+    def off(self, motion: Motion) -> Array:
+        """How far a motion is from it [m], (T,)."""
+        way = motion.points[self.point].position - (self.place.real, self.place.imag)
+        return np.asarray(np.hypot(way[:, 0], way[:, 1]))
+
+
+@dataclass(frozen=True)
+class AskedSlide:
+    """A slider has a displacement [m]."""
+
+    slider: str
+    displacement: float
+
+    def value(self, motion: Motion) -> NDArray[np.complex128]:
+        """Where a motion has it [m], (T,)."""
+        return motion.sliders[self.slider].displacement.astype(complex)
+
+    def off(self, motion: Motion) -> Array:
+        """How far a motion is from it [m], (T,), with its sign."""
+        return np.asarray(motion.sliders[self.slider].displacement - self.displacement)
+
+
+Asked = AskedAngle | AskedPlace | AskedSlide
+
+
+@dataclass(frozen=True)
+class PrecisionPosition:
+    """What is asked at an angle of the driver [rad], measured as the scene measures it."""
+
+    driver_rad: float
+    asked: tuple[Asked, ...]
+
+    def off(self, motion: Motion, size_m: float) -> Array:
+        """The largest distance of a motion from it, (T,): angles in rad, lengths over the size."""
+        off = [np.abs(each.off(motion)) / scale_of(each, size_m) for each in self.asked]
+        return np.asarray(np.max(off, axis=0))
+
+
+def scale_of(asked: Asked, size_m: float) -> float:
+    """What an error of it is divided by: 1 of an angle."""
+    return 1.0 if isinstance(asked, AskedAngle) else size_m
+
+
+def names_of(positions: Sequence[PrecisionPosition]) -> tuple[list[str], list[str], list[str]]:
+    """The links, points and sliders of which anything is asked."""
+    every = [each for position in positions for each in position.asked]
+    links = dict.fromkeys(each.link for each in every if isinstance(each, AskedAngle))
+    points = dict.fromkeys(each.point for each in every if isinstance(each, AskedPlace))
+    sliders = dict.fromkeys(each.slider for each in every if isinstance(each, AskedSlide))
+    return list(links), list(points), list(sliders)
+
+
+def asked_motion(scene: Scene, positions: Sequence[PrecisionPosition]) -> Motion:
+    """The scene at the driver's angles of positions (P,), of what is asked alone.
+
+    Raises
+    ------
+    ReachError
+        An angle at which it can not be assembled.
+    """
+    links, points, sliders = names_of(positions)
+    return solve_driven(
+        scene,
+        np.array([position.driver_rad for position in positions]),
+        np.ones(1),
+        np.zeros(1),
+        links=links,
+        points=points,
+        sliders=sliders,
+        bound=False,
+    )
+
+
+Look = Literal["given", "auxiliary", "result"]
+"""What a task gives, what a construction draws on the way, and the links that it finds."""
+
+
+@dataclass(frozen=True)
+class Dot:
+    """A point with its letter; ``fixed`` is drawn as a pivot of the ground."""
+
+    place: complex
+    letter: str
+    look: Look = "auxiliary"
+    fixed: bool = False
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A straight line between two places; ``beyond`` of its length is drawn on past both ends."""
+
+    start: complex
+    end: complex
+    look: Look = "auxiliary"
+    beyond: float = 0.0
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A circle, or an arc of it counter-clockwise from one direction to another [rad]."""
+
+    centre: complex
+    radius: float
+    look: Look = "auxiliary"
+    arc: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve through many places, in pieces."""
+
+    pieces: tuple[tuple[complex, ...], ...]
+    look: Look = "auxiliary"
+
+
+Element = Dot | Segment | Circle | Curve
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step: what is done, in words, and what it draws."""
+
+    words: str
+    elements: tuple[Element, ...]
 
 
 @dataclass(frozen=True)
@@ -34,3 +197,65 @@ class Proposal:
     allowed: float = 0.0
     also_rad: tuple[float, ...] = ()
     turns_back: str = ""
+
+
+INPUT, COUPLER, OUTPUT = "input", "coupler", "output"
+PIVOTS, PINS = ("O2", "O4"), "ABEFGHJKLM"
+"""The fixed pivots are named as the lecture has them, the pins by letters that are free."""
+
+
+@dataclass(frozen=True)
+class CarriedBody:
+    """A body in its positions, with the named points of it [m, own frame] whose places are asked;
+    ``name`` and ``source`` go on to its scenes."""
+
+    name: str
+    source: str
+    poses: tuple[Pose, ...]
+    points: Mapping[str, complex]
+
+    def four_bar(
+        self,
+        dyads: tuple[Dyad, Dyad],
+        driven: int = 0,
+        *,
+        chosen: Mapping[str, str] | None = None,
+        steps: Sequence[Step] = (),
+    ) -> Proposal:
+        """The four-bar whose coupler the body is, held by two dyads, the first of which stands on
+        O2; ``driven`` is which of them (0 or 1)."""
+        pins = [self.letter(dyad.moving, which) for which, dyad in enumerate(dyads)]
+        cranks = [
+            bar(pivot, pin, dyad.radius(self.poses))
+            for pivot, pin, dyad in zip(PIVOTS, pins, dyads, strict=True)
+        ]
+        own = {pin: dyad.moving for pin, dyad in zip(pins, dyads, strict=True)}
+        draft = Draft(
+            self.name,
+            self.source,
+            {pivot: dyad.fixed for pivot, dyad in zip(PIVOTS, dyads, strict=True)},
+            {INPUT: cranks[driven], COUPLER: plate(own | dict(self.points)),
+             OUTPUT: cranks[1 - driven]},
+            {},
+        )  # fmt: skip
+        positions = tuple(map(self.asked, dyads[driven].turns(self.poses), self.poses))
+        told = {**(chosen or {}), "driven at": PIVOTS[driven]}
+        return Proposal(draft, INPUT, positions, told, tuple(steps))
+
+    def asked(self, driver_rad: float, pose: Pose) -> PrecisionPosition:
+        """The body in a pose while the driver has an angle [rad]."""
+        places = (AskedPlace(point, pose.at(place)) for point, place in self.points.items())
+        return PrecisionPosition(driver_rad, (AskedAngle(COUPLER, pose.angle), *places))
+
+    def letter(self, moving: complex, which: int) -> str:
+        """The name of a pin: that of the body's point that it is, or a free letter."""
+        for name, place in self.points.items():
+            if place == moving:
+                return name
+        return letters_beside(self.points, which + 1)[which]
+
+
+def letters_beside(names: Iterable[str], count: int) -> list[str]:
+    """So many letters for pins that are not among the names."""
+    taken = set(names)
+    return [letter for letter in PINS if letter not in taken][:count]

@@ -22,16 +22,14 @@ from analytic.circuits.arcs import Arc
 from analytic.circuits.circuits import SAME, Circuits, Defect, Position, circuits_of
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve_driven
-from analytic.lectures.synthesis.asked import PrecisionPosition
-from analytic.lectures.synthesis.asked_motion import asked_motion
-from analytic.lectures.synthesis.design import Proposal
-from analytic.mechanism.grashof_of_scene import grashof_of
+from analytic.lectures.synthesis.design import PrecisionPosition, Proposal, asked_motion
+from analytic.mechanism.fourbar import grashof_of
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
+from models.files.assemble import Table
 from models.laws import ConstantSpeed, Law, Oscillating
 from models.lectures.draft import SPEED_RAD_S, Draft
 from models.scene import Scene
-from models.scene_text import Table
 
 LOOKS = 361
 """Looks at the driver's way, for transmission and size."""
@@ -265,3 +263,16 @@ def _largest_torque(scene: Scene) -> float:
     time_s = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
     acting = forces(scene, time_s, bound=False, skip_dead_points=True)
     return float(np.nanmax(np.abs(acting.torque)))
+
+
+def passing_times(law: Law, angles: Sequence[float]) -> Array:
+    """When a driver has angles [rad], one after the other [s]: in the first turn and those after
+    it, or in the first whole swing from end to end that leads through them in their order."""
+    theta = np.asarray(angles)
+    if isinstance(law, Oscillating):
+        rising = len(angles) < 2 or theta[-1] >= theta[0]
+        phase = np.arcsin(np.clip((theta - law.centre_rad) / law.amplitude_rad, -1.0, 1.0))
+        phase = phase + math.tau if rising else math.pi - phase
+        return np.asarray((phase - law.phase_rad) / law.frequency_rad_s)
+    start, speed, _ = (float(each[0]) for each in law.at(np.zeros(1)))
+    return np.asarray((theta - start) / speed)

@@ -1,4 +1,4 @@
-"""Positions of a body in the plane, and what lies between two of them: poles and bisectors."""
+"""Positions of a body in the plane, the poles and bisectors between them, and dyads that pair."""
 
 from __future__ import annotations
 
@@ -7,6 +7,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
+from models.array import Array
 from models.errors import CrankcheckError
 
 PARALLEL = 1e-9
@@ -90,3 +94,112 @@ def refuse_coinciding(poses: Sequence[Pose], size: float) -> None:
                     f"positions {i + 1} and {j + 1} coincide; give positions that differ in place "
                     "or in angle"
                 )
+
+
+@dataclass(frozen=True)
+class Dyad:
+    """A crank: its fixed pivot [m], its moving pivot in the body's own frame [m]."""
+
+    fixed: complex
+    moving: complex
+
+    def radius(self, poses: Sequence[Pose]) -> float:
+        """The distance of its pivots [m]."""
+        return abs(poses[0].at(self.moving) - self.fixed)
+
+    def turns(self, poses: Sequence[Pose]) -> list[float]:
+        """Its angle in each position [rad]."""
+        return [cmath.phase(pose.at(self.moving) - self.fixed) for pose in poses]
+
+
+def about_bisector(poses: Sequence[Pose], moving: complex, distance_m: float) -> Dyad:
+    """Of two positions: the fixed pivot on the bisector of a moving one's places, so far from the
+    middle, to the left of its way. Raises CrankcheckError of a point that stays."""
+    first, second = (pose.at(moving) for pose in poses)
+    return Dyad(bisector(first, second).at(distance_m), moving)
+
+
+def about_circumcentre(poses: Sequence[Pose], moving: complex, letter: str) -> Dyad:
+    """Of three positions: the fixed pivot in the middle of the circle through a moving one's
+    places. Raises CrankcheckError where they lie on a line."""
+    places = [pose.at(moving) for pose in poses]
+    centre = circle_through(*places)
+    if centre is None:
+        across = math.degrees(cmath.phase(1j * (places[2] - places[0]))) % 180.0
+        raise CrankcheckError(
+            f"{letter} lies on a line in the three positions: the centre of its circle is at "
+            f"infinity, along {across:.4g} deg; a crank can not hold it (a slider on that line "
+            "can); take another moving pivot"
+        )
+    return Dyad(centre, moving)
+
+
+def about_given_pivot(poses: Sequence[Pose], fixed: complex, letter: str) -> Dyad:
+    """Of three positions and a fixed pivot: inversion, as the body sees it. To the body the pivot
+    is in three places, and the middle of their circle is the moving pivot. Raises CrankcheckError
+    where they lie on a line."""
+    centre = circle_through(*(pose.back(fixed) for pose in poses))
+    if centre is None:
+        raise CrankcheckError(
+            f"seen from the body, {letter} lies on a line in the three positions: the moving pivot "
+            "is at infinity; take another place for it"
+        )
+    return Dyad(fixed, centre)
+
+
+@dataclass(frozen=True)
+class SoundPairs:
+    """All pairs of dyads, driven at the first, (K, 2): those without a defect first, ``sound`` of
+    them, the best transmitting before others."""
+
+    pairs: NDArray[np.intp]
+    sound: int
+
+
+def sound_pairs(poses: Sequence[Pose], dyads: Sequence[Dyad]) -> SoundPairs:
+    """The pairs, those first whose first crank leads through the poses in order and in one
+    assembly; each part by the least sine of the transmission angle in the poses. It chooses among
+    thousands: what is chosen is examined by the reference afterwards."""
+    fixed = np.array([dyad.fixed for dyad in dyads])
+    own = np.array([dyad.moving for dyad in dyads])
+    places = np.array([[pose.at(dyad.moving) for dyad in dyads] for pose in poses])
+    radius = np.abs(places[0] - fixed)
+    i, k = np.nonzero(~np.eye(len(dyads), dtype=bool))
+    ground, coupler = fixed[k] - fixed[i], np.abs(own[k] - own[i])
+    a, c, d = radius[i], radius[k], np.abs(ground)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crank = (places[:, i] - fixed[i]) / ground * d
+        side = ((fixed[k] - places[:, i]).conj() * (places[:, k] - places[:, i])).imag
+        sine = np.abs(_cross(places[:, k] - places[:, i], places[:, k] - fixed[k])) / (coupler * c)
+    same_sign = np.all(side > 0.0, axis=0) | np.all(side < 0.0, axis=0)
+    turns = (a + d <= coupler + c) & (np.abs(a - d) >= np.abs(coupler - c))
+    angles = np.angle(crank)
+    sound = same_sign & np.where(turns, _in_turn(angles), _in_swing(angles, a, coupler, c, d))
+    sound &= np.isfinite(sine).all(axis=0)
+    least = np.nan_to_num(np.min(sine, axis=0), nan=-1.0) + 2.0 * sound
+    order = np.argsort(-least, kind="stable")
+    return SoundPairs(np.stack([i[order], k[order]], axis=1), int(np.count_nonzero(sound)))
+
+
+def _cross(one: NDArray[np.complex128], other: NDArray[np.complex128]) -> Array:
+    return np.asarray((one.conj() * other).imag)
+
+
+def _in_turn(angles: Array) -> NDArray[np.bool_]:
+    """Whether a crank that turns one way meets its angles (N, K) in order within a turn."""
+    ways = np.diff(angles, axis=0) % (2.0 * np.pi)
+    back = -np.diff(angles, axis=0) % (2.0 * np.pi)
+    in_order = (ways.sum(axis=0) < 2.0 * np.pi) | (back.sum(axis=0) < 2.0 * np.pi)
+    return np.asarray(in_order)
+
+
+def _in_swing(angles: Array, a: Array, b: Array, c: Array, d: Array) -> NDArray[np.bool_]:
+    """Whether a crank that swings meets its angles (N, K), from the ground's direction, in order
+    and within one of its ranges: about 0, about pi, or one on either side."""
+    # B is |a - d| from D at angle 0, a + d at pi: beyond what coupler and output span, or too near.
+    no_pi, no_zero = a + d > b + c, np.abs(a - d) < np.abs(b - c)
+    turned = np.where(no_zero, angles % (2.0 * np.pi), angles)
+    ways = np.diff(turned, axis=0)
+    in_order = np.all(ways > 0.0, axis=0) | np.all(ways < 0.0, axis=0)
+    one_side = np.all(angles > 0.0, axis=0) | np.all(angles < 0.0, axis=0)
+    return np.asarray(in_order & np.where(no_pi & no_zero, one_side, True))

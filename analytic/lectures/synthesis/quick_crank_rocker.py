@@ -20,12 +20,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.synthesis.asked import AskedAngle, PrecisionPosition
-from analytic.lectures.synthesis.construction import Circle, Dot, Segment, Step
-from analytic.lectures.synthesis.design import Proposal
-from analytic.lectures.synthesis.to_and_fro import chord
+from analytic.lectures.synthesis.design import (
+    AskedAngle,
+    Circle,
+    Dot,
+    PrecisionPosition,
+    Proposal,
+    Segment,
+    Step,
+)
+from analytic.lectures.synthesis.driving_dyad import chord
 from models.lectures.draft import Draft, bar
-from models.lectures.tasks.quick_return import QuickReturnTask
+from models.lectures.tasks.positions import QuickReturnTask
 
 O2, O4, PIN, END = "O2", "O4", "A", "B"
 PLACES = 24

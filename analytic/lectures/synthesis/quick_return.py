@@ -19,15 +19,22 @@ import cmath
 import math
 from collections.abc import Iterator
 
-from analytic.lectures.synthesis.asked import AskedAngle, AskedSlide, PrecisionPosition
-from analytic.lectures.synthesis.construction import Circle, Dot, Segment, Step
-from analytic.lectures.synthesis.design import Proposal
+from analytic.lectures.synthesis.design import (
+    AskedAngle,
+    AskedSlide,
+    Circle,
+    Dot,
+    PrecisionPosition,
+    Proposal,
+    Segment,
+    Step,
+)
 from analytic.lectures.synthesis.quick_crank_rocker import crank_rockers
 from analytic.lectures.synthesis.strokes import lag_of
 from models.errors import CrankcheckError
+from models.files.assemble import Table
 from models.lectures.draft import Draft, bar
-from models.lectures.tasks.quick_return import QuickReturnTask
-from models.scene_text import Table
+from models.lectures.tasks.positions import QuickReturnTask
 
 O2, O4, PIN, END, RAM = "O2", "O4", "A", "B", "C"
 LONGER = 1.25

@@ -7,15 +7,24 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from analytic.lectures.synthesis.asked import Asked, AskedAngle, AskedPlace, PrecisionPosition
-from analytic.lectures.synthesis.construction import Circle, Dot, Element, Segment, Step
-from analytic.lectures.synthesis.design import Proposal
-from analytic.lectures.synthesis.fourbar_draft import letters_beside
+from analytic.lectures.synthesis.design import (
+    Asked,
+    AskedAngle,
+    AskedPlace,
+    Circle,
+    Dot,
+    Element,
+    PrecisionPosition,
+    Proposal,
+    Segment,
+    Step,
+    letters_beside,
+)
+from analytic.lectures.synthesis.driving_dyad import ToAndFro, choices
 from analytic.lectures.synthesis.pose import Pose, bisector, pole, refuse_coinciding, turn_between
-from analytic.lectures.synthesis.to_and_fro import ToAndFro, choices
 from models.errors import CrankcheckError
 from models.lectures.draft import Draft, bar, plate
-from models.lectures.tasks.rocker import RockerTask
+from models.lectures.tasks.positions import RockerTask
 
 O2, O4 = "O2", "O4"
 

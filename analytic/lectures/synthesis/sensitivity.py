@@ -14,14 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.kinematics import solve_driven
-from analytic.lectures.synthesis.asked import Asked
-from analytic.lectures.synthesis.asked_motion import asked_motion
+from analytic.lectures.synthesis.design import Asked, asked_motion
 from analytic.lectures.synthesis.examine import Examined, way_of
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
+from models.files.assemble import Table
 from models.lectures.draft import Draft, plate
 from models.scene import Scene
-from models.scene_text import Table
 
 SINGULAR = 1e-3
 """A least sine of transmission below which differences say nothing."""

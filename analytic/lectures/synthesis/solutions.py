@@ -1,4 +1,8 @@
-"""The solutions of a task: what every proposal is worth."""
+"""The solutions of a task: what every proposal is worth.
+
+A ram on a rod that is too short goes further than the ends of its lever ask for, and turns back in
+other times: two positions that are met tell nothing of it. The reference follows it over a turn.
+"""
 
 from __future__ import annotations
 
@@ -6,26 +10,144 @@ import math
 from dataclasses import dataclass, replace
 
 from analytic.lectures.synthesis.coupler import coupler_proposals
-from analytic.lectures.synthesis.design import Proposal
+from analytic.lectures.synthesis.design import AskedAngle, AskedSlide, PrecisionPosition, Proposal
 from analytic.lectures.synthesis.examine import Examined, examine, ranked
 from analytic.lectures.synthesis.function.designs import function_designs
 from analytic.lectures.synthesis.function.structural_error import FunctionProposal, structural_error
+from analytic.lectures.synthesis.function.task import FunctionTask, GivenFunction
+from analytic.lectures.synthesis.line_draft import peaucellier
 from analytic.lectures.synthesis.path.rounds import Progress
 from analytic.lectures.synthesis.path.search import generate
-from analytic.lectures.synthesis.posed import function_task, path_task, straight_line_of
+from analytic.lectures.synthesis.path.task import PathTask
 from analytic.lectures.synthesis.quick_return import quick_return_proposals
 from analytic.lectures.synthesis.rocker import rocker_proposals
+from analytic.lectures.synthesis.straight_line import hoeken, straight_line
 from analytic.lectures.synthesis.strokes import stroke_proposals
-from analytic.lectures.synthesis.turning_back import held_to_its_limits
+from analytic.mechanism.travel import Travel, travel
 from models.errors import CrankcheckError, ReachError
-from models.lectures.tasks.coupler import CouplerTask
-from models.lectures.tasks.function import FunctionTable
-from models.lectures.tasks.path import PathTable
-from models.lectures.tasks.quick_return import QuickReturnTask
-from models.lectures.tasks.rocker import RockerTask
-from models.lectures.tasks.straight_line import StraightLineTable
-from models.lectures.tasks.stroke import StrokeTask
+from models.lectures.tasks.curves import FunctionTable, PathTable, StraightLineTable
+from models.lectures.tasks.positions import CouplerTask, QuickReturnTask, RockerTask, StrokeTask
 from models.lectures.tasks.task import TaskTable
+
+
+def function_task(table: FunctionTable) -> FunctionTask:
+    """Raises CrankcheckError for a function or ranges that make no task."""
+    if table.formula is not None:
+        function = GivenFunction.of_formula(table.formula)
+    else:
+        function = GivenFunction.of_table(table.x or [], table.y or [])
+    if table.mechanism == "fourbar":
+        output_range = math.radians(table.output_range_deg or 0.0)
+        output_start = _radians(table.output_start_deg)
+    else:
+        output_range, output_start = table.output_range_m or 0.0, table.output_start_m
+    return FunctionTask(
+        function,
+        *table.range_of_x,
+        math.radians(table.input_range_deg),
+        output_range,
+        mechanism=table.mechanism,
+        points=table.points if isinstance(table.points, int) else tuple(table.points),
+        input_start_rad=_radians(table.input_start_deg),
+        output_start=output_start,
+        ground_m=table.ground_m,
+        equal_ripple=table.equal_ripple,
+    )
+
+
+def path_task(table: PathTable) -> PathTask:
+    """Raises CrankcheckError for points that make no path."""
+    angles = None if table.crank_deg is None else tuple(map(math.radians, table.crank_deg))
+    return PathTask(tuple(complex(*place) for place in table.points_m), angles, table.closed)
+
+
+def _radians(degrees: float | None) -> float | None:
+    return None if degrees is None else math.radians(degrees)
+
+
+def straight_line_of(table: StraightLineTable) -> Proposal:
+    """The linkage of a straight line. Raises CrankcheckError for what none has."""
+    start, direction = complex(*table.start_m), math.radians(table.direction_deg)
+    if table.linkage == "peaucellier":
+        return peaucellier(table.length_m, start=start, direction_rad=direction)
+    if table.linkage == "hoeken":
+        return hoeken(
+            table.length_m,
+            share=None if table.turn_deg is None else table.turn_deg / 360.0,
+            deviation=table.deviation,
+            even=table.even or "line",
+            start=start,
+            direction_rad=direction,
+        ).proposal
+    return straight_line(
+        table.linkage,
+        table.length_m,
+        deviation=table.deviation,
+        start=start,
+        direction_rad=direction,
+    ).proposal
+
+
+STROKE = 1e-9
+"""Of a stroke or swing: what it is longer than asked is none of rounding beyond it."""
+RATIO = 1e-6
+"""Of a time ratio: limit positions are roots, and lose half of the digits where they are flat."""
+FLAT = 1e-6
+"""A least sine of transmission below which there is a change point on the way."""
+
+
+def held_to_its_limits(one: Examined) -> Examined:
+    """A mechanism with what its output does over a turn of the crank told; with a fault where that
+    is not what the two positions ask for. Where the way comes too near to a singular position to
+    have limits, that is told."""
+    name = one.proposal.turns_back
+    if not name or one.defects or not one.turns_fully or one.least_sine < FLAT:
+        return one
+    try:
+        found = travel(one.scene, name)
+    except CrankcheckError as singular:
+        return replace(one, notes=(*one.notes, f"not followed over a turn: {singular}"))
+    stroke, ratio = _asked(one.positions, name)
+    off = abs(found.stroke - stroke) > STROKE * stroke
+    if off or abs(found.time_ratio - ratio) > RATIO * ratio:
+        advice = ": take a longer rod" if name in one.scene.sliders else ""
+        return replace(one, fault=f"{_told(one, found)}{advice}")
+    return replace(one, notes=(*one.notes, _told(one, found)))
+
+
+def _asked(positions: tuple[PrecisionPosition, ...], name: str) -> tuple[float, float]:
+    """The stroke [m] or swing [rad] between the two positions, and the ratio of the crank's turns
+    between them."""
+    first, second = (_of(position, name) for position in positions)
+    if isinstance(first, AskedAngle) and isinstance(second, AskedAngle):
+        stroke = abs(math.remainder(second.angle - first.angle, math.tau))
+    else:
+        assert isinstance(first, AskedSlide)
+        assert isinstance(second, AskedSlide)
+        stroke = abs(second.displacement - first.displacement)
+    forth = (positions[1].driver_rad - positions[0].driver_rad) % math.tau
+    back = math.tau - forth
+    return stroke, max(forth, back) / min(forth, back)
+
+
+def _of(position: PrecisionPosition, name: str) -> AskedAngle | AskedSlide:
+    """What a position asks of a link or slider."""
+    for each in position.asked:
+        if isinstance(each, AskedAngle) and each.link == name:
+            return each
+        if isinstance(each, AskedSlide) and each.slider == name:
+            return each
+    raise CrankcheckError(f"nothing is asked of {name} in a position, which it turns back in")
+
+
+def _told(one: Examined, found: Travel) -> str:
+    """Stroke and time ratio over a turn, in words."""
+    if one.proposal.turns_back in one.scene.sliders:
+        goes = f"goes {found.stroke:.6g} m"
+    else:
+        goes = f"swings {math.degrees(found.stroke):.6g} deg"
+    return f"{goes}, time ratio {found.time_ratio:.6g}"
+
 
 LONGEST_NAME = 34
 """Letters of a task's name that go on to its scenes, which have 40 with their numbers."""

@@ -26,12 +26,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.synthesis.asked import AskedSlide, PrecisionPosition
-from analytic.lectures.synthesis.construction import Circle, Dot, Segment, Step
-from analytic.lectures.synthesis.design import Proposal
+from analytic.lectures.synthesis.design import (
+    AskedSlide,
+    Circle,
+    Dot,
+    PrecisionPosition,
+    Proposal,
+    Segment,
+    Step,
+)
 from models.errors import CrankcheckError
 from models.lectures.draft import Draft, bar
-from models.lectures.tasks.stroke import StrokeTask
+from models.lectures.tasks.positions import StrokeTask
 
 O2, PIN, SLIDER = "O2", "A", "B"
 RODS = (2.0, 3.0, 4.0, 5.0)

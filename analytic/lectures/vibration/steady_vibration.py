@@ -1,26 +1,198 @@
 """The vibration of elastic links that a driver of constant speed keeps up, with all that is asked
-of it: natural frequencies, the periodic motion and the linear theories beside it, its stability."""
+of it: natural frequencies, the periodic motion and the linear theories beside it, its stability.
+
+At the same angles of the driver M does not change with its speed, C and K and h are polynomials of
+it, of the second degree where no load depends on speeds otherwise. So the equations at hundreds of
+speeds follow from those at three, which is looked at in a fourth.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from analytic.elastic.discretisation import Modes
+from analytic.elastic.discretisation import Discretisation, Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.linearised import linearise
 from analytic.elastic.natural import NaturalModes, natural_modes
-from analytic.elastic.periodic import FIRST, PeriodicMotion, linear_motion, periodic_motion
+from analytic.elastic.periodic import (
+    FIRST,
+    LinearForm,
+    PeriodicMotion,
+    check_periodic,
+    instants,
+    linear_motion,
+    linearise,
+    periodic_motion,
+)
 from analytic.elastic.reduced import ReducedForm
-from analytic.lectures.vibration.any_speed import AnySpeed
 from analytic.lectures.vibration.floquet import Stability, stability_of
-from analytic.lectures.vibration.swing import Swing, swings
 from models.array import Array
 from models.errors import CrankcheckError
 from models.laws import ConstantSpeed
 from models.scene import Scene
+
+INSTANTS = 65
+"""Of a turn: orders up to half as many are told apart."""
+SAME = 1e-6
+"""What the polynomials may be off at a speed that they were not made of, over the largest entry."""
+PARTS = ("mass", "damping", "stiffness", "force")
+
+
+def at_speed(scene: Scene, speed_rad_s: float) -> Scene:
+    """The scene with its driver at another speed, the way round that it has.
+
+    Raises
+    ------
+    CrankcheckError
+        The scene is not driven at a constant speed.
+    """
+    law = scene.driver.law
+    if not isinstance(law, ConstantSpeed):
+        raise CrankcheckError(
+            f"{scene.name}: vibration over speeds is that of a driver at a constant one; found "
+            'another law of motion: use [driver] law = "constant", with speed_rad_s'
+        )
+    speed = math.copysign(speed_rad_s, law.speed_rad_s)
+    return replace(scene, driver=replace(scene.driver, law=replace(law, speed_rad_s=speed)))
+
+
+@dataclass(frozen=True)
+class AnySpeed:
+    """A scene with elastic links at speeds from ``slowest`` to ``fastest`` [rad/s], both above
+    0."""
+
+    scene: Scene
+    by: Discretisation
+    slowest: float
+    fastest: float
+    stiffened: bool = True
+
+    def form(self, speed_rad_s: float) -> ReducedForm:
+        """The equations of motion at a speed."""
+        scene = at_speed(self.scene, speed_rad_s)
+        return DrivenElasticMotion(scene, 1.0, self.by, "periodic", self.stiffened).form
+
+    def linear(self, speed_rad_s: float) -> LinearForm:
+        """The linearised equations at a speed."""
+        if self._series is None:
+            return self._direct(speed_rad_s)
+        return self._summed(self._series, speed_rad_s)
+
+    def still(self) -> tuple[Array, Array]:
+        """M and K (N, m, m) with the driver held still at the same angles: without what its turning
+        adds."""
+        some = self.linear(self.slowest)
+        if self._series is not None:
+            return some.mass, self._series["stiffness"][0]
+        return some.mass, np.broadcast_to(self.form(self.slowest).stiffness, some.mass.shape)
+
+    @cached_property
+    def _series(self) -> Mapping[str, Array] | None:
+        """Coefficients of the polynomials (3, N, ...), or None where they are none."""
+        low, high = self.slowest, self.fastest
+        if high - low < 0.2 * high:  # too near each other to make polynomials of
+            low, high = 0.8 * high, 1.2 * high
+        speeds = np.linspace(low, high, 3)
+        forms = [self._direct(speed) for speed in speeds]
+        inverse = np.linalg.inv(np.vander(speeds / high, 3, increasing=True))
+        to_powers = (high ** -np.arange(3.0))[:, None] * inverse
+        series = {
+            part: np.tensordot(to_powers, np.stack([vars(each)[part] for each in forms]), 1)
+            for part in PARTS
+        }
+        between = low + 0.3 * (high - low)
+        off = apart(self._summed(series, between), self._direct(between))
+        return None if off > SAME else series
+
+    def _direct(self, speed: float) -> LinearForm:
+        form = self.form(speed)
+        check_periodic(form)
+        time_s = instants(INSTANTS, form.period_s)
+        return linearise(form, time_s, FIRST * self.scene.longest_m)
+
+    def _summed(self, series: Mapping[str, Array], speed: float) -> LinearForm:
+        powers = speed ** np.arange(3.0)
+        parts = {part: np.tensordot(powers, series[part], 1) for part in PARTS}
+        return LinearForm(instants(INSTANTS, math.tau / speed), **parts)
+
+
+def apart(one: LinearForm, other: LinearForm) -> float:
+    """What linearised equations differ by, each part over its largest entry; damping over what
+    would be critical where it is but rounding."""
+    largest = {part: float(np.abs(vars(other)[part]).max()) for part in PARTS}
+    critical = math.sqrt(largest["mass"] * largest["stiffness"])
+    largest["damping"] = max(largest["damping"], 1e-3 * critical)
+    return max(
+        float(np.abs(vars(one)[part] - vars(other)[part]).max()) / (largest[part] or 1.0)
+        for part in PARTS
+    )
+
+
+PLACES = 41
+"""Along a link, where the largest deflection is looked for."""
+
+
+@dataclass(frozen=True)
+class Swing:
+    """A link at N instants of a period: the deflection of its middle and its extension [m], (N,).
+
+    ``largest_m`` is the largest deflection of any place on a link that bends, ``place_m`` from its
+    first pin, at the instant ``when``; of one that only stretches the largest extension, at its
+    end.
+    """
+
+    link: str
+    length_m: float
+    bends: bool
+    middle: Array
+    extension: Array
+    largest_m: float
+    place_m: float
+    when: int
+
+    @property
+    def series(self) -> Array:
+        """What its spectrum is of [m], (N,): the deflection of the middle, or the extension of a
+        link that does not bend."""
+        return self.middle if self.bends else self.extension
+
+    @property
+    def share(self) -> float:
+        """The largest over the length."""
+        return self.largest_m / self.length_m
+
+    @property
+    def amplitudes(self) -> Array:
+        """Of `series` at orders 0, 1, 2, ... of the period [m]."""
+        return spectrum(self.series)
+
+
+def swings(form: ReducedForm, z: Array) -> dict[str, Swing]:
+    """How the elastic links swing with coefficients (N, m) over a period, by name."""
+    found, every = {}, form.about_origin(z)
+    for name, (body, own) in form.assembly.elastic.items():
+        q = every[:, own]
+        bends = form.assembly.scene.elastic[name].bends
+        x, length = np.linspace(0.0, body.length_m, PLACES), body.length_m
+        across, extension = body.deflections(q, x), body.extension(q)
+        away = np.abs(across) if bends else np.abs(extension)[:, None]
+        when, place = np.unravel_index(int(away.argmax()), away.shape)
+        found[name] = Swing(
+            name, length, bends, across[:, PLACES // 2], extension,
+            float(away[when, place]), float(x[place]) if bends else length, int(when),
+        )  # fmt: skip
+    return found
+
+
+def spectrum(series: Array) -> Array:
+    """The amplitudes of what is periodic (N,), N odd, at orders 0 to N // 2 of its period."""
+    amplitudes = np.abs(np.fft.rfft(series)) / len(series)
+    amplitudes[1:] *= 2.0
+    return np.asarray(amplitudes)
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,8 @@ from pathlib import Path
 
 from models.errors import CrankcheckError, suggestion
 from models.lectures.shipped_tables import find_table, read_table, shipped_in
-from models.lectures.tasks.coupler import CouplerTask
-from models.lectures.tasks.function import FunctionTable
-from models.lectures.tasks.path import PathTable
-from models.lectures.tasks.quick_return import QuickReturnTask
-from models.lectures.tasks.rocker import RockerTask
-from models.lectures.tasks.straight_line import StraightLineTable
-from models.lectures.tasks.stroke import StrokeTask
+from models.lectures.tasks.curves import FunctionTable, PathTable, StraightLineTable
+from models.lectures.tasks.positions import CouplerTask, QuickReturnTask, RockerTask, StrokeTask
 from models.lectures.tasks.task import TaskTable
 
 TASKS = Path(__file__).parents[2] / "task_files"

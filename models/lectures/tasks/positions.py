@@ -1,13 +1,14 @@
-"""Tasks of positions of a body."""
+"""Tasks of positions: of a coupler, a rocker, a stroke, and of a quick return."""
 
 from __future__ import annotations
 
 import cmath
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from models.files.schema import Coordinates, Degrees, Name, NonNegative, Positive, Table
 from models.lectures.tasks.task import TaskTable
-from models.table_fields import Coordinates, Degrees, Name, Table
 
 RIGID = 1e-3
 """By what share of it the distance of two points may differ between positions: exercises round."""
@@ -96,3 +97,160 @@ class PositionsTask(TaskTable):
             return {"P": 0j}
         first, second = self._pair(self.positions[0])
         return {self.names[0]: 0j, self.names[1]: complex(abs(second - first))}
+
+
+class CouplerTask(PositionsTask):
+    """A body is to be the coupler of a four-bar, in two to five positions.
+
+    ``moving_m`` are moving pivots, where they are in the first position (of two and three; the two
+    named points where it is silent); ``fixed_m`` the fixed pivots in their place (three positions).
+    Of two positions, ``distances_m`` says how far the fixed pivots lie from the middles, to the
+    left of the way along the bisector. ``driver`` is the side that is driven. ``best`` is how many
+    solutions are listed where there are infinitely many.
+    """
+
+    moving_m: tuple[Coordinates, Coordinates] | None = None
+    fixed_m: tuple[Coordinates, Coordinates] | None = None
+    distances_m: Coordinates | None = None
+    driver: Literal["first", "second", "either"] = "either"
+    driving_dyad: bool = False
+
+    @model_validator(mode="after")
+    def _pivots_fit_the_count(self) -> CouplerTask:
+        count = len(self.positions)
+        if self.fixed_m is not None and self.moving_m is not None:
+            raise ValueError("fixed_m and moving_m: the one follows from the other; give one")
+        if self.fixed_m is not None and count != 3:
+            raise ValueError(
+                f"fixed_m: found with {count} positions; fixed pivots are given for three"
+            )
+        if self.moving_m is not None and count > 3:
+            raise ValueError(
+                f"moving_m: found with {count} positions; of four and five they follow from the "
+                "positions, leave it out"
+            )
+        if self.distances_m is not None and count != 2:
+            raise ValueError(
+                f"distances_m: found with {count} positions; of more than two the centres of the "
+                "circles are the fixed pivots, leave it out"
+            )
+        if self.driving_dyad and count != 2:
+            raise ValueError(
+                f"driving_dyad: found with {count} positions; a dyad leads to and fro between two"
+            )
+        if count < 4 and not self.names and self.moving_m is None and self.fixed_m is None:
+            raise ValueError(
+                "moving_m: missing; two or three positions by their angle need two moving pivots, "
+                "where they are in the first position: moving_m = [[0.1, 0.2], [0.3, 0.2]]"
+            )
+        return self
+
+
+Swing = Annotated[float, Field(strict=True, gt=0.0, lt=180.0)]
+
+
+class RockerTask(TaskTable):
+    """A crank is to swing a rocker, by its angle or between two positions of a body on it.
+
+    ``rocker_m`` is the distance of its pin B from its pivot O4 (of positions silent: as far as the
+    body's first point); ``distance_m`` that of the crank's pivot O2 from the middle of the chord
+    B1 B2, on whose extension it lies: silent, several are tried.
+    """
+
+    swing_deg: Swing | None = None
+    positions: list[PoseTable] = Field(default_factory=list, max_length=2)
+    rocker_m: Positive | None = None
+    distance_m: Positive | None = None
+
+    @model_validator(mode="after")
+    def _is_by_angle_or_by_positions(self) -> RockerTask:
+        if (self.swing_deg is None) == (not self.positions):
+            raise ValueError("give swing_deg, or two positions, one of the two")
+        if self.positions and len(self.positions) != 2:
+            raise ValueError("positions: found 1; a rocker swings between two")
+        if self.swing_deg is not None and self.rocker_m is None:
+            raise ValueError("rocker_m: missing; a rocker by its angle needs its length")
+        if self.positions:
+            _ = self.body
+        return self
+
+    @property
+    def body(self) -> PositionsTask:
+        """The body in its two positions. Raises ValidationError for positions of no rigid body."""
+        return PositionsTask(name=self.name, source=self.source, positions=self.positions)
+
+
+TimeRatio = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=1.0, lt=1000.0)]
+"""Time of the slow stroke over that of the quick one."""
+
+
+class StrokeTask(TaskTable):
+    """A slider-crank of a stroke: ``central`` (of 2 cranks), ``isosceles`` (rod as long as the
+    crank, 4 cranks), or ``offset`` by a length, or by its time ratio.
+
+    ``rod_m`` is the rod; silent, several are tried.
+    """
+
+    stroke_m: Positive
+    form: Literal["central", "isosceles", "offset"] = "central"
+    rod_m: Positive | None = None
+    offset_m: NonNegative | None = None
+    time_ratio: TimeRatio | None = None
+
+    @model_validator(mode="after")
+    def _goes_together(self) -> StrokeTask:
+        offset = self.offset_m is not None or self.time_ratio is not None
+        if self.form != "offset" and offset:
+            raise ValueError(f'offset_m and time_ratio belong to form = "offset", not {self.form}')
+        if self.form == "offset" and not offset:
+            raise ValueError("give offset_m, or time_ratio, or both: an offset slider-crank")
+        if self.form == "isosceles" and self.rod_m is not None:
+            raise ValueError("rod_m: of an isosceles slider-crank it is a quarter of the stroke")
+        if self.rod_m is not None and self.offset_m is not None and self.time_ratio is not None:
+            raise ValueError("rod_m, offset_m, time_ratio: the third follows from two; leave one")
+        return self
+
+
+NEEDS = {
+    "slotted-lever": ("crank_m", "pivots_m", "stroke_m"),
+    "whitworth": ("crank_m", "pivots_m", "stroke_m"),
+    "crank-rocker": ("rocker_m",),
+}
+"""What gives a mechanism its size, one of them."""
+
+
+class QuickReturnTask(TaskTable):
+    """A mechanism whose slow stroke takes ``time_ratio`` times the quick one, at constant speed.
+
+    Its size is that of the ``crank_m``, of the distance of the pivots (``pivots_m``) or of the
+    ram's ``stroke_m``; of a crank-rocker ``rocker_m``, whose ``swing_deg`` is asked for as well. A
+    ram has a rod of ``rod_m``, silent twice its stroke.
+    """
+
+    mechanism: Literal["slotted-lever", "whitworth", "crank-rocker"]
+    time_ratio: TimeRatio
+    crank_m: Positive | None = None
+    pivots_m: Positive | None = None
+    stroke_m: Positive | None = None
+    rocker_m: Positive | None = None
+    swing_deg: Swing | None = None
+    rod_m: Positive | None = None
+
+    @model_validator(mode="after")
+    def _has_one_size(self) -> QuickReturnTask:
+        sizes = ("crank_m", "pivots_m", "stroke_m", "rocker_m")
+        given = [key for key in sizes if getattr(self, key) is not None]
+        own = NEEDS[self.mechanism]
+        if len(given) != 1 or given[0] not in own:
+            raise ValueError(
+                f"found {' and '.join(given) or 'no size'}; a {self.mechanism} is given one of "
+                f"{', '.join(own)}"
+            )
+        if (self.swing_deg is not None) != (self.mechanism == "crank-rocker"):
+            raise ValueError(
+                "swing_deg: a crank-rocker needs it, and the swing of other mechanisms follows "
+                "from the time ratio"
+            )
+        if self.rod_m is not None and self.stroke_m is None:
+            raise ValueError("rod_m: a ram with a rod needs its stroke_m")
+        return self

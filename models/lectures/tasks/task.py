@@ -6,8 +6,8 @@ from typing import Annotated
 
 from pydantic import Field, StringConstraints, model_validator
 
+from models.files.schema import Coordinates, Name, Positive, Table, Text
 from models.lectures.draft import SPEED_RAD_S
-from models.table_fields import Coordinates, Name, Positive, Table, Text
 
 MOST_LOADS = 20
 Source = Annotated[Text, StringConstraints(min_length=1)]

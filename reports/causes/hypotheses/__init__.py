@@ -5,21 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from reports.causes.account import Account
-from reports.causes.hypotheses.assembly import assembly
-from reports.causes.hypotheses.clock import drift, time_unit
+from reports.causes.hypotheses.clock import drift, stamps, time_unit
 from reports.causes.hypotheses.dimension import dimension
-from reports.causes.hypotheses.driver import backwards, start_angle
-from reports.causes.hypotheses.filtered import filtered
-from reports.causes.hypotheses.frame import mirrored, moved, sized, turned
-from reports.causes.hypotheses.grid import rounded
+from reports.causes.hypotheses.filtered import filtered, smoothed
 from reports.causes.hypotheses.late import late
-from reports.causes.hypotheses.misnamed import misnamed
-from reports.causes.hypotheses.samples import samples
-from reports.causes.hypotheses.smoothed import smoothed
-from reports.causes.hypotheses.stamps import stamps
-from reports.causes.hypotheses.straight import straight
-from reports.causes.hypotheses.swapped import swapped
-from reports.causes.hypotheses.turns import turns
+from reports.causes.hypotheses.misnamed import misnamed, swapped
+from reports.causes.hypotheses.other_world import (
+    assembly,
+    backwards,
+    mirrored,
+    moved,
+    sized,
+    start_angle,
+    turned,
+)
+from reports.causes.hypotheses.samples import rounded, samples
+from reports.causes.hypotheses.straight import straight, turns
 from reports.causes.hypotheses.two_faults import two_faults
 from reports.causes.inquiry import Inquiry
 

@@ -1,4 +1,4 @@
-"""A clock of the log that is not that of the scene: another unit of time, or another pace.
+"""A clock that is not that of the scene: another unit of time, another pace, uneven stamps.
 
 That the clock is slow and that the driver is fast is one thing where places alone are logged; rates
 tell them apart, if they were not taken over the log's own time.
@@ -15,13 +15,13 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from models.laws import ConstantSpeed
-from reports.causes.account import CAUSE, CHOICE, NUMBER, Account
-from reports.causes.excerpt import BROUGHT_WITHIN, Rows, picked
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, later, number
+from reports.causes.cause import BROUGHT_WITHIN, Rows, picked
 from reports.causes.fit import fitted
 from reports.causes.inquiry import WELL, Inquiry
-from reports.causes.words import change, later, number
 from reports.causes.world import World
 from reports.logs.units import UNITS
+from reports.output.numbers import duration
 
 MOST_FITS = 4
 """Channels that a clock is fitted to, one after another."""
@@ -221,3 +221,76 @@ def _words(inquiry: Inquiry, clock: Clock) -> tuple[str, str]:
     if clock.start_s:
         of_clock += f", its first sample belongs {later(clock.start_s, inquiry.step_s)}"
     return of_clock, of_driver
+
+
+FARTHEST = 0.55
+"""In intervals, the most that a time is off the even ones."""
+EVEN_STAMPS = 1e-9
+"""In intervals, times that are even as they are."""
+DECIMALS = range(10)
+ON_GRID = 1e-3
+"""In steps of its last decimal, how near a printed number is to it."""
+
+
+def stamps(inquiry: Inquiry) -> Iterator[Account]:
+    """Times that were rounded, or shaken, where the samples are as far apart as they can be."""
+    time_s = inquiry.case.log.time_s
+    if time_s.size < 3 or inquiry.world.drive is not None:
+        return
+    row = np.arange(time_s.size) - 0.5 * (time_s.size - 1)
+    interval = float(row @ (time_s - time_s.mean()) / (row @ row))
+    middle = float(time_s.mean())
+    off = time_s - (middle + interval * row)
+    if not EVEN_STAMPS * interval < np.max(np.abs(off)) < FARTHEST * interval:
+        return
+    half = 0.5 * ((time_s.size - 1) % 2)  # rows are whole numbers from the middle, or halves
+
+    def even(stamped: Array) -> Array:
+        return middle + interval * (np.round((stamped - middle) / interval - half) + half)
+
+    world = inquiry.world.stamped(even)
+    shaken = float(np.max(np.abs(off)))
+    phrase = (
+        f"{_printed(inquiry)}, off by up to {duration(shaken)}: the samples are even, "
+        f"{interval:.6g} s apart"
+    )
+    for each in (world, _aligned(inquiry, world, middle, shaken)):
+        told = each and inquiry.account_of_world("time stamps", CAUSE + CHOICE, each, phrase)
+        if told:
+            yield told
+
+
+def _aligned(inquiry: Inquiry, world: World, middle: float, shaken: float) -> World | None:
+    """The world of even samples, moved and stretched within what the times are off, as the line
+    through uneven times is not quite that of the samples."""
+    thin, columns = inquiry.thin, inquiry.unclaimed
+    if not columns:
+        return None
+    length = float(np.ptp(inquiry.case.log.time_s))
+
+    def aligned(numbers: Array) -> World:
+        start, gain = (shaken * float(each) for each in numbers)
+        return inquiry.world.stamped(
+            lambda stamped: stamped + start + gain * (stamped - middle) / length
+        ).stamped(world.stamps[-1])
+
+    def residual(numbers: Array) -> Array:
+        errors = thin.errors(aligned(numbers), columns)
+        return np.concatenate([errors[c] / thin.excerpts[c].size.rms for c in columns])
+
+    found = fitted(residual, (0.0, 0.0), (1e-4, 1e-4))
+    return None if found is None or np.max(np.abs(found)) > 1.0 else aligned(found)
+
+
+def _printed(inquiry: Inquiry) -> str:
+    """How the times are printed."""
+    log = inquiry.case.log
+    column, unit = log.stamp
+    size = UNITS["time"].get(unit, 1.0)
+    numbers = (log.time_s + log.zero_s) / size
+    times = f"the times (column {column})" if column else "the times"
+    for decimals in DECIMALS:
+        steps = numbers * 10.0**decimals
+        if np.max(np.abs(steps - np.round(steps))) < ON_GRID:
+            return f"{times} are rounded to {decimals} decimals ({unit or 's'})"
+    return f"{times} are uneven"

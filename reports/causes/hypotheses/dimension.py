@@ -11,10 +11,9 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.scene import GROUND, Link, Scene, Slider
-from reports.causes.account import CAUSE, CHOICE, NUMBER, Account
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, number
 from reports.causes.fit import fitted
 from reports.causes.inquiry import Inquiry
-from reports.causes.words import change, number
 
 MOST = 60
 """Dimensions that are looked at."""

@@ -11,12 +11,11 @@ import numpy as np
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.laws import ConstantSpeed
-from reports.causes.account import CAUSE, NUMBER, Account
-from reports.causes.excerpt import EXPLAINED, Excerpt, Size
+from reports.causes.account import CAUSE, NUMBER, Account, later
+from reports.causes.cause import EXPLAINED, Excerpt, Size
 from reports.causes.fit import fitted
-from reports.causes.hypotheses.grid import resolution
+from reports.causes.hypotheses.samples import resolution
 from reports.causes.inquiry import MOVED, Inquiry
-from reports.causes.words import later
 
 NUDGE = 1e-6
 """In periods, by how much a delay is moved to see what that changes."""

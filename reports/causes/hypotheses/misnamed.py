@@ -4,8 +4,9 @@ another link."""
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -13,22 +14,21 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account
-from reports.causes.excerpt import EXPLAINED, Excerpt, Size, levelled
-from reports.causes.hypotheses.swapped import meaning, unit_of
+from reports.causes.cause import EXPLAINED, Excerpt, Size, levelled
 from reports.causes.inquiry import Inquiry
 from reports.logs.channel import Channel
-from reports.logs.kinds import KINDS
+from reports.logs.kinds import KINDS, Kind
 from reports.logs.units import UNITS
 
 
 @dataclass(frozen=True)
 class OtherMeaning:
-    """What a column may be instead; ``free`` where its zero is anywhere."""
+    """What a column may be instead; ``any_zero`` where its zero is anywhere."""
 
     name: str
     cost: float
     channel: Channel
-    free: bool = False
+    any_zero: bool = False
 
 
 def misnamed(inquiry: Inquiry) -> Iterator[Account]:
@@ -94,7 +94,7 @@ def _relative(channel: Channel, links: tuple[str, ...]) -> Iterator[OtherMeaning
             cost = CAUSE + CHOICE * (1 if sign == channel.sign else 2)
             yield OtherMeaning("relative", cost, other)
             if channel.kind.turns:
-                yield OtherMeaning("relative", cost + NUMBER, other, free=True)
+                yield OtherMeaning("relative", cost + NUMBER, other, any_zero=True)
 
 
 def _told(
@@ -110,7 +110,7 @@ def _told(
     values = excerpt.values * (own.sign * channel.sign)
     error = channel.error(values, expected)
     zero = 0.0
-    if other.free:
+    if other.any_zero:
         zero, error = levelled(error, channel)
     if Size.of(error).largest > EXPLAINED * excerpt.size_beside(expected).largest:
         return None
@@ -140,5 +140,113 @@ def _phrase(own: Channel, other: OtherMeaning, zero: float) -> str:
         return f"{{who}} {{has}} the readings of {channel.name}"
     against = f"relative to {channel.relative_to}" if channel.relative_to else "absolute"
     sign = " and {has} the other sign" if channel.sign != own.sign else ""
-    off = f" and {{is}} off by {math.degrees(zero):+.4g} deg all along" if other.free else ""
+    off = f" and {{is}} off by {math.degrees(zero):+.4g} deg all along" if other.any_zero else ""
     return f"{{who}} {{is}} {against}{sign}{off}"
+
+
+LONGEST = 4
+"""Channels that may stand in each other's place in a ring."""
+
+
+def swapped(inquiry: Inquiry) -> Iterator[Account]:
+    """Channels that have each other's readings, in pairs or in rings."""
+    holds = {column: dict(_held(inquiry, column)) for column in inquiry.open}
+    for first in holds:
+        for ring in _rings(holds, (first,)):
+            pairs = list(pairwise((*ring, first)))
+            held = {column: holds[column][other] for column, other in pairs}
+            told = inquiry.account(
+                "swapped",
+                CAUSE + CHOICE,
+                {column: each.error for column, each in held.items()},
+                _swap_phrase(inquiry, pairs),
+                corrections={c: meaning(inquiry.channel(c), held[c].channel) for c in ring},
+                expected={column: inquiry.excerpts[other].expected for column, other in pairs},
+            )
+            if told is not None and len(told.columns) == len(ring):
+                yield told
+
+
+@dataclass(frozen=True)
+class ColumnContent:
+    """What a column holds: its channel as it is in truth, and the error that is left then."""
+
+    channel: Channel
+    error: Array
+
+
+def _swap_phrase(inquiry: Inquiry, pairs: list[tuple[str, str]]) -> str:
+    """Which channel has which readings."""
+    if len(pairs) == 2:
+        return "{who} have each other's readings"
+    rings = ", ".join(f"{inquiry.channel(other).name} in {column}" for column, other in pairs)
+    return f"{{who}} have each other's readings: {rings}"
+
+
+def meaning(channel: Channel, instead: Channel) -> dict[str, object]:
+    """What to write in the map of a channel that is another one: what differs."""
+    names = ("of", "unit", "sign", "offset", "relative_to", "on", "wrapped")
+    found: dict[str, object] = {
+        name: getattr(instead, name)
+        for name in names
+        if getattr(instead, name) != getattr(channel, name)
+    }
+    if instead.kind != channel.kind:
+        found["kind"] = instead.kind.name
+    return found
+
+
+def unit_of(channel: Channel, kind: Kind) -> str | None:
+    """The unit of another kind that reads the same numbers alike; None where it has none."""
+    if kind.dimension == channel.kind.dimension:
+        return channel.unit
+    size = UNITS[channel.kind.dimension][channel.unit]
+    same = (unit for unit, each in UNITS[kind.dimension].items() if each == size)
+    return next(same, None)
+
+
+def _rings(
+    holds: Mapping[str, Mapping[str, ColumnContent]], path: tuple[str, ...]
+) -> Iterator[tuple[str, ...]]:
+    """The rings of columns each of which holds what the next one should, the least column first."""
+    for column in holds[path[-1]]:
+        if column == path[0]:
+            yield path
+        elif column > path[0] and column not in path and len(path) < LONGEST:
+            yield from _rings(holds, (*path, column))
+
+
+def _held(inquiry: Inquiry, column: str) -> Iterator[tuple[str, ColumnContent]]:
+    """The other open columns whose readings a column holds."""
+    own = inquiry.excerpts[column]
+    for other in inquiry.open:
+        excerpt = inquiry.excerpts[other]
+        if other == column:
+            continue
+        enough = EXPLAINED * own.size_beside(excerpt.expected).largest
+        if excerpt.nought:
+            enough = min(enough, excerpt.limit)
+        for channel, values in _read_as(own.values, own.channel, excerpt.channel):
+            error = channel.error(values, excerpt.expected)
+            if Size.of(error).largest <= enough:
+                yield other, ColumnContent(channel, error)
+                break
+
+
+def _read_as(values: Array, own: Channel, other: Channel) -> Iterator[tuple[Channel, Array]]:
+    """A column as another channel, with its readings as they are and with its numbers as the map
+    reads those of the other."""
+    instead = replace(
+        other,
+        column=own.column,
+        wrapped=own.wrapped or other.wrapped,
+        delay_s=own.delay_s,
+        time=own.time,
+    )
+    unit = unit_of(own, other.kind)
+    if unit is not None:
+        yield replace(instead, unit=unit, sign=own.sign, offset=own.offset), values
+    size, others = (UNITS[channel.kind.dimension][channel.unit] for channel in (own, other))
+    if (size, own.sign, own.offset) != (others, other.sign, other.offset):
+        numbers = own.sign * values / size - own.offset
+        yield instead, other.sign * (numbers + other.offset) * others

@@ -15,13 +15,12 @@ import numpy as np
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from reports.causes.account import CHOICE, Account
-from reports.causes.excerpt import TIGHT, Excerpt, Size
+from reports.causes.cause import TIGHT, Excerpt, Size
 from reports.causes.hypotheses.filtered import filtered
 from reports.causes.hypotheses.late import late
 from reports.causes.hypotheses.misnamed import misnamed
 from reports.causes.hypotheses.samples import places_text, runs, samples
-from reports.causes.hypotheses.straight import straight
-from reports.causes.hypotheses.turns import turns
+from reports.causes.hypotheses.straight import straight, turns
 from reports.causes.inquiry import Inquiry
 from reports.logs.channel import Channel, Reading
 from reports.logs.units import UNITS

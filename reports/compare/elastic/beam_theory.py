@@ -9,22 +9,24 @@ beam neglects.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
+from analytic.elastic.control import elastic_history
 from analytic.elastic.discretisation import REFERENCE, Polynomials
-from analytic.elastic.elastic_history import elastic_history
+from analytic.elastic.elastic_motion import ElasticHistory
+from analytic.elastic.engine_start import chain_motion
 from analytic.elastic.natural import lowest_rad_s
 from analytic.elastic.released import ROUGH
-from analytic.elastic.sampled import ElasticHistory
 from models.array import Array
+from models.cut_scenes import SegmentedScene
 from models.elastic import Shape
 from models.motion import Motion
 from models.scene import Scene
-from models.segmented import SegmentedScene
-from reports.compare.elastic.exact_chain import ExactChain
 from reports.quantities.elastic import largest_deflection
 
 FEWER = Polynomials(REFERENCE.across - 2, REFERENCE.along - 1)
@@ -47,8 +49,17 @@ class BeamTheory:
     """The links of a scene as beams with foreshortening, from time 0 to ``until_s`` [s]; what is
     periodic goes on for ever."""
 
+    others: ClassVar[Polynomials] = FEWER
+    """Another description of the beam."""
+    looked_by: ClassVar[Polynomials] = REFERENCE
+    """Of the linear theory."""
     scene: Scene
     until_s: float
+
+    @property
+    def doubted(self) -> Sequence[tuple[Motion, Motion]]:
+        """Motions whose difference is a doubt of all that is compared, but of deflections."""
+        return ()
 
     @property
     def shape(self) -> Shape:
@@ -69,8 +80,8 @@ class BeamTheory:
 
     @cached_property
     def other(self) -> ElasticHistory:
-        """By fewer polynomials; of what is let go by more, as small differences grow there."""
-        return self._moved(REFERENCE.finer if self.scene.is_free else FEWER)
+        """By other polynomials."""
+        return self._moved(self.others)
 
     @cached_property
     def lowest_rad_s(self) -> float:
@@ -100,8 +111,7 @@ class BeamTheory:
     @cached_property
     def linear_m(self) -> float:
         """What the linear theory, without foreshortening, is off by."""
-        by = FEWER if self.scene.is_free else REFERENCE  # a look, at half the time
-        linear = self._moved(by, stiffened=False).at(self.looks_s)
+        linear = self._moved(self.looked_by, stiffened=False).at(self.looks_s)
         return deflections_apart(linear, self.looked)
 
     @cached_property
@@ -132,9 +142,42 @@ class BeamTheory:
         return 0.0 if self.is_periodic else self.lowest_rad_s / math.tau
 
 
+class FreeBeamTheory(BeamTheory):
+    """As `BeamTheory`, of free motion: small differences grow there, and the beam's own doubt of
+    all of it with them."""
+
+    others: ClassVar[Polynomials] = REFERENCE.finer
+    looked_by: ClassVar[Polynomials] = FEWER  # at half the time
+
+    @property
+    def doubted(self) -> Sequence[tuple[Motion, Motion]]:
+        return ((self.looked_other, self.looked),)
+
+
 def deflections_apart(one: Motion, other: Motion) -> float:
     """The largest difference of the deflections of two motions [m]."""
     return max(
         float(np.abs(one.elastic[name].middle - other.elastic[name].middle).max())
         for name in other.elastic
     )
+
+
+@dataclass(frozen=True)
+class ExactChain:
+    """A chain of segments as a multibody of our own, and its motion as one of the scene."""
+
+    chain: SegmentedScene
+    until_s: float
+    shape: Shape
+
+    @cached_property
+    def motion(self) -> ElasticHistory:
+        return chain_motion(self.chain, self.shape, self.until_s)
+
+    def at(self, time_s: Array) -> Motion:
+        """At times [s] (T,), with the links and points of the scene."""
+        motion = self.motion.at(time_s)
+        first = {
+            self.chain.segments(name)[0]: motion.links[name] for name in self.chain.scene.elastic
+        }
+        return self.chain.folded(replace(motion, links={**motion.links, **first}))

@@ -14,21 +14,21 @@ from reports.compare.elastic.elastic_facts import ElasticFacts
 from reports.compare.elastic.elastic_truth import ElasticBeside
 from reports.compare.error_rows import instants_of, whole_row
 from reports.compare.errors import Error, ErrorKind, Errors
-from reports.compare.series import length
+from reports.compare.tracks import length
 from reports.quantities import QUANTITIES, named
 
 BEAM, CHAIN = ("deflection", "extension"), ("segments",)
 """What is held to the beam, and to the exact chain."""
 
 
-def with_elastic(errors: Errors, beside: Beside) -> Errors:
-    """The errors of a run with those of its elastic links, and what is known of these."""
+def compared(beside: Beside, errors: Errors | None) -> Errors:
+    """The errors of a run as of one with rigid links, with those of its elastic links."""
     assert isinstance(beside, ElasticBeside)
-    facts = elastic_facts(beside)
-    return replace(errors, rows=(*errors.rows, *elastic_rows(beside)), elastic=facts)
+    assert errors is not None
+    return replace(errors, rows=(*errors.rows, *places(beside)), of_links=elastic_facts(beside))
 
 
-def elastic_rows(beside: Beside) -> list[Error]:
+def places(beside: Beside) -> list[Error]:
     """Deflections and extensions, of kind "total" those of the run; of kind "chain" those of the
     exact chain, beside the beam."""
     assert isinstance(beside, ElasticBeside)
@@ -53,9 +53,9 @@ def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
     """What is known beside the errors."""
     truth, theory, time_s = beside.elastic, beside.elastic.theory, beside.motion.time_s
     apart = truth.apart(partial(_apart_by_name, beside))
-    if beside.scene.is_free:  # the beam's own doubt of all of it grows with the time
-        other = _apart_by_name(beside, theory.looked_other, theory.looked)
-        apart |= {name: apart[name] + size for name, size in other.items() if name not in BEAM}
+    for other, looked in theory.doubted:
+        off = _apart_by_name(beside, other, looked)
+        apart |= {name: apart[name] + size for name, size in off.items() if name not in BEAM}
     return ElasticFacts(
         segments=truth.cut.count,
         springs=truth.springs,

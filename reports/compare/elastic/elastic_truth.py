@@ -10,29 +10,33 @@ from __future__ import annotations
 
 import math
 import pickle
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import ClassVar
 
 from analytic.elastic.discretisation import Segments
-from analytic.elastic.node_start import node_start
-from analytic.elastic.segment_start import segment_start
-from analytic.elastic.stiffness import fastest_rad_s
+from analytic.elastic.elastic_motion import fastest_rad_s
+from analytic.elastic.engine_start import node_start, segment_start
 from analytic.kinematics import solve
 from models.array import Array
-from models.beamed import BeamedScene
 from models.cut_links import CutScene
+from models.cut_scenes import BeamedScene, SegmentedScene
 from models.errors import CrankcheckError, EngineError, ReachError
-from models.motion import Motion, State
+from models.motion import Forces, Motion, State
 from models.scene import Scene, as_bytes
-from models.segmented import SegmentedScene
 from reports.compare.beside import Beside, Truth
-from reports.compare.elastic.beam_theory import LEAST, BeamTheory, shape_of
-from reports.compare.elastic.cut import cut
-from reports.compare.elastic.exact_chain import ExactChain
-from reports.compare.elastic.folded_run import folded_run
+from reports.compare.elastic.beam_theory import LEAST, BeamTheory, ExactChain, shape_of
 from sim.engine import Run
+
+
+def cut(scene: Scene, count: int, springs: str) -> CutScene:
+    """The links of a scene in so many segments, with springs "plain" or "corrected"; or in so many
+    elements of a "beam". Raises CrankcheckError as these do."""
+    if springs == "beam":
+        return BeamedScene(scene, count)
+    return SegmentedScene(scene, count, springs == "corrected")
+
 
 Apart = dict[str, float]
 STEADY = 1.5
@@ -78,10 +82,10 @@ def cut_scene(scene: Scene, count: int, springs: str) -> CutScene:
 
 
 @lru_cache(maxsize=2)
-def kept_theory(pickled: bytes, until_s: float) -> BeamTheory:
+def kept_theory(pickled: bytes, until_s: float, kind: type[BeamTheory] = BeamTheory) -> BeamTheory:
     """The beam of a scene, which may come from another process: one for every number of
     segments."""
-    return BeamTheory(pickle.loads(pickled), until_s)
+    return kind(pickle.loads(pickled), until_s)
 
 
 @dataclass(frozen=True)
@@ -255,7 +259,7 @@ class ElasticBeside(Beside):
     """As `Beside`. Where links bend the angle of the driver says nothing of the others: there are
     no errors at the logged angle."""
 
-    bends: ClassVar[bool] = True
+    compared_by: ClassVar[tuple[str, ...]] = (*Beside.compared_by, ".elastic.elastic_errors")
     elastic: ElasticTruth = field(kw_only=True)
 
     @cached_property
@@ -270,3 +274,33 @@ class ElasticBeside(Beside):
     @cached_property
     def at_crank(self) -> Motion:
         raise ReachError("where links bend the driver's angle does not say where the others are")
+
+
+def folded_run(cut: CutScene, run: Run) -> Run:
+    """Links, points and pins of the scene; the pins between pieces are told by the deflection,
+    which is off where they come apart."""
+    motion = run.motion
+    if motion is None:
+        return run
+    inner = {node for name in cut.scene.elastic for node in cut.nodes(name)[1:-1]}
+    folded = cut.folded(motion)
+    if folded.forces is not None:
+        folded = replace(folded, forces=_without(folded.forces, inner, _links(cut)))
+    gaps = {name: gap for name, gap in run.gaps.items() if name not in inner}
+    return replace(run, motion=folded, gaps=gaps)
+
+
+def _links(cut: CutScene) -> dict[str, str]:
+    """The elastic link by segment."""
+    return {part: name for name in cut.scene.elastic for part in cut.bodies(name)}
+
+
+def _without(forces: Forces, inner: set[str], links: Mapping[str, str]) -> Forces:
+    """The forces in the pins of the scene, on its links."""
+
+    def on_links(bodies: Mapping[str, Array]) -> dict[str, Array]:
+        return {links.get(body, body): force for body, force in bodies.items()}
+
+    pins = {point: on_links(own) for point, own in forces.pins.items() if point not in inner}
+    friction = {joint: own for joint, own in forces.friction.items() if joint not in inner}
+    return replace(forces, pins=pins, friction=friction)

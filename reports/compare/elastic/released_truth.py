@@ -11,31 +11,37 @@ import pickle
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
+from typing import ClassVar
 
 import numpy as np
 
-from analytic.elastic.elastic_doubt import ElasticDoubt
+from analytic.elastic.discretisation import ElasticDoubt
+from analytic.elastic.elastic_motion import energies, sampled
 from analytic.elastic.released import ReleasedElasticMotion
-from analytic.elastic.sampled import energies, sampled
 from analytic.free.free_motion import FreeMotion, LimitPassage
-from analytic.multibody.energy_balance import EnergyBalance
+from analytic.multibody.bodies import EnergyBalance
 from models.array import Array
+from models.cut_links import with_rigid_links
+from models.cut_scenes import SegmentedScene
 from models.errors import EngineError, ReachError
 from models.motion import Motion
-from models.rigid import with_rigid_links
 from models.scene import Scene, as_bytes
-from models.segmented import SegmentedScene
-from reports.compare.beside import Beside
+from reports.compare.beside import Beside, first_samples
+from reports.compare.elastic.beam_theory import FreeBeamTheory
 from reports.compare.elastic.elastic_truth import (
     STEADY,
     ChainTruth,
+    ElasticBeside,
     cut_scene,
     kept_theory,
 )
-from reports.compare.elastic.released_beside import ReleasedElasticBeside
-from reports.compare.free.free_truth import LEAST_KNOWN, FreeTruth, free_truth
-from reports.compare.free.kept_motion import long_enough_s
-from reports.compare.free.some_samples import first_samples
+from reports.compare.free.free_truth import (
+    LEAST_KNOWN,
+    FreeBeside,
+    FreeTruth,
+    free_truth,
+    long_enough_s,
+)
 from reports.quantities.free import PHASE
 from sim.engine import Run
 
@@ -66,7 +72,7 @@ def _truth(
     pickled: bytes, count: int, springs: str, steps: int, dt_s: float, known_rad: float
 ) -> ReleasedElasticTruth:
     scene: Scene = pickle.loads(pickled)
-    theory = kept_theory(pickled, long_enough_s(scene, dt_s * steps))
+    theory = kept_theory(pickled, long_enough_s(scene, dt_s * steps), FreeBeamTheory)
     chain = cut_scene(scene, count, springs)
     if not isinstance(chain, SegmentedScene):
         raise EngineError(
@@ -181,3 +187,21 @@ class BentReference:
     def beside(self, logged: Motion) -> Motion:
         """Raises ReachError: where links bend the driver's angle does not say where they are."""
         raise ReachError("where links bend the driver's angle does not say where the others are")
+
+
+@dataclass(frozen=True)
+class ReleasedElasticBeside(ElasticBeside, FreeBeside):
+    """As `FreeBeside`, without a geometry at the driver's own angle."""
+
+    compared_by: ClassVar[tuple[str, ...]] = (
+        *FreeBeside.compared_by,
+        ".elastic.elastic_errors",
+    )
+
+    @property
+    def no_geometry(self) -> str:
+        return "no geometry: where links bend the driver's angle does not say where the others are"
+
+    @property
+    def tells_momentum(self) -> bool:
+        return False

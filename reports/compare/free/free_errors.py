@@ -5,29 +5,25 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
-from analytic.forces.jolts import jolts
 from analytic.forces.late_impulses import late_impulses
 from models.array import Array
 from models.errors import CrankcheckError
 from models.joints import has_loops
-from models.poses import mass_ratio
-from reports.compare.change_points import conditioning
-from reports.compare.curvature import curvature
-from reports.compare.error_rows import Instants, instants_of, whole_row
+from reports.compare.beside import Beside
+from reports.compare.branch import free_departure
+from reports.compare.error_rows import Instants, instants_of, whole_row, whole_rows
 from reports.compare.errors import Error, Errors
 from reports.compare.force_rows import force_rows
-from reports.compare.free.energy_drift import energy_rows, window_s
-from reports.compare.free.free_beside import FreeBeside
-from reports.compare.free.free_branch import free_departure
+from reports.compare.free.drift import energy_rows, momentum_rows, window_s
 from reports.compare.free.free_facts import FreeFacts
-from reports.compare.free.momentum_drift import momentum_rows
-from reports.compare.role_rows import differenced_rows, reported_rows, uncertain, whole_rows
-from reports.compare.series import length
-from reports.compare.tracks import Track
-from reports.compare.uneven import uneven, unevenly_turned
+from reports.compare.free.free_truth import FreeBeside
+from reports.compare.hardness import conditioning, uneven
+from reports.compare.tracks import Track, length
+from reports.compare.whole_errors import TWICE, Parts, whole_errors
 from reports.quantities.free import GEOMETRY, PHASE
 
 COURSE = 400
@@ -37,65 +33,36 @@ LEAST_SINE = 0.3
 of another coordinate, which is not singular there."""
 STILL = 1e-12
 """Over the largest speed of the driver: what does not move."""
-TWICE = 4.0
-"""Roundings of a sum in a sum, see `reports.compare.drive_rounding`."""
 
 
-def free_errors(beside: FreeBeside) -> Errors:
-    """The errors of a run that was let go, as far as the truth is known."""
-    run, reference, scene = beside.run, beside.reference, beside.scene
+def compared(beside: Beside, errors: Errors | None) -> Errors:
+    """The errors of a free run, as far as the truth is known; there are none before."""
+    assert isinstance(beside, FreeBeside)
+    reference, scene = beside.reference, beside.scene
     at = instants_of(beside, beside.motion.time_s, reference)
     same_time = _same_time(beside)
     geometry, notes = _geometry(beside, at)
-    reported, not_reported = reported_rows(beside)
-    borne = force_rows(beside)
-    jolt = jolts(scene, beside.whole)
-    # In an open chain joint coordinates are as good as their integrator: nothing is too near.
-    far = uneven(scene, reference, at.driver_rad) if has_loops(scene) else {}
     facts = _facts(beside, same_time)
-    while_s = window_s(scene, float(np.ptp(reference.time_s)))
-    return Errors(
-        rows=(
-            *_phase_and_places(beside, same_time, at),
-            *geometry,
-            *whole_rows(beside, at, "closure"),
-            *reported,
-            *differenced_rows(beside, at),
-            *energy_rows(beside),
-            *momentum_rows(beside),
-            *borne.rows,
-        ),
-        not_reported=(*not_reported, *borne.not_reported),
-        notes=(*notes, *_notes(beside, facts), *borne.notes),
-        curvature=curvature(scene, beside.whole),
-        conditioning=max(
-            conditioning(reference, at.driver_rad), LEAST_SINE if facts.passages else 0.0
-        ),
-        step_rad=scene.pace_rad_s * run.dt_s,
-        missing=beside.missing,
-        incomplete=beside.incomplete or borne.incomplete,
-        uncertain={key: bound / facts.sensitivity for key, bound in uncertain(beside).items()},
+    borne = force_rows(beside)
+    least = LEAST_SINE if facts.passages else 0.0
+    parts = Parts(
+        placed=[*_phase_and_places(beside, same_time, at), *geometry],
+        notes=(*notes, *_notes(beside, facts)),
+        borne=replace(borne, facts=replace(borne.facts, load_slopes={}), unsure={}),
         departure=free_departure(beside),
-        summed_rad=_summed(at, run.steps),
-        jolt=float(jolt[0]),
-        worst_jolt=float(np.max(jolt)),
-        mass_ratio=mass_ratio(scene),
-        starts_in_passage=bool(np.any(at.passed[: at.first])),
-        uneven={body: size / facts.sensitivity for body, size in far.items()},
-        uneven_rates=unevenly_turned(scene, far),
-        contradictions=borne.contradictions,
-        unbalanced=borne.unbalanced,
-        start_load=borne.start_load,
-        inertia_share=borne.inertia_share,
-        travel_rad=_travel(beside),
-        drifted_rad=_drifted(beside),
-        late=late_impulses(scene, reference, run.dt_s, while_s),
-        free=facts,
+        conditioning=max(conditioning(reference, at.driver_rad), least),
+        summed_rad=_summed(at, beside.run.steps),
+        # In an open chain joint coordinates are as good as their integrator: nothing is too near.
+        far=uneven(scene, reference, at.driver_rad) if has_loops(scene) else {},
+        motion=facts,
+        conserved=[*energy_rows(beside), *momentum_rows(beside)],
     )
+    return whole_errors(beside, at, parts)
 
 
-def free_places(beside: FreeBeside) -> list[Error]:
+def places(beside: Beside) -> list[Error]:
     """Phase, places at the same time, geometry and gaps alone."""
+    assert isinstance(beside, FreeBeside)
     at = instants_of(beside, beside.motion.time_s, beside.reference)
     return [
         *_phase_and_places(beside, _same_time(beside), at),
@@ -129,7 +96,7 @@ def _geometry(beside: FreeBeside, at: Instants) -> tuple[list[Error], tuple[str,
 
 
 def _travel(beside: FreeBeside) -> float:
-    """The angle that the driver turns through, weighed as `Errors.travel_rad` says."""
+    """The angle that the driver turns through, weighed as `MotionFacts.travel_rad` says."""
     speed = np.abs(beside.driver_speed)
     peak = beside.scene.pace_rad_s
     return float(np.trapezoid(peak * (speed / peak) ** 3, beside.motion.time_s))
@@ -156,8 +123,12 @@ def _facts(beside: FreeBeside, same_time: Iterable[Track]) -> FreeFacts:
         worst = np.maximum(worst, np.where(np.isfinite(pure), pure, np.inf))
     kept = np.unique(np.linspace(0, worst.size - 1, COURSE).round().astype(np.intp))
     raw, judged = np.maximum.accumulate(worst), np.maximum.accumulate(worst / beside.growth)
-    time_s = beside.motion.time_s
+    time_s, scene = beside.motion.time_s, beside.scene
+    while_s = window_s(scene, float(np.ptp(beside.reference.time_s)))
     return FreeFacts(
+        travel_rad=_travel(beside),
+        drifted_rad=_drifted(beside),
+        late=late_impulses(scene, beside.reference, beside.run.dt_s, while_s),
         sensitivity=beside.pure_growth,
         until_s=float(time_s[-1]),
         left_out=beside.left_out,

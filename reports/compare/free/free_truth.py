@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import pickle
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import TYPE_CHECKING
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy as np
 
 from models.array import Array
+from models.driver import LONGEST_S, Released
 from models.motion import Motion, State
-from models.released import Released
-from models.scene import Driver, Scene
-from reports.compare.beside import Beside, Truth
-from reports.compare.free.free_beside import FreeBeside
-from reports.compare.free.kept_motion import kept_motion, released_state
-from reports.compare.free.some_samples import first_samples
+from models.scene import Driver, Scene, as_bytes
+from reports.compare.beside import Beside, Truth, first_samples, incomplete
+from reports.compare.tracks import Track
 from reports.quantities.free import PHASE
 from sim.engine import Run
 
 if TYPE_CHECKING:
-    from analytic.free.free_motion import FreeMotion
+    from analytic.free.free_motion import FreeMotion, LimitPassage
+    from analytic.multibody.bodies import EnergyBalance
+
 
 LEAST_KNOWN = 0.25
 """What the truth may be off by, of the limit of the phase: samples beyond are not judged."""
@@ -96,3 +97,145 @@ class FreeTruth(Truth):
         known = first_samples(run, max(self.known(motion.time_s), 1))
         assert known.motion is not None
         return FreeBeside(self, known, known.motion, whole_run=run, free=self.free)
+
+
+class FreeReference(Protocol):
+    """What is asked of the motion that a run is held to (`analytic.free.free_motion.FreeMotion`,
+    which is one)."""
+
+    @property
+    def until_s(self) -> float: ...
+
+    @property
+    def passages(self) -> Sequence[LimitPassage]: ...
+
+    @property
+    def by_dyads(self) -> bool: ...
+
+    @property
+    def driver_tells(self) -> bool: ...
+
+    def beside(self, logged: Motion) -> Motion: ...
+
+    def energy(self, time_s: Array) -> EnergyBalance: ...
+
+    def sensitivity(self, time_s: Array) -> Array: ...
+
+
+@dataclass(frozen=True)
+class FreeBeside(Beside):
+    """A run as far as the truth of it is known; ``whole_run`` goes on to its own end.
+
+    Errors at the same time are over the sensitivity of the motion where they are judged: by so
+    much as a small change of the start grows, the truth itself is uncertain to anybody who builds
+    the mechanism.
+    """
+
+    compared_by: ClassVar[tuple[str, ...]] = (".free.free_errors",)
+    whole_run: Run = field(kw_only=True)
+    free: FreeReference = field(kw_only=True)
+
+    @cached_property
+    def at_crank(self) -> Motion:
+        """The truth in the position that the run's own coordinate has at each instant."""
+        return self.free.beside(self.motion)
+
+    @cached_property
+    def driver_rad(self) -> Array:
+        return self.driver_at(self.motion.time_s, self.reference)
+
+    @cached_property
+    def growth(self) -> Array:
+        """The sensitivity at the logged instants, (T,)."""
+        return self.free.sensitivity(self.motion.time_s)
+
+    @property
+    def driver_speed(self) -> Array:
+        """The true angular velocity of the driver at the logged instants [rad/s], (T,)."""
+        return self.reference.links[self.scene.driver.link].omega
+
+    @property
+    def no_geometry(self) -> str:
+        """Why the run does not say in which position it is, "" where it does."""
+        return (
+            ""
+            if np.all(np.isfinite(self.crank))
+            else ("no geometry: the logged angle of the driver is not finite")
+        )
+
+    @property
+    def tells_momentum(self) -> bool:
+        """Whether places and velocities of all bodies are to be asked for."""
+        return True
+
+    def driver_at(self, time_s: Array, reference: Motion) -> Array:
+        return reference.links[self.scene.driver.link].theta
+
+    def judged(self, track: Track, time_s: Array) -> Track:
+        """The error at the same time over the sensitivity; joints are closed at any time."""
+        if track.quantity == "gap":
+            return track
+        growth = self.free.sensitivity(time_s)
+        over = growth[:, None] if track.error.ndim == 2 else growth
+        return replace(track, error=track.error / over, bound=track.bound / growth)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        return super().missing if self.run.energy else (*super().missing, "energy")
+
+    @property
+    def incomplete(self) -> str:
+        return incomplete(self.whole_run)
+
+    @property
+    def left_out(self) -> int:
+        """How many samples are not judged, as the truth is not known well enough there."""
+        logged = self.whole_run.motion
+        return 0 if logged is None else logged.time_s.size - self.motion.time_s.size
+
+    @property
+    def pure_growth(self) -> float:
+        """The largest sensitivity."""
+        return float(np.max(self.growth))
+
+
+BEYOND = 1.01
+"""How much longer than asked for is integrated, where loads over time say so much: some velocities
+belong to half a step after a run."""
+LOOK = 1e-3
+"""The part of the scene's own duration that is integrated for what is at its start."""
+
+
+def kept_motion(scene: Scene, lasts_s: float) -> FreeMotion:
+    """The motion of a scene that is let go, for so long [s] at least. Raises CrankcheckError as
+    `analytic.free.release`."""
+    return _released(as_bytes(scene), long_enough_s(scene, lasts_s))
+
+
+def released_state(scene: Scene) -> State:
+    """What a scene that is let go starts from: the same to the last bit however long it is left
+    free, with the accelerations that its masses and forces give it. Raises CrankcheckError as
+    `analytic.free.release`."""
+    return kept_motion(scene, LOOK * scene.driver.law.period_s).at(np.zeros(1), bound=False).state()
+
+
+def long_enough_s(scene: Scene, lasts_s: float) -> float:
+    """Until when a motion is integrated that a run of so long is compared with [s]."""
+    return max(lasts_s, _told_s(scene, BEYOND * lasts_s))
+
+
+def _told_s(scene: Scene, until_s: float) -> float:
+    """Until when the loads over time are given, and a motion may last, up to a time [s]."""
+    ends = [
+        load.characteristic.nearest(until_s) for load in scene.loads.values() if load.over == "time"
+    ]
+    # Without its rounding it is one for all steps of a sweep.
+    return min(float(f"{until_s:.9g}"), LONGEST_S, *ends)
+
+
+@lru_cache(maxsize=4)
+def _released(pickled: bytes, until_s: float) -> FreeMotion:
+    """The motion of a scene, which may come from another process: kept by what it holds."""
+    from analytic.free.release import release  # slow to import, and for free motion alone
+
+    return release(pickle.loads(pickled), until_s)

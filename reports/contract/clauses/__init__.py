@@ -2,34 +2,24 @@
 
 from __future__ import annotations
 
-from reports.contract.clause import Clause
 from reports.contract.clauses import (
     declared,
-    elsewhere,
     felt,
     freed,
     physics,
     rates,
     reactions,
-    refusals,
     sessions,
     start,
 )
+from reports.contract.subject import Clause
 
 CLAUSES: dict[str, Clause] = {
     clause.id: clause
-    for room in (
-        declared,
-        start,
-        sessions,
-        rates,
-        physics,
-        elsewhere,
-        refusals,
-        reactions,
-        felt,
-        freed,
+    for clauses in (
+        *(declared.CLAUSES, start.CLAUSES, sessions.CLAUSES, rates.CLAUSES, physics.CLAUSES),
+        *(physics.ELSEWHERE, start.REFUSALS, reactions.CLAUSES, felt.CLAUSES, freed.CLAUSES),
     )
-    for clause in room.CLAUSES
+    for clause in clauses
 }
 """The clauses by their ids."""

@@ -10,8 +10,7 @@ from itertools import combinations
 import numpy as np
 
 from models.errors import EngineError, few, shown
-from reports.contract.clause import Clause
-from reports.contract.subject import STEPS, Subject, numbers
+from reports.contract.subject import STEPS, Clause, Subject, numbers
 from sim.engine import SettingValue
 from sim.settings import SettingError, profile_of, resolved
 

@@ -11,15 +11,12 @@ import numpy as np
 from analytic.forces import kinetostatics
 from models.array import Array
 from models.characteristics import Constant, Sine
-from models.forces import Forces
-from models.friction import ConstantFriction
-from models.joints import blocks, bodies, joined_at
-from models.loads import Load
-from models.poses import centre_of, mass_of
+from models.joints import blocks, bodies, centre_of, joined_at, mass_of
+from models.loads import ConstantFriction, Load
+from models.motion import Forces
 from models.scene import Scene
-from reports.contract.clause import Clause
 from reports.contract.clauses.reactions import LATE, OFF, START, STEPS, largest, late_by, named
-from reports.contract.subject import NotTriedError, Subject, numbers
+from reports.contract.subject import Clause, NotTriedError, Subject, numbers
 
 SHARE = 0.98
 """Of all samples that have to be within `OFF`: where a joint turns back friction jumps, and what is

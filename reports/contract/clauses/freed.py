@@ -11,12 +11,11 @@ import numpy as np
 
 from models.array import Array
 from models.characteristics import Polynomial
+from models.driver import Released
 from models.errors import EngineError
 from models.loads import Load
 from models.motion import Motion, State
-from models.released import Released
 from models.scene import Driver, Scene
-from reports.contract.clause import Clause
 from reports.contract.clauses.reactions import pulled
 from reports.contract.oscillators import (
     BASE_RAD,
@@ -35,10 +34,9 @@ from reports.contract.oscillators import (
     rod_scene,
     rod_state,
 )
-from reports.contract.subject import NotTriedError, Subject
+from reports.contract.subject import Clause, NotTriedError, Subject
 from sim.check import refuse_other_model
-from sim.energy import energy
-from sim.measure import motion
+from sim.measure import energy, motion
 
 PACE_OFF, DECAY_OFF, REST_OFF = 0.02, 0.2, 0.02
 """How far the pace of an oscillation may be from that of its spring, over it; its decay, over it;

@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 
+from analytic.structure.mobility import sides_of
 from models.array import Array
-from models.joints import bodies
+from models.joints import bodies, centre_of
 from models.laws import ConstantSpeed, Oscillating
-from models.poses import centre_of
+from models.moved_scene import mirrored, moved, rotated, scaled
 from models.scene import Same, Scene
 from reports.compare.beside import Beside, truth_of
 from reports.compare.compare import places
 from reports.compare.errors import largest
-from reports.contract.clause import Clause
-from reports.contract.let_go import centres
-from reports.contract.subject import NotTriedError, Subject
+from reports.contract.oscillators import centres
+from reports.contract.subject import Clause, NotTriedError, Subject
 from reports.judge.halving import PLACES
+from reports.judge.rules.reference import too_good
 from reports.judge.three_steps import convergence
-from reports.judge.too_good import too_good
 from sim.engine import Poses
 
 DRIVE_RAD = 1e-9
@@ -220,5 +220,34 @@ CLAUSES = (
         "Set the engine's gravity to scene.gravity_m_s2, for every body, give each its own mass "
         "and inertia, and take no speed away; or refuse drive free with EngineError.",
         _gravity,
+    ),
+)
+
+
+CHANGES: Mapping[str, Callable[[Scene], Scene]] = {
+    "turned by 0.7 rad": lambda scene: rotated(scene, 0.7),
+    "moved by (3, -2) m": lambda scene: moved(scene, (3.0, -2.0)),
+    "mirrored": lambda scene: mirrored(scene, sides_of(scene)),
+    "ten times as large": lambda scene: scaled(scene, 10.0),
+    "a tenth as large": lambda scene: scaled(scene, 0.1),
+}
+
+
+def _elsewhere(subject: Subject) -> Iterator[str]:
+    plain = pure_errors(subject)
+    for words, change in CHANGES.items():
+        try:
+            yield from unlike(plain, pure_errors(subject.in_scene(change(subject.scene))), words)
+        except NotTriedError as refused:
+            yield f"{words}, it is refused: {refused}"
+
+
+ELSEWHERE = (
+    Clause(
+        "EC61",
+        "a scene that is turned, moved, mirrored or scaled errs as much",
+        "A sign or a number that suits one scene alone is seen on another, or not at all.",
+        "Look for signs of angles, lines that are taken as level, and tolerances in metres.",
+        _elsewhere,
     ),
 )

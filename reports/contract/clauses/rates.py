@@ -13,8 +13,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.array import Array
-from reports.contract.clause import Clause
-from reports.contract.subject import Subject
+from reports.contract.subject import Clause, Subject
 from sim.engine import Session
 from sim.measure import motion
 

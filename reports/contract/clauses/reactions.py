@@ -12,13 +12,10 @@ import numpy as np
 from analytic.forces import kinetostatics
 from analytic.kinematics import solve
 from models.array import Array
-from models.forces import Forces
-from models.joints import block_name, joined_at, local_point
-from models.motion import Motion
-from models.poses import centre_of, mass_of
+from models.joints import block_name, centre_of, joined_at, local_point, mass_of
+from models.motion import Forces, Motion
 from models.scene import GROUND, Scene
-from reports.contract.clause import Clause
-from reports.contract.subject import Subject, numbers
+from reports.contract.subject import Clause, Subject, numbers
 
 STEPS = 800
 """Of one turn."""

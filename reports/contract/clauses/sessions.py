@@ -12,9 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from reports.contract.clause import Clause
-from reports.contract.subject import ROUNDING, Subject, apart, numbers
-from sim.recording import stretch
+from reports.contract.subject import ROUNDING, Clause, Subject, apart, numbers
+from sim.run import stretch
 
 TURNS = 2.2
 """Of the driver, to see angles over whole turns."""

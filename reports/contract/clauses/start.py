@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from typing import get_args
 
 import numpy as np
 
 from models.errors import EngineError
-from reports.contract.clause import Clause
-from reports.contract.subject import NotTriedError, Subject
+from models.files.reading import load_scene, shipped
+from models.scene import Scene
+from reports.contract.subject import Clause, NotTriedError, Subject
 from sim.check import refuse_other_model
+from sim.engine import Drive
 from sim.measure import motion
+from sim.own_engine.spelling import failure
 
 PLACE = 1e-12
 """How far a point may be from where it is, over the longest link or coordinate."""
@@ -85,5 +90,50 @@ CLAUSES = (
         "state.",
         "Count time from state.time_s, in Poses.time_s and in what drives the crank.",
         _at_any_time,
+    ),
+)
+
+
+def _every_scene(subject: Subject) -> Iterator[str]:
+    scenes, other = [load_scene(name) for name in shipped()], is_other(subject)
+    for scene in [*scenes, _massless(load_scene("fourbar-lecture-1"))]:
+        for drive in get_args(Drive):
+            at = f"{scene.name}, {drive}" + (" (a link without mass)" * (scene not in scenes))
+            try:
+                session = subject.in_scene(scene).opened(drive=drive)
+            except NotTriedError as refused:
+                if not str(refused).strip():
+                    yield f"{at}: refused without a word"
+                continue
+            except Exception as error:  # whatever an engine raises is what is looked for
+                yield f"{at}: open raised {failure(error)}, in place of EngineError"
+                continue
+            try:
+                facts, _ = session.facts(), session.record(20, 1)
+                start, dt_s = subject.in_scene(scene).start, subject.in_scene(scene).dt_s()
+                if not other:
+                    refuse_other_model(scene, start, facts, dt_s, drive)
+            except EngineError as error:
+                yield f"{at}: not refused, and {error}"
+            except Exception as error:  # as above
+                yield f"{at}: not refused, and then raised {failure(error)}"
+
+
+def _massless(scene: Scene) -> Scene:
+    """The scene with a link that nothing but its joints could move."""
+    link = next(name for name in reversed(list(scene.links)) if name != scene.driver.link)
+    bare = replace(scene.links[link], mass_kg=0.0, inertia_kg_m2=0.0)
+    return replace(scene, links={**scene.links, link: bare})
+
+
+REFUSALS = (
+    Clause(
+        "EC71",
+        "a scene or a drive that it can not have is refused with EngineError, before the first "
+        "step",
+        "A refusal is a row with a reason; anything else looks like a fault of the scene.",
+        "Raise EngineError in open, with the words that say what is lacking.",
+        _every_scene,
+        of_scenes=False,
     ),
 )

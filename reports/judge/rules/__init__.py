@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from reports.judge.rules.elastic import TruthEnds
-from reports.judge.rules.limits import LIMITS
-from reports.judge.rules.log import AsAsked, LogComplete, Required, StatusOk, ValuesFinite
-from reports.judge.rules.own_impulses import NothingContradicts
-from reports.judge.rules.pin_sums import PinsBalance
-from reports.judge.rules.reference import ReferenceCertain, TwoComputations
+from reports.judge.rules.limits import LIMITS, StartWithin
+from reports.judge.rules.log import (
+    AsAsked,
+    LogComplete,
+    NothingContradicts,
+    PinsBalance,
+    Required,
+    StatusOk,
+    ValuesFinite,
+)
+from reports.judge.rules.reference import ReferenceCertain, TruthEnds, TwoComputations
 from reports.judge.rules.rule import Evidence, Finding, Rule
-from reports.judge.rules.shrinking import ErrorShrinks, ForcesShrink
-from reports.judge.rules.smooth import ErrorSmooth
-from reports.judge.rules.start import StartWithin
+from reports.judge.rules.steps import ErrorShrinks, ErrorSmooth, ForcesShrink
 
 _ALL: tuple[Rule, ...] = (
     StatusOk(),
@@ -60,8 +63,8 @@ def _cure(finding: Finding, evidence: Evidence) -> str:
     if evidence.status != "ok" and finding.rule != "CC101":
         return ""
     cure = RULES[finding.rule].cure
-    if evidence.errors is not None and evidence.errors.free is not None:
-        cure = cure.replace("(--steps-per-turn)", "(--dt)")
+    if evidence.errors is not None:
+        cure = cure.replace("--steps-per-turn)", f"{evidence.errors.of_motion.step_option})")
     if evidence.remedy and finding.level == "fail" and finding.rule in (*TUNABLE, *RATES, *FORCES):
         return evidence.remedy
     if finding.rule not in TUNABLE or evidence.status in ("unsupported", "branch-changed"):

@@ -1,15 +1,16 @@
-"""The rules that hold a quantity to its limit: one for each criterion of the quantities."""
+"""CC116 and the rules that hold a quantity to its limit, one for each criterion of quantities."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-from reports.compare.errors import Error
+from reports.compare.errors import Error, Errors
 from reports.judge.rules.rule import Evidence, Finding, Level, measure, place, share
 from reports.judge.tolerance import Limit, in_passage
 from reports.quantities import QUANTITIES
 from reports.quantities.quantity import Criterion, tolerance_name
+from sim.engine import Placing
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,3 +53,124 @@ LIMITS = tuple(
     for name, entry in QUANTITIES.items()
     for each in entry.criteria
 )
+
+
+class StartWithin:
+    id = "CC116"
+    title = "start"
+    explanation = (
+        "An engine may take some samples to take up its pins; its rates may jump meanwhile by "
+        "half a step's acceleration, and no further. Where joints are solved for in each step, "
+        "accelerations may be off by what they change by in a step."
+    )
+    cure = (
+        "Start the engine with the velocities of the instant that its own belong to, or shorten "
+        "the step."
+    )
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        errors = evidence.errors
+        every = errors.rows if errors else ()
+        rows = [row for row in every if row.kind == "start" and row.tolerance in evidence.limits]
+        if errors is None or not rows:
+            return None
+        limits = {row.tolerance: start_limit(row.tolerance, evidence, errors) for row in rows}
+
+        def part(row: Error) -> float:
+            taken = row.pure / limits[row.tolerance]
+            return math.inf if math.isnan(taken) else taken
+
+        worst = max(rows, key=part)
+        limit = limits[worst.tolerance]
+        level: Level = "pass" if worst.pure <= limit else "fail"
+        text = f"{worst.tolerance}, {place(worst)}; limit {limit:.2g} {share(worst)}"
+        return Finding(self.id, level, text, worst.pure, limit)
+
+
+def start_limit(tolerance: str, evidence: Evidence, errors: Errors) -> float:
+    """What a rate of the first samples is held to, as a pure number."""
+    return _settled(tolerance, evidence, errors) + allowance(tolerance, errors, evidence.placing)
+
+
+def _settled(tolerance: str, evidence: Evidence, errors: Errors) -> float:
+    """The limit that later samples are held to, near a change point if the start is."""
+    limit = evidence.limits[tolerance]
+    return (
+        in_passage(tolerance, limit, errors) if errors.of_scene.starts_in_passage else limit
+    ).number
+
+
+ROOM = 2.0
+"""What ringing may add: 1.6 of the jolt was seen where iterations left a fifth of an error from
+step to step, and 1.1 where they left next to none."""
+OPEN = 1e-4
+"""What MuJoCo's stiffest documented impedance (0.9999) leaves of an acceleration."""
+CHANGE = 1.4
+"""What a start with joints closed in their places may leave of the change of the accelerations in a
+step: twice what was seen."""
+ARM = 2.0
+"""What arms and masses make of the accelerations of a start, in forces: 1.6 was seen."""
+ELEMENTS = 4.0
+"""Of the acceleration that elements are pushed with: twice what was seen."""
+CAP = 0.1
+"""The most that the velocities may jump by, over the driver's speed."""
+
+
+def allowance(tolerance: str, errors: Errors, placing: Placing = "integrated") -> float:
+    """What the first samples of an engine that comes by places as ``placing`` says may be off by on
+    top of the limit ``tolerance``, as a pure number.
+
+    An impulse engine starts with velocities that belong half a step away from where its joints want
+    them. The first solution makes up for that at once, by the jolt times the step
+    (`analytic.forces.late_impulses`); from step to step it goes on as an error of place of jolt *
+    step^2 (`reports.judge.tolerance`). The jump is over with the next sample, or rings off where
+    iterations leave a part of it. Differenced over two steps it is half as large; differenced
+    twice, it is an acceleration of the jolt itself, at every step.
+
+    Measured for profile tuned at 90 to 1440 steps a turn on every shipped scene, and on a thousand
+    random ones (tests/reports/judge/test_random.py), as multiples of ``step * jolt``, ``step * jolt
+    / 2`` and ``jolt``: pymunk up to 1.1 where its iterations come to an end, and up to 1.6 where
+    they leave a fifth of an error from one step to the next, which rings. MuJoCo under 0.05.
+
+    A soft constraint starts with its spring at rest: until that has given way, the accelerations
+    are off by the part that the impedance leaves open, (1 - 0.9999) of the acceleration with which
+    the bodies would part if the loop were open. That is about the curvature where their masses are
+    alike; a light body that holds a heavy one would part with it by the ratio of their masses
+    faster.
+
+    An implicit engine that closes its joints in their places at the end of each step starts with
+    accelerations that go with the rates at its start, and needs in its first step those that go
+    with the places at its end: they are off by a part of what they change by in a step, which its
+    damping takes away. The change over a step is about ``step * curvature^1.5``, the curvature and
+    its frequency; exudyn was seen to be off by up to 0.69 of that with profile tuned, at 90 to 720
+    steps a turn on every shipped scene, and by up to 3.8 as shipped, where it rings for sixty
+    steps.
+
+    What an impulse solver makes up for at its start is half a step's change of momentum: the forces
+    of its first step are off by half of those that there are, at every step, and those of the
+    second by as much to the other side. Where iterations leave half of it, it rings off within a
+    dozen steps, and these alone are the start (`reports.compare.compare.OF_STEPS`). Seen of pymunk,
+    as multiples of half the largest force at the start: up to 1.26, at 90 and 720 steps a turn on
+    every shipped scene.
+
+    Elements of a beam that stand where the true line does are stretched, as a cubic can not bend
+    without stretching somewhere, and set off by what that pushes their ends with
+    (`models.elastic.Beam.pushed`): of fourbar-elastic 0.13 of the driver's speed squared with 2 of
+    them and 0.009 with 4, at every step, until that is damped.
+
+    The caps are what anyone would call wrong, whatever the theory grants: a tenth of the driver's
+    speed within a step.
+    """
+    numbers = errors.limits[tolerance]
+    scene, pushed = errors.of_scene, ELEMENTS * errors.of_links.pushed
+    if numbers.parts:
+        parting = scene.curvature * scene.mass_ratio / max(scene.conditioning, 1e-12)
+        changing = CHANGE * scene.step_rad * scene.curvature**1.5 if placing == "solved" else 0.0
+        if not numbers.makes_up:
+            return min(OPEN * parting + changing, CAP) + pushed
+        own = min(ARM * (OPEN * parting + changing), CAP) + ROOM * 0.5 * errors.of_forces.start_load
+        return own + ARM * pushed
+    if numbers.jump:
+        jump = min(ROOM * scene.jolt * scene.step_rad, CAP)
+        return numbers.jump * jump / scene.step_rad ** (numbers.rate - 1)
+    return 0.0

@@ -1,9 +1,9 @@
-"""CC101, CC109, CC115, CC117, CC119: the run is the one asked for, came to its end, and its log is
-whole, made of numbers, and holds what is required."""
+"""CC101, CC109, CC115, CC117, CC119, CC124, CC126: the run is the one asked for, came to its end,
+and its log is whole, made of numbers, holds what is required, and does not contradict itself."""
 
 from __future__ import annotations
 
-from reports.judge.rules.rule import Evidence, Finding
+from reports.judge.rules.rule import Evidence, Finding, Level
 
 
 class StatusOk:
@@ -105,3 +105,51 @@ class Required:
             text = f"not in the log: {'; '.join(evidence.absent)}"
             return Finding(self.id, "fail", text, float(len(evidence.absent)), 0.0)
         return Finding(self.id, "pass", "all that is required is in the log")
+
+
+ROUNDING = 1e-9
+"""A share of the largest reaction that sums of a few forces are never rounded by."""
+
+
+class PinsBalance:
+    id = "CC124"
+    title = "balance of pins"
+    explanation = (
+        "A pin has no mass: what it exerts on its bodies adds up to nothing, however the engine "
+        "steps. Where it does not, one of the forces is not the pin's."
+    )
+    cure = (
+        "Look at which bodies the adapter adds up; what one body exerts on the other is the "
+        "opposite of what it bears."
+    )
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        found = evidence.errors.of_forces.unbalanced if evidence.errors else None
+        if found is None:
+            return None
+        level: Level = "pass" if found.share <= ROUNDING else "fail"
+        text = (
+            f"forces in pin {found.point} add up to {found.share:.2g} of the largest reaction; "
+            f"limit {ROUNDING:.2g}"
+        )
+        return Finding(self.id, level, text, found.share, ROUNDING)
+
+
+class NothingContradicts:
+    id = "CC126"
+    title = "forces as the engine has them"
+    explanation = (
+        "Where an engine reports sizes alone, its forces follow from the momentum of its bodies, "
+        "and are held to those sizes: so its solver is judged, and not the arithmetic beside it."
+    )
+    cure = (
+        "Something acts on the bodies that the balance does not know of, or friction in a joint "
+        "that stands still may be either way: the forces are not to be trusted there."
+    )
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        against = evidence.errors.of_forces.contradictions if evidence.errors else ()
+        if not against:
+            return None
+        more = f" (and {len(against) - 1} more)" if len(against) > 1 else ""
+        return Finding(self.id, "fail", against[0] + more, float(len(against)), 0.0)

@@ -9,9 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.kinematics import solve
-from analytic.lectures.synthesis.asked import Asked, AskedAngle, AskedPlace
-from analytic.lectures.synthesis.examine import Examined
-from analytic.lectures.synthesis.passing import passing_times
+from analytic.lectures.synthesis.design import Asked, AskedAngle, AskedPlace
+from analytic.lectures.synthesis.examine import Examined, passing_times
 from models.array import Array
 from models.lectures.tasks.task import TaskTable
 from models.motion import Motion

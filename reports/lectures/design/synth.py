@@ -27,10 +27,16 @@ from reports.lectures.design.constructions.solutions_page import (
     solutions_page,
     solutions_sheet,
 )
+from reports.lectures.design.design_tables import (
+    clearance_in_words,
+    counted,
+    proof_frame,
+    proof_table,
+    sensitivity_table,
+    solution_frame,
+    solution_table,
+)
 from reports.lectures.design.proof import Met, by_reference, limit_of, proven
-from reports.lectures.design.proof_table import proof_frame, proof_table
-from reports.lectures.design.sensitivity_table import clearance_in_words, sensitivity_table
-from reports.lectures.design.solution_table import counted, solution_frame, solution_table
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.output.console import plain_table
 from reports.output.frame_file import csv

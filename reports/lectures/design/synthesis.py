@@ -42,7 +42,7 @@ class Synthesis(Shown):
 
     def frame(self) -> pd.DataFrame:
         """A row for each solution, those with a defect too."""
-        from reports.lectures.design.solution_table import solution_frame
+        from reports.lectures.design.design_tables import solution_frame
 
         return solution_frame(self.details.examined)
 
@@ -55,8 +55,8 @@ class Synthesis(Shown):
         EngineError
             An unknown engine or profile, or a missing package.
         """
+        from reports.lectures.design.design_tables import proof_frame
         from reports.lectures.design.proof import proven
-        from reports.lectures.design.proof_table import proof_frame
 
         found = enumerate(self.details.examined, 1)
         sound = [(number, one) for number, one in found if not one.defects][:best]
@@ -65,7 +65,7 @@ class Synthesis(Shown):
         )
 
     def show(self, console: Console) -> None:
-        from reports.lectures.design.solution_table import counted, solution_table
+        from reports.lectures.design.design_tables import counted, solution_table
 
         listed = self.details.examined[:LISTED]
         console.print(counted(self.details, len(listed)), highlight=False, markup=False)

@@ -11,10 +11,10 @@ import numpy as np
 
 from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMechanism
 from analytic.structure.mobility import Structure
+from models.cut_links import with_rigid_links
 from models.errors import CrankcheckError, ReachError, StructureError
+from models.files.names import MOST_ASSEMBLIES
 from models.laws import ConstantSpeed
-from models.names import MOST_ASSEMBLIES
-from models.rigid import with_rigid_links
 from models.scene import Scene
 
 MOST_CHOICES = 1024

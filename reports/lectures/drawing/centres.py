@@ -11,18 +11,21 @@ from rich.console import Console
 
 from analytic.lectures.drawings.drawn_polygons import draw_polygons
 from analytic.lectures.drawings.placed_mechanism import DriverState
-from analytic.structure.cranked import refuse_other_than_cranked
-from analytic.structure.mobility import analyse
+from analytic.structure.mobility import analyse, refuse_other_than_cranked
 from models.array import Array
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.describe.facts import angle_at, driver_at
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
-from reports.lectures.drawing.sheets.centre_column import body_numbers, centre_name
-from reports.lectures.drawing.sheets.centre_sheet import CentreSheet, centres_of, draw_centres
+from reports.lectures.drawing.sheets.centre_sheet import (
+    CentreSheet,
+    body_numbers,
+    centre_name,
+    centres_of,
+    draw_centres,
+)
 from reports.lectures.drawing.sheets.driver_range import sense_of_law
-from reports.lectures.drawing.sheets.paper import Paper
-from reports.lectures.drawing.sheets.sheet_note import sheet_note
+from reports.lectures.drawing.sheets.paper import Paper, sheet_note
 from reports.output.console import plain_table
 from reports.output.write import check_file
 from reports.requests.options import PaperSize, SceneName

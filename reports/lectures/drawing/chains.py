@@ -10,10 +10,9 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from analytic.lectures.chains.assur_groups import Mechanism, inversions
 from analytic.lectures.chains.chain import Chain, assortment_in_words, assortments
-from analytic.lectures.chains.inversions import Mechanism, inversions
-from analytic.lectures.chains.number_synthesis import chain_names, chains
-from analytic.lectures.chains.type_synthesis import type_in_letters, types
+from analytic.lectures.chains.chain_synthesis import chain_names, chains, type_in_letters, types
 from models.errors import CrankcheckError
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
 from reports.lectures.drawing.sheets.chain_sheet import DrawnChain, check_room, draw_chains

@@ -12,27 +12,29 @@ from rich.console import Console
 
 from analytic.lectures.drawings.graphical import METHODS, Method
 from models.errors import CrankcheckError, shown
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
-from reports.lectures.drawing.sheets.graphs.graph_drawing import DrawnGraphs, drawn_graphs
-from reports.lectures.drawing.sheets.graphs.graph_log import graph_log
+from reports.lectures.drawing.sheets.graphs.graph_drawing import (
+    DrawnGraphs,
+    drawn_graphs,
+    graph_log,
+)
 from reports.lectures.drawing.sheets.graphs.graph_orders import (
     GraphErrors,
+    draw_errors,
     graph_errors,
     show_errors,
     told_floor,
 )
-from reports.lectures.drawing.sheets.graphs.graph_orders_sheet import draw_errors
 from reports.lectures.drawing.sheets.graphs.graph_page import draw_graphs, laid_out
-from reports.lectures.drawing.sheets.graphs.graph_span import OVERS, GraphSpan, Over, over_period
+from reports.lectures.drawing.sheets.graphs.graph_span import OVERS, Over, over_period
 from reports.lectures.drawing.sheets.graphs.graph_words import (
     show_graphs,
     tell,
     told_errors,
     told_log,
 )
-from reports.lectures.drawing.sheets.paper import Paper
-from reports.lectures.drawing.sheets.sheet_note import sheet_note
+from reports.lectures.drawing.sheets.paper import Paper, of_elastic, sheet_note
 from reports.output.write import check_file
 from reports.requests.options import Duration, PaperSize, SceneName
 
@@ -98,7 +100,8 @@ def _tell_graphs(request: GraphRequest, console: Console, drawn: DrawnGraphs, pa
     """Draw the sheet, or show the table; then what both are off by."""
     of = drawn.span
     told = (
-        f"{of.quantity.name} of {of.scene.name} in {drawn.parts} parts{_by(drawn.by)}{_rigid(of)}; "
+        f"{of.quantity.name} of {of.scene.name} in {drawn.parts} parts{_by(drawn.by)}"
+        f"{of_elastic(of.scene, ', its elastic links taken as rigid')}; "
         f"{told_errors(drawn, drawn.reference)}"
     )
     if request.output is None:
@@ -128,10 +131,6 @@ def _tell_errors(
 
 def _by(method: Method) -> str:
     return "" if method == "chords" else f" by {method}"
-
-
-def _rigid(of: GraphSpan) -> str:
-    return ", its elastic links taken as rigid" if of.scene.elastic else ""
 
 
 def counts(text: str) -> Sequence[int]:

@@ -10,12 +10,11 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
-from analytic.lectures.schemes.higher_pairs import replaced
+from analytic.lectures.schemes.joint_chains import replaced
 from analytic.lectures.schemes.scheme_mobility import SchemeMobility, scheme_mobility
 from models.errors import CrankcheckError, harmless
 from models.lectures.scheme import HIGHER, Scheme
-from models.lectures.scheme_files import find_scheme, load_scheme, shipped_schemes
-from models.lectures.scheme_text import scheme_text
+from models.lectures.scheme_files import find_scheme, load_scheme, scheme_text, shipped_schemes
 from reports.output.console import hanging, plain_table
 from reports.output.write import check_file, write
 

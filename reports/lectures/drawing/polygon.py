@@ -11,28 +11,29 @@ from rich.console import Console
 
 from analytic.lectures.drawings.drawn_polygons import DrawnPolygons, polygons_of
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
-from analytic.structure.cranked import refuse_other_than_cranked
-from analytic.structure.mobility import analyse
+from analytic.structure.mobility import analyse, refuse_other_than_cranked
 from models.errors import CrankcheckError, harmless
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.lectures.drawing.sheets.paper import Paper
-from reports.lectures.drawing.sheets.polygons.logged_instant import LoggedInstant, LogInstants
-from reports.lectures.drawing.sheets.polygons.polygon_files import (
+from reports.lectures.drawing.sheets.polygons.polygon_course import (
     ANIMATED,
     ENDINGS,
     PAGE,
+    PolygonCourse,
     polygon_file,
     turning_file,
 )
 from reports.lectures.drawing.sheets.polygons.polygon_instant import (
     AT_DEG,
+    LoggedInstant,
+    LogInstants,
     placed_at_angle,
     placed_at_time,
 )
 from reports.lectures.drawing.sheets.polygons.polygon_listing import show_polygons
 from reports.lectures.drawing.sheets.polygons.polygon_sheet import PolygonSheet, laid_out
-from reports.lectures.drawing.sheets.polygons.polygon_words import doubts
+from reports.lectures.drawing.sheets.polygons.polygon_table import doubts
 from reports.logs.map_file import Map, read_map
 from reports.output.write import check_file, write
 from reports.requests.options import PaperSize, SceneName, seconds
@@ -171,9 +172,8 @@ def _told(sheet: PolygonSheet, request: PolygonRequest) -> str:
     name = sheet.drawn.placement.scene.name
     ending = request.output.suffix.lower() if request.output is not None else ""
     if request.turn or ending == PAGE:
-        is_free = sheet.drawn.placement.scene.is_free and request.omega is None
-        course = "its motion" if is_free else "a turn"
-        return f"velocities and accelerations of {name} over {course}"
+        course = PolygonCourse.kind(sheet.drawn.placement.scene, steady=request.omega is not None)
+        return f"velocities and accelerations of {name} over {course.words}"
     at_deg = AT_DEG if request.at_deg is None else request.at_deg
     of = f"at {at_deg:g} deg" if request.at_s is None else f"at {request.at_s:g} s"
     beside = f", {request.log} beside" if request.log is not None else ""

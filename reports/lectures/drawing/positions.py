@@ -10,11 +10,10 @@ import typer
 from rich.console import Console
 
 from models.errors import harmless
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from reports.lectures.drawing.sheets.canvas import Canvas
-from reports.lectures.drawing.sheets.paper import Paper
+from reports.lectures.drawing.sheets.paper import Paper, sheet_note
 from reports.lectures.drawing.sheets.position_sheet import draw_positions, positions
-from reports.lectures.drawing.sheets.sheet_note import sheet_note
 from reports.output.write import check_file, write
 from reports.requests.options import PaperSize, SceneName
 

@@ -11,18 +11,17 @@ import numpy as np
 import typer
 from rich.console import Console
 
-from analytic.lectures.chains.by_driver import ClassedGroup, by_drivers, classed
+from analytic.lectures.chains.assur_groups import ClassedGroup, by_drivers, classed
 from analytic.structure.groups import Bridge
 from analytic.structure.mobility import Structure, analyse
 from models.errors import CrankcheckError
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.describe.facts import place_at
 from reports.lectures.drawing.assemblies import Assembled, all_assemblies
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
 from reports.lectures.drawing.sheets.assembly_sheet import draw_assemblies
-from reports.lectures.drawing.sheets.paper import Paper
-from reports.lectures.drawing.sheets.sheet_note import sheet_note
+from reports.lectures.drawing.sheets.paper import Paper, sheet_note
 from reports.output.console import plain_table
 from reports.output.numbers import roman
 from reports.output.write import check_file

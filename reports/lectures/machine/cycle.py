@@ -13,9 +13,8 @@ from analytic.lectures.regulation.cycle_search import cycle_of
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.errors import harmless
-from models.files import find_scene, load_scene
-from reports.lectures.machine.cycle_frame import cycle_document, cycle_frame
-from reports.lectures.machine.regulation_tables import show_cycle
+from models.files.reading import find_scene, load_scene
+from reports.lectures.machine.cycle_frame import cycle_document, cycle_frame, show_cycle
 from reports.output.frame_file import ENDINGS, write_frame
 from reports.output.write import check_file, check_folder, write
 from reports.requests.options import SceneName
@@ -46,8 +45,7 @@ class CycleRequest:
         check_outputs_of(self.scene, self.output, self.figures)
         cycle = cycle_of(TurningMachine.of(load_scene(self.scene)))
         if self.figures is not None:
-            from reports.lectures.machine.figures.all_figures import written_figures
-            from reports.lectures.machine.figures.regulated import Regulated
+            from reports.lectures.machine.figures.regulation import Regulated, written_figures
 
             tell_of(console, written_figures(Regulated(cycle), self.figures))
         if self.output is not None:
@@ -64,7 +62,7 @@ def check_outputs_of(scene: str, output: Path | None, figures: Path | None) -> N
     if output is not None:
         check_file(output, "-o", (*ENDINGS, NUMBERS, PAGE), inputs=[find_scene(scene)])
     if figures is not None:
-        from reports.lectures.machine.figures.all_figures import figure_files
+        from reports.lectures.machine.figures.regulation import figure_files
 
         check_folder(figures, "--figures", figure_files(), inputs=[find_scene(scene)])
 
@@ -78,7 +76,7 @@ def _write(path: Path, cycle: SteadyCycle) -> None:
     """The cycle as a file of the kind that the ending says."""
     ending, scene = path.suffix.lower(), cycle.machine.scene
     if ending == PAGE:
-        from reports.lectures.machine.regulation_report import page_of_cycle
+        from reports.lectures.machine.regulation_page import page_of_cycle
 
         write(path, page_of_cycle(cycle))
     elif ending == NUMBERS:

@@ -9,15 +9,14 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from analytic.lectures.regulation.cycle_scene import cycle_scene
 from analytic.lectures.regulation.flywheel import CoefficientError, WantedFlywheel, wanted_flywheel
+from analytic.lectures.regulation.steady_cycle import cycle_scene
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.errors import CrankcheckError
-from models.files import find_scene, load_scene
-from models.scene_text import scene_text
+from models.files.assemble import scene_text
+from models.files.reading import find_scene, load_scene
 from reports.lectures.machine.cycle import NUMBERS, PAGE, check_outputs_of, tell_of
-from reports.lectures.machine.cycle_frame import cycle_frame, flywheel_document
-from reports.lectures.machine.regulation_tables import show_flywheel
+from reports.lectures.machine.cycle_frame import cycle_frame, flywheel_document, show_flywheel
 from reports.output.frame_file import write_frame
 from reports.output.write import check_outputs, write
 from reports.requests.options import SceneName
@@ -66,8 +65,7 @@ class FlywheelRequest:
         except CoefficientError as error:
             raise CrankcheckError(f"--{error}") from None  # of the option
         if self.figures is not None:
-            from reports.lectures.machine.figures.all_figures import written_figures
-            from reports.lectures.machine.figures.regulated import Regulated
+            from reports.lectures.machine.figures.regulation import Regulated, written_figures
 
             tell_of(console, written_figures(Regulated(found.cycle, found), self.figures))
         if self.output is not None:
@@ -108,7 +106,7 @@ def _write(path: Path, found: WantedFlywheel) -> None:
     """The flywheel as a file of the kind that the ending says."""
     ending, scene = path.suffix.lower(), found.cycle.machine.scene
     if ending == PAGE:
-        from reports.lectures.machine.regulation_report import page_of_flywheel
+        from reports.lectures.machine.regulation_page import page_of_flywheel
 
         write(path, page_of_flywheel(found))
     elif ending == NUMBERS:

@@ -6,10 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from analytic.lectures.regulation.cycle_scene import cycle_scene, with_flywheel
 from analytic.lectures.regulation.cycle_search import cycle_of
 from analytic.lectures.regulation.flywheel import WantedFlywheel, wanted_flywheel
-from analytic.lectures.regulation.steady_cycle import SteadyCycle
+from analytic.lectures.regulation.steady_cycle import SteadyCycle, cycle_scene, with_flywheel
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.errors import CrankcheckError
 from models.scene import Scene
@@ -77,7 +76,7 @@ class MachineCycle(Shown):
         return cycle_frame(self.details)
 
     def show(self, console: Console) -> None:
-        from reports.lectures.machine.regulation_tables import show_cycle
+        from reports.lectures.machine.cycle_frame import show_cycle
 
         show_cycle(console, self.details)
 
@@ -111,7 +110,7 @@ class MachineFlywheel(Shown):
         return cycle_frame(self.details.cycle, self.details.bare)
 
     def show(self, console: Console) -> None:
-        from reports.lectures.machine.regulation_tables import show_flywheel
+        from reports.lectures.machine.cycle_frame import show_flywheel
 
         show_flywheel(console, self.details)
 

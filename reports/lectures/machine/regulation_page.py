@@ -2,24 +2,71 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Mapping
 
 from analytic.lectures.regulation.flywheel import WantedFlywheel
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
-from reports.lectures.machine.sections import flywheel, numbers
+from reports.figures.saving import saved
+from reports.lectures.machine import cycle_rows
+from reports.lectures.machine.figures.regulation import Regulated, drawn_figures
 from reports.output.numbers import count
 from reports.output.provenance import crankcheck_version
 from reports.page.build import Head, assembled
+from reports.page.sections.section import Section
+
+CAPTIONS: Mapping[str, str] = {
+    "speed": "The speed of the driver over the cycle, and its extremes.",
+    "torques": "Torques reduced to the driver, and the work that they have done since the start.",
+    "energy-mass": "Work over the machine's own reduced moment of inertia, with its tangents "
+    "(Wittenbauer); numbers are angles of the driver in deg.",
+}
+
+
+def cycle_section(cycle: SteadyCycle, figures: Mapping[str, bytes]) -> Section:
+    """The section; ``figures`` are SVG files by their name."""
+    return Section(
+        anchor="cycle",
+        title="Steady cycle",
+        template="steady_cycle.html",
+        words={
+            "driver": cycle.machine.scene.driver.link,
+            "heading": cycle_rows.heading(cycle),
+            "rows": cycle_rows.number_rows(cycle),
+            "works": cycle_rows.work_rows(cycle),
+            "notes": cycle_rows.notes(cycle),
+            "figures": [
+                (name, CAPTIONS.get(name, name), base64.b64encode(svg).decode("ascii"))
+                for name, svg in figures.items()
+            ],
+        },
+        styles=("forces.css",),
+    )
+
+
+def flywheel_section(found: WantedFlywheel) -> Section:
+    """The section."""
+    return Section(
+        anchor="flywheel",
+        title="Flywheel",
+        template="flywheel.html",
+        words={
+            "heading": cycle_rows.flywheel_heading(found),
+            "ways": cycle_rows.way_rows(found),
+            "rows": cycle_rows.beside_rows(found),
+            "notes": cycle_rows.flywheel_notes(found),
+        },
+    )
 
 
 def cycle_page(cycle: SteadyCycle, figures: Mapping[str, bytes]) -> str:
     """The page of a cycle; ``figures`` are SVG files by name."""
-    return assembled(_head(cycle, "cycle"), [numbers.build(cycle, figures)])
+    return assembled(_head(cycle, "cycle"), [cycle_section(cycle, figures)])
 
 
 def flywheel_page(found: WantedFlywheel, figures: Mapping[str, bytes]) -> str:
     """The page of a flywheel, with its cycle."""
-    sections = [flywheel.build(found), numbers.build(found.cycle, figures)]
+    sections = [flywheel_section(found), cycle_section(found.cycle, figures)]
     return assembled(_head(found.cycle, "flywheel"), sections)
 
 
@@ -36,3 +83,18 @@ def _head(cycle: SteadyCycle, first: str) -> Head:
         made="",
         first=first,
     )
+
+
+def page_of_cycle(cycle: SteadyCycle) -> str:
+    """The page of a cycle as HTML."""
+    return cycle_page(cycle, _figures(Regulated(cycle)))
+
+
+def page_of_flywheel(found: WantedFlywheel) -> str:
+    """The page of a flywheel as HTML."""
+    return flywheel_page(found, _figures(Regulated(found.cycle, found)))
+
+
+def _figures(of: Regulated) -> dict[str, bytes]:
+    title = of.cycle.machine.scene.name
+    return {name: saved(figure, "svg", f"{title}: {name}") for name, figure in drawn_figures(of)}

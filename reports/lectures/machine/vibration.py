@@ -15,8 +15,13 @@ from rich.console import Console
 
 from analytic.elastic.discretisation import Modes
 from analytic.elastic.natural import lowest_rad_s
-from analytic.lectures.vibration.over_inertia import InertiaMap, over_inertia, with_inertia
-from analytic.lectures.vibration.over_speeds import OverSpeeds, over_speeds
+from analytic.lectures.vibration.over_speeds import (
+    InertiaMap,
+    OverSpeeds,
+    over_inertia,
+    over_speeds,
+    with_inertia,
+)
 from analytic.lectures.vibration.steady_vibration import (
     SteadyVibration,
     check_vibrates,
@@ -24,7 +29,7 @@ from analytic.lectures.vibration.steady_vibration import (
 )
 from models.array import Array
 from models.errors import CrankcheckError, harmless, shown
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.lectures.machine import vibration_files as files
 from reports.lectures.machine.vibration_tables import show_map, show_speeds, show_vibration
@@ -59,21 +64,21 @@ class Files(Generic[Found]):
 
 
 def _over_turn() -> Sequence[Callable[[SteadyVibration], Figure]]:
-    from reports.lectures.machine.figures import over_turn
+    from reports.lectures.machine.figures import vibration
 
-    return over_turn.draw, over_turn.draw_spectrum
+    return vibration.draw_over_turn, vibration.draw_spectrum
 
 
 def _over_speed() -> Sequence[Callable[[OverSpeeds], Figure]]:
-    from reports.lectures.machine.figures import over_speed
+    from reports.lectures.machine.figures import vibration
 
-    return over_speed.draw, over_speed.draw_waterfall
+    return vibration.draw_over_speed, vibration.draw_waterfall
 
 
 def _over_inertia() -> Sequence[Callable[[InertiaMap], Figure]]:
-    from reports.lectures.machine.figures import over_inertia as figure
+    from reports.lectures.machine.figures import vibration
 
-    return (figure.draw,)
+    return (vibration.draw_over_inertia,)
 
 
 AT_A_SPEED = Files[SteadyVibration](
@@ -248,7 +253,7 @@ def _write(
     folder = request.output
     if folder is None:
         return
-    from reports.lectures.machine.figures.vibration_figures import Drawing, write_figures
+    from reports.lectures.machine.figures.vibration import Drawing, write_figures
 
     for name, text in written.texts.items():
         write(folder / name, text(found))

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.lectures.vibration.over_inertia import InertiaMap
-from analytic.lectures.vibration.over_speeds import OverSpeeds
+from analytic.lectures.vibration.over_speeds import InertiaMap, OverSpeeds
 from analytic.lectures.vibration.steady_vibration import SteadyVibration
 from models.scene import Scene
-from reports.lectures.machine import speed_rows, vibration_rows
+from reports.lectures.machine import vibration_rows
 from reports.output.numbers import finite
 from reports.output.provenance import crankcheck_version
 
@@ -134,14 +133,14 @@ def speeds_document(over: OverSpeeds) -> str:
         over.scene,
         {
             "critical": [asdict(each) for each in over.critical],
-            "unstable": [asdict(each) for each in speed_rows.unstable_speeds(over)],
+            "unstable": [asdict(each) for each in vibration_rows.unstable_speeds(over)],
         },
     )
 
 
 def map_document(found: InertiaMap) -> str:
     """The rows of a map as JSON."""
-    rows = [asdict(row) for row in speed_rows.inertia_rows(found)]
+    rows = [asdict(row) for row in vibration_rows.inertia_rows(found)]
     return _text(found.scene, {"link": found.link, "inertia": rows})
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.elastic.natural import link_modes, lowest_rad_s
-from analytic.elastic.resonance import Sensitivity
+from analytic.elastic.natural import Sensitivity, link_modes, lowest_rad_s
 from analytic.lectures.vibration.floquet import STABLE
+from analytic.lectures.vibration.over_speeds import HIGHEST, InertiaMap, OverSpeeds
 from analytic.lectures.vibration.steady_vibration import SteadyVibration
 from reports.output.numbers import readable
 
@@ -117,7 +118,8 @@ def notes(vibration: SteadyVibration) -> list[str]:
             f"{', '.join(thick)} bends by more than a tenth of its length: the beam of this theory "
             "bends less than that."
         )
-    if any(own.damping_s == 0.0 for own in vibration.scene.elastic.values()):
+    dampings = [own.damping_s for own in vibration.scene.elastic.values()]
+    if 0.0 in dampings:
         told.append(
             "Without damping_s the motion from any other start keeps ringing beside this one."
         )
@@ -158,3 +160,96 @@ def resonance_text(found: Sensitivity) -> str:
         f"deflection by {found.size:.3g} %, so that it is known no better than the stiffness times "
         "that."
     )
+
+
+MOST_ROWS = 12
+"""Critical speeds on a terminal; files hold all."""
+
+
+@dataclass(frozen=True)
+class Unstable:
+    """Speeds next to each other at which the motion is unstable [rad/s], and the largest
+    multiplier in them."""
+
+    low_rad_s: float
+    high_rad_s: float
+    multiplier: float
+
+
+def unstable_speeds(over: OverSpeeds) -> list[Unstable]:
+    """Where deviations grow."""
+    found, own = [], list[tuple[float, float]]()
+    for point in over.points:
+        if point.stability.is_stable:
+            found += list(_run(own))
+            own = []
+        else:
+            own.append((point.speed_rad_s, point.stability.largest))
+    return found + list(_run(own))
+
+
+def _run(own: list[tuple[float, float]]) -> Iterator[Unstable]:
+    if own:
+        yield Unstable(own[0][0], own[-1][0], max(size for _, size in own))
+
+
+def speeds_heading(over: OverSpeeds) -> str:
+    low, high = over.points[0], over.points[-1]
+    return (
+        f"{over.scene.name}: steady vibration at {len(over.points)} speeds of "
+        f"{over.scene.driver.link} from {low.speed_rad_s:.6g} to {high.speed_rad_s:.6g} rad/s, "
+        f"frequency ratio {low.ratio:.4g} to {high.ratio:.4g}"
+    )
+
+
+def speeds_notes(over: OverSpeeds) -> list[str]:
+    """What there is to know of them."""
+    told = [
+        f"Unstable from {each.low_rad_s:.6g} to {each.high_rad_s:.6g} rad/s: a turn multiplies "
+        f"deviations by up to {readable(each.multiplier)}."
+        for each in unstable_speeds(over)
+    ] or ["At none of these speeds deviations grow."]
+    told.append(
+        f"Critical speeds: a mode vibrates at a whole order, up to {HIGHEST}, that the driver "
+        "excites; within the band the motion hangs on the stiffness too much to be told. By "
+        "equations linear in the deflection, with the stiffness that pull gives."
+    )
+    return told
+
+
+def map_heading(found: InertiaMap) -> str:
+    low, high = found.factors[0], found.factors[-1]
+    return (
+        f"{found.scene.name}: steady vibration with {found.link} {low:g} to {high:g} times as "
+        f"heavy, at {len(found.speeds)} speeds from {found.speeds[0]:.6g} to "
+        f"{found.speeds[-1]:.6g} rad/s"
+    )
+
+
+@dataclass(frozen=True)
+class InertiaRow:
+    """With a link so many times as heavy: the median over the speeds of the largest deflection over
+    the length, the largest multiplier with the speed at which it is [rad/s], and at how many speeds
+    the motion is unstable."""
+
+    factor: float
+    share: float
+    multiplier: float
+    at_rad_s: float
+    unstable: int
+
+
+def inertia_rows(found: InertiaMap) -> list[InertiaRow]:
+    rows = []
+    for factor, over in zip(found.factors, found.over, strict=True):
+        worst = max(over.points, key=lambda point: point.stability.largest)
+        rows.append(
+            InertiaRow(
+                float(factor),
+                float(np.median([point.share for point in over.points])),
+                worst.stability.largest,
+                worst.speed_rad_s,
+                sum(not point.stability.is_stable for point in over.points),
+            )
+        )
+    return rows

@@ -8,10 +8,9 @@ from collections.abc import Iterable
 from rich.console import Console
 from rich.table import Table
 
-from analytic.lectures.vibration.over_inertia import InertiaMap
-from analytic.lectures.vibration.over_speeds import OverSpeeds
+from analytic.lectures.vibration.over_speeds import InertiaMap, OverSpeeds
 from analytic.lectures.vibration.steady_vibration import SteadyVibration
-from reports.lectures.machine import speed_rows, vibration_rows
+from reports.lectures.machine import vibration_rows
 from reports.output.console import plain_table
 from reports.output.numbers import NONE, count, readable
 
@@ -59,31 +58,31 @@ def show_vibration(console: Console, vibration: SteadyVibration) -> None:
 
 def show_speeds(console: Console, over: OverSpeeds) -> None:
     """Print vibration over speeds."""
-    _head(console, speed_rows.heading(over))
+    _head(console, vibration_rows.speeds_heading(over))
     critical = over.critical
     if critical:
         table = _table("critical speed rad/s", "over speed", "mode", "order", "band +- %")
-        for each in critical[: speed_rows.MOST_ROWS]:
+        for each in critical[: vibration_rows.MOST_ROWS]:
             table.add_row(
                 _digits(each.speed_rad_s), _digits(each.ratio), str(each.mode), str(each.order),
                 readable(100.0 * each.band, 2),
             )  # fmt: skip
         console.print(table, "")
-        left = len(critical) - speed_rows.MOST_ROWS
+        left = len(critical) - vibration_rows.MOST_ROWS
         if left > 0:
             _notes(console, [f"{count(left, 'weaker one')} left out; -o writes all."])
     else:
         _notes(console, ["No critical speed lies between them."])
-    _notes(console, speed_rows.notes(over))
+    _notes(console, vibration_rows.speeds_notes(over))
 
 
 def show_map(console: Console, found: InertiaMap) -> None:
     """Print a map over inertia."""
-    _head(console, speed_rows.map_heading(found))
+    _head(console, vibration_rows.map_heading(found))
     table = _table(
         f"{found.link} times", "median deflection", "largest multiplier", "at rad/s", "unstable at"
     )
-    for row in speed_rows.inertia_rows(found):
+    for row in vibration_rows.inertia_rows(found):
         table.add_row(
             f"{row.factor:.4g}", _percent(row.share), readable(row.multiplier, 4),
             _digits(row.at_rad_s), count(row.unstable, "speed"),

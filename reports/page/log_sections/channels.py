@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 
-from models.driver_shown import driver_axis
+from models.driver import driver_axis
 from reports.drawing.moving import goes_round
 from reports.drawing.packed import packed, singles
 from reports.output.numbers import count, readable

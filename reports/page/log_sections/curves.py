@@ -10,8 +10,7 @@ from typing import TypedDict
 import numpy as np
 
 from models.array import Array
-from models.driver_course import driver_course
-from models.driver_shown import driver_shown
+from models.driver import driver_course, driver_shown
 from models.motion import Motion
 from reports.drawing.moving import goes_round
 from reports.logs.channel import Reading

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from reports.drawing.packed import singles
 from reports.judge.halving import worst_place
-from reports.own_model.checked_line import CheckedLine
+from reports.own_model.account import CheckedLine
 from reports.own_model.judged import PARTS, JudgedModel, errors_of
 from reports.page.model_sections.line_looks import line_looks
 from reports.page.sections.section import Section

@@ -6,7 +6,7 @@ import math
 
 from reports.judge.halving import worst_place
 from reports.judge.rules import RULES
-from reports.own_model.checked_line import CheckedLine
+from reports.own_model.account import CheckedLine
 from reports.own_model.judged import JointGap, JudgedModel, errors_of
 from reports.own_model.sentences import (
     factor_text,

@@ -9,9 +9,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from analytic.elastic.sampled import ElasticHistory
+from analytic.elastic.elastic_motion import ElasticHistory
 from models.array import Array
-from models.elastic_line import line_of
+from models.cut_links import line_of
 from models.laws import ConstantSpeed
 from reports.describe.elastic_course import (
     ElasticCourse,

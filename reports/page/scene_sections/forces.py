@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 from collections.abc import Mapping
 
-from models.driver_shown import driver_unit
+from models.driver import driver_unit
 from models.scene import Scene
 from reports.describe.force_tables import friction_words, largest_of
 from reports.describe.with_forces import (

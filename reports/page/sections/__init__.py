@@ -1,27 +1,28 @@
 """The sections of the page, one file each, in the order in which they stand.
 
 A section is built by a function from the `PageReport`; None where the store has nothing for it.
-Another one is another file here, a template beside the others, and a line in `SECTIONS`.
+Another one is another file here, a template beside the others, and a line in `SECTIONS`; that of a
+way is its part ``section``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import cast
 
 from reports.page.sections.convergence import build as convergence
-from reports.page.sections.elastic import build as elastic
 from reports.page.sections.fairness import build as fairness
-from reports.page.sections.free import build as free
 from reports.page.sections.hard import build as hard
 from reports.page.sections.motion import build as motion
 from reports.page.sections.precision import build as precision
 from reports.page.sections.provenance import build as provenance
 from reports.page.sections.reading_forces import build as reading_forces
 from reports.page.sections.recommendation import build as recommendation
-from reports.page.sections.section import PageReport, Section
+from reports.page.sections.section import PageReport, Section, WaySection
 from reports.page.sections.stability import build as stability
 from reports.page.sections.verdict import build as verdict
 from reports.results.overview import Report
+from reports.way.way import WAYS, way
 
 Build = Callable[[PageReport], Section | None]
 
@@ -31,12 +32,14 @@ def _of_driven(build: Callable[[Report], Section | None]) -> Build:
     return lambda report: None if report.driven is None else build(report.driven)
 
 
+_OWN = {name: way(name).own_part("section", None) for name in reversed(WAYS)}
+OF_WAYS = {name: cast(WaySection, own) for name, own in _OWN.items() if own}
+"""The sections of ways, by the name of the way."""
 SECTIONS: dict[str, Build] = {
     "verdict": verdict,
     "recommendation": _of_driven(recommendation),
     "precision": _of_driven(precision),
-    "free": free,
-    "elastic": elastic,
+    **{name: own.build for name, own in OF_WAYS.items()},
     "convergence": _of_driven(convergence),
     "reading_forces": _of_driven(reading_forces),
     "motion": _of_driven(motion),

@@ -118,5 +118,6 @@ def _other(report: Report) -> Mapping[str, tuple[str, str]]:
     """What takes the place of rules, where nothing was driven with rigid links."""
     if report.driven is not None:
         return {}
-    let_go = LET_GO if report.free_lines else {}
-    return let_go | (BENT if report.elastic_lines else {})
+    kinds = {"let go": LET_GO, "elastic": BENT}
+    there = (rules for kind, rules in kinds.items() if report.of_kind(kind))
+    return {name: rule for rules in there for name, rule in rules.items()}

@@ -12,7 +12,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.free.energy_drift import window_means
+from reports.compare.free.drift import window_means
 from reports.drawing.moving import displacements, drawing, drawn_links, moving_points
 from reports.drawing.packed import packed, size_of
 from reports.drawing.shape import true_motion
@@ -55,7 +55,7 @@ class FreeCourses:
     def embedded(self) -> dict[str, object]:
         """The scene with everything that is drawn of it; without a drawing where the store has no
         readable text of it, or no run that moved."""
-        lines = self.report.lines_of(self.name)
+        lines, own = self.report.lines_of(self.name), self.report.of_kind("let go")
         time_s = self._instants(lines)
         ran = any(str(key) in self.sizes for line in lines for key in line.cells["key"])
         truth = self._truth(time_s) if ran else None
@@ -65,7 +65,7 @@ class FreeCourses:
             "drawing": truth and self._drawing(time_s, truth),
             "lasts_ms": float(np.clip(1000.0 * lasts_s, SHORTEST_MS, LONGEST_MS)),
             "truth": truth and self._driver(time_s, truth),
-            "lines": [self._line(line, time_s, truth) for line in lines if line.drive == "free"],
+            "lines": [self._line(line, time_s, truth) for line in lines if line in own],
         }
 
     def _drawing(self, time_s: Array, truth: Motion) -> dict[str, object]:

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from analytic.free.loosened import loosened
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
@@ -128,7 +127,7 @@ class _DrawnScene:
         trace = self.report.stored.trace
         parts = None if body is None else split(line, trace, body, self.scene.longest_m)
         rows = line.cells.set_index("key")
-        scene = loosened(self.scene) if line.drive == "free" else self.scene
+        scene = line.way.moved(self.scene)
         return {
             "look": self.report.look(line).number,
             "floor": "" if parts is None else _floor(parts),

@@ -13,7 +13,7 @@ from reports.page.sections.section import Section
 from reports.quantities import QUANTITIES
 from reports.results.lines import Named, called, named
 from reports.results.overview import Report
-from sim.force_recipes import force_recipe
+from sim.offers import force_recipe
 from sim.registry import engine, offering
 from sim.settings import profile_of, resolved
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from reports.output.numbers import duration
 from reports.page.sections.section import Section
 from reports.results.overview import Report
+from reports.way.clock import SECONDS, clock_of
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,7 @@ def build(report: Report) -> Section:
     engines = Counter(look.engine for look in every)
     looks = [look for engine in engines for look in every if look.engine == engine]
     held = {(x.scene, report.look(x).number): holds(x.cells) for x in report.lines}
+    clocks = [clock_of(line.drive) for line in report.lines]
     lost = report.cells[report.cells["status"] != "ok"]
     return Section(
         anchor="stability",
@@ -37,8 +38,8 @@ def build(report: Report) -> Section:
         words={
             "looks": looks,
             "engines": engines,
-            "free": any(line.drive == "free" for line in report.lines),
-            "all_free": all(line.drive == "free" for line in report.lines),
+            "free": any(clock is SECONDS for clock in clocks),
+            "all_free": all(clock is SECONDS for clock in clocks),
             "rows": [
                 (scene, [held.get((scene, look.number)) for look in looks])
                 for scene in report.scenes
@@ -66,7 +67,7 @@ def holds(cells: pd.DataFrame) -> Holds:
 
 def _step(row: pd.Series) -> str:
     """The step of a cell: steps in a turn, or what is let go has none, its time."""
-    return duration(row["dt_s"]) if row["drive"] == "free" else f"{row['steps_per_turn']:g}"
+    return clock_of(row["drive"]).step(row.to_dict())
 
 
 def _runs(steps: list[str], ran: list[bool], why: str) -> str:

@@ -74,21 +74,8 @@ def build(report: Report) -> Section:
 
 def _held_to(report: Report) -> list[str]:
     """What errors are, for each kind of cell that there is."""
-    said = {
-        "driven": "An error is the largest of a whole run against the closed form: of a link angle "
-        "in radians, of a slider's displacement or a point's place in lengths of the longest link, "
-        "whichever is worst.",
-        "elastic": "Where links bend, the error is that of their deflection against the solved "
-        "motion of the beam, as a share of the largest deflection.",
-        "free": "What was let go is held to the integrated motion at the same time, its errors "
-        "over the sensitivity G of that motion.",
-    }
-    there = {
-        "driven": report.driven is not None,
-        "elastic": bool(report.elastic_lines),
-        "free": any(not line.bends for line in report.free_lines),
-    }
-    return [text for name, text in said.items() if there[name]]
+    kinds = sorted((line.kind for line in report.lines), key=lambda kind: kind.stands)
+    return list(dict.fromkeys(kind.error for kind in kinds))
 
 
 def level(gated: pd.DataFrame) -> str:

@@ -10,7 +10,7 @@ from typing import Literal
 
 from models.errors import CrankcheckError
 from reports.judge.three_steps import AT_ROUNDING
-from reports.judge.tolerance import ELASTIC, FREE
+from reports.quantities import ELASTIC, FREE
 from reports.results.changes.gone import refuse_gone
 from reports.results.changes.runs import COMPARED, CellName, StoredCell, StoredRun
 
@@ -176,7 +176,7 @@ def floor(quantity: str, steps_per_turn: float) -> float:
 
     The step is taken as an equal part of a turn, which it is for a driver of constant speed.
     """
-    tolerance = (FREE | ELASTIC)[quantity]
+    tolerance = {**FREE, **ELASTIC}[quantity]
     step_rad = math.tau / steps_per_turn
     return tolerance.floor + AT_ROUNDING / step_rad**tolerance.differenced
 

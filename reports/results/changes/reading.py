@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import cast
 
 from models.errors import CrankcheckError
-from models.files import scene_texts
-from models.regular import UnreadableError, regular_bytes
+from models.files.inputs import UnreadableError, regular_bytes
+from models.files.reading import scene_texts
 from reports.plan.grid import digest
 from reports.results.changes.runs import CellName, CellRow, StoredCell, StoredRun, stored_cell, text
 from reports.store.examine import STOPPED

@@ -10,9 +10,10 @@ from dataclasses import dataclass, field, replace
 from models.errors import few
 from reports.judge.cell import Cell, Checked
 from reports.judge.rows import cell_row
-from reports.judge.tolerance import EVERY
 from reports.output.numbers import count
+from reports.quantities import EVERY
 from reports.results.cost import apart
+from reports.way.clock import SECONDS, TURNS, Clock, clock_of, common_clock
 
 COMPARED = EVERY
 """What is compared: the largest error of each, as a pure number."""
@@ -38,21 +39,19 @@ class CellName:
     @property
     def label(self) -> str:
         servo = "" if self.drive == "prescribed" else f", drive {self.drive}"
-        long = f", {self.turns:g} turn{'' if self.turns == 1.0 else 's'}"
-        if self.is_free:
-            long = f" for {self.turns:g} s"
+        long = self.clock.lasts(self.turns)
         return f"{self.scene}, {self.engine} {self.variant}{servo}, {steps_told([self])}{long}"
 
     @property
-    def is_free(self) -> bool:
-        """Whether it was let go, and has no turns."""
-        return self.drive == "free"
+    def clock(self) -> Clock:
+        """What its steps and length are counted over."""
+        return clock_of(self.drive)
 
 
 def steps_told(names: Collection[CellName]) -> str:
     """How many steps cells of one line have, in words: in a turn, or in a second of what was let
     go."""
-    turn = "second" if all(name.is_free for name in names) else "turn"
+    turn = common_clock(name.drive for name in names).name
     steps = sorted({name.steps_per_turn for name in names})
     return f"{', '.join(f'{each:g}' for each in steps)} steps a {turn}"
 
@@ -116,8 +115,7 @@ class StoredRun:
     def holds(self) -> str:
         """What there is to compare, in a sentence."""
         names = list(self.cells)
-        driven = [name for name in names if not name.is_free]
-        free = [name for name in names if name.is_free]
+        driven, free = ([name for name in names if name.clock is each] for each in (TURNS, SECONDS))
         parts = [
             f"{count(len(names), 'cell')}: scenes {each_once(name.scene for name in names)}",
             each_once(f"{name.engine} {name.variant}" for name in names),

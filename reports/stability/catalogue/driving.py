@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from functools import partial
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.laws import ConstantSpeed, Law, SpeedChange
 from models.scene import Scene
 from reports.stability.case import Case, Trial

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.stability.case import Case, Trial
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.stability.case import Case, Trial

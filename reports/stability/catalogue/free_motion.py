@@ -9,13 +9,13 @@ from functools import partial
 
 import numpy as np
 
-from analytic.forces.springs import spring_lengths
+from analytic.forces.force_elements import spring_lengths
 from analytic.free.machine import Machine
-from models.files import load_scene
+from models.driver import Released
+from models.files.reading import load_scene
 from models.hard import fourbar
-from models.released import Released
+from models.loads import SlideSpring
 from models.scene import Scene
-from models.springs import SlideSpring
 from reports.stability.case import Case, Trial
 
 SWING, SLIDER_CRANK = "fourbar-swing", "slider-crank-spring"

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from analytic.free.window_chain import ChainMotion
-from models.hard import double_parallelogram
-from models.window_chain import SOURCE, Chain
+from models.hard import SOURCE, Chain, double_parallelogram
 from reports.stability.case import Case, Trial
 from reports.stability.catalogue.change_points import four_turns, through
 

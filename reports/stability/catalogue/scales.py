@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from functools import partial
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.moved_scene import moved, rotated, scaled
 from reports.stability.case import Case, Trial
 

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from analytic.kinematics import solve
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import State
 from models.scene import Scene
 from reports.stability.case import Case, Trial

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.stability.case import Case, Trial
 
 SOURCE = "fourbar-lecture-1"

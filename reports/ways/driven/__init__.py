@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
-from typing import TYPE_CHECKING, NoReturn
+from collections.abc import Collection, Mapping, Sequence, Set
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -12,12 +12,11 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
-from models.forces import Forces
 from models.laws import MOST_TURNS
-from models.motion import Motion, State
+from models.motion import Forces, Motion, State
 from models.scene import Same, Scene
 from reports.compare.beside import Truth, truth_of
-from reports.judge.tolerance import DEFAULTS
+from reports.compare.errors import DRIVEN
 from reports.plan.singular import (
     passage_note,
     refuse_forceless,
@@ -25,22 +24,28 @@ from reports.plan.singular import (
     refuse_singular,
 )
 from reports.plan.steps import TURNS, counted
+from reports.quantities import DEFAULTS, named
+from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
-from reports.way.way import StudyLengths, Way
+from reports.way.way import Parts, StudyLengths, StudyLinks
 from sim.engine import Drive
 
-if TYPE_CHECKING:
-    from reports.own_log.log_kind import LogKind
-    from reports.requests.solving import Solving
-    from reports.verify.cell_table import CellTable
 
-
-class DrivenWay(Way):
+class DrivenWay(Parts):
     """As of `Way`."""
 
     name = "driven"
     drive: Drive = "prescribed"
+    kinds: Sequence[str] = ("driven",)
     closed_form = True
+    limits: Mapping[str, Tolerance] = DEFAULTS
+    roles: Set[Role] = frozenset(("drive", "place", "closure", "derived"))
+    placed: Sequence[str] = named("place")
+    unlogged: Sequence[str] = ()
+    noted = False
+    no_case = "no driven case"
+    units = DRIVEN.compared_with(" at the commanded time")
+    over_g: Sequence[str] = ()
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return True
@@ -59,26 +64,23 @@ class DrivenWay(Way):
             refuse_forceless(run.scene, run.duration_s)
         refuse_short_tables(run.scene, run.duration_s)
 
-    @property
-    def log(self) -> LogKind:
-        from reports.ways.driven.log import LOG  # for logs alone
+    def roles_of(self, *, with_forces: bool) -> Set[Role]:
+        return {*self.roles, *(("force",) if with_forces else ())}
 
-        return LOG
-
-    @property
-    def table(self) -> CellTable:
-        from reports.ways.driven.table import TABLE  # what is shown is loaded when it is
-
-        return TABLE
-
-    @property
-    def solving(self) -> Solving:
-        from reports.requests.solve import SOLVING  # for references alone
-
-        return SOLVING
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        return True
 
     def turn_s(self, scene: Scene) -> float:
         return scene.driver.law.period_s
+
+    def every(self, steps: int, steps_per_turn: float) -> int:
+        return 1
+
+    def given(self, scene: Scene, given: GivenAs) -> Scene:
+        return scene
+
+    def moved(self, scene: Scene) -> Scene:
+        return scene
 
     def note(self, scene: Scene, duration_s: float) -> str:
         return passage_note(scene, duration_s)
@@ -89,7 +91,7 @@ class DrivenWay(Way):
     drives: tuple[Drive, ...] = ("prescribed", "servo", "free")
     lengths_by: tuple[str, ...] = ("--turns", "--steps-per-turn")
     over = "over one turn"
-    tolerances: Collection[str] = DEFAULTS
+    targets: Collection[str] = DEFAULTS
     least_judged = 0
 
     def refuse_length(self, option: str) -> NoReturn:
@@ -130,6 +132,21 @@ class DrivenWay(Way):
 
     def latest_s(self, scene: Scene) -> float:
         return MOST_TURNS * self.turn_s(scene)
+
+    def held_steps(self, scene: Scene) -> tuple[float, ...]:
+        return ()
+
+    def judged_by(self, given: GivenAs) -> list[str] | None:
+        return []
+
+    def given_by(self, study: StudyLinks) -> list[GivenAs]:
+        return [GivenAs()]
+
+    def key(self, given: GivenAs) -> list[object]:
+        return []
+
+    def shortened(self, scene: Scene, lasts_s: float) -> str:
+        return ""
 
 
 WAY = DrivenWay()

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 
-from reports.causes.cause import Case, Cause
+import numpy as np
+
+from models.array import Array
+from models.errors import CrankcheckError, cut, harmless
+from models.scene import Scene
+from reports.causes.cause import Case, Cause, Excerpt
 from reports.causes.find import causes
 from reports.compare.beside import Truth
-from reports.logs.channel import OwnLog
+from reports.compare.errors import Error, Errors, largest
+from reports.logs.channel import Channel, OwnLog
 from reports.logs.log_beside import AtCrank, LogBeside
+from reports.output.numbers import error_text, listed
 from reports.own_log.drives import DriveFit, truth_of_log
 from reports.own_log.log_kind import HeldLog, LogRequest
 from reports.own_log.log_limits import limits_by_column
-from reports.own_log.no_cause import of_no_cause, seldom
+from reports.quantities import named
 from sim.engine import Run
 
 NO_FIT = (
@@ -25,6 +33,8 @@ class DrivenLog:
     """As of `LogKind`."""
 
     truth_name = "closed form"
+    no_cause = "none that is known explains {}"
+    driver_angle = "drive"
 
     def truth(self, log: OwnLog, request: LogRequest) -> tuple[OwnLog, Truth, DriveFit | None]:
         return log, *truth_of_log(log, request.drive)
@@ -33,6 +43,10 @@ class DrivenLog:
         assert run.motion is not None
         alone = isinstance(truth, AtCrank)
         return LogBeside(truth, run, run.motion, step_s=run.dt_s, geometry_alone=alone)
+
+    def judged_as(self, scene: Scene, channel: Channel) -> tuple[str, ...]:
+        of_driver = (channel.kind.name, channel.of) == ("angle", scene.driver.link)
+        return ("drive",) if scene.driver.is_crank and of_driver else (channel.kind.quantity,)
 
     def explained(self, held: HeldLog) -> tuple[Sequence[Cause], Sequence[str]]:
         if held.fit is not None and not held.fit.explains:
@@ -43,3 +57,127 @@ class DrivenLog:
 
 
 LOG = DrivenLog()
+
+
+SHOWN = 3
+"""Columns whose errors are told of."""
+HARMONICS = 3
+LEAST_TURNS, LEAST_ROWS = 1.5, 24
+"""What shows whether an error comes back every turn."""
+TOLD = 0.1
+"""A part of an error, by the mean square, that is worth telling."""
+WORDS = ("stays the same", "grows or falls evenly", "comes back every turn", "does none of these")
+SMALL, MOST = 0.1, 0.7
+"""A part of an error at the logged angle of the driver that is little of it, and most of it."""
+LONGEST = 60
+"""Characters of a column's name that are shown."""
+
+
+def of_no_cause(case: Case, causes: Sequence[Cause], errors: Errors) -> tuple[str, ...]:
+    """Of what is out and has no cause: a sentence on the drive, the geometry and the joints, and
+    one on how the columns that are off most go on, places first. Raises CrankcheckError where the
+    scene has no reference."""
+    told = {column for cause in causes for column in cause.columns}
+    left = [
+        excerpt
+        for column, excerpt in case.excerpts.items()
+        if excerpt.out and column not in told and excerpt.limit > 0.0
+    ]
+    if not left:
+        return ()
+    left.sort(key=lambda each: (each.channel.kind.order, -each.worst / each.limit))
+    shapes = [text for each in left[:SHOWN] if (text := _shape(case.truth.scene, each))]
+    lines = (f"without a known cause, by the mean square of the error: {'; '.join(shapes)}",)
+    parts = _parts(case.truth.scene, left, errors)
+    return (*((parts,) if parts else ()), *(lines if shapes else ()))
+
+
+def seldom(case: Case) -> Iterator[str]:
+    """What is to be known of an angle of the driver that is out, and turns by half a turn or more
+    from row to row."""
+    scene, time_s = case.truth.scene, case.log.time_s
+    try:
+        angle = scene.driver.law.at(time_s)[0]
+    except CrankcheckError:
+        return
+    turns = float(np.median(np.abs(np.diff(angle)))) / math.tau
+    if turns < 0.5 - 1e-9:
+        return
+    for column, excerpt in case.excerpts.items():
+        channel = excerpt.channel
+        within = float(np.ptp(excerpt.reading.values)) < math.tau + 1e-2
+        if excerpt.out and channel.of == scene.driver.link and channel.kind.turns and within:
+            yield (
+                f"{_text(column)}: {channel.of} turns by {turns:.3g} turns from row to row, and of "
+                "an angle within one turn it can not be told how often it went round in between; "
+                "log it more than twice a turn, or without jumps"
+            )
+
+
+def _parts(scene: Scene, left: Sequence[Excerpt], errors: Errors) -> str:
+    """How much of the worst place that has no cause is left at the logged angle of the driver, and
+    how far the joints are open; "" where the log does not tell."""
+    bodies = {(each.channel.kind.quantity, each.channel.of) for each in left}
+    places = [row for row in errors.rows if row.quantity in named("place")]
+    worst = largest(
+        row for row in places if row.kind == "total" and (row.quantity, row.body) in bodies
+    )
+    if worst is None or not worst.finite:
+        return ""
+    at_crank = next(
+        (row for row in places
+         if row.kind == "geometric" and (row.quantity, row.body) == (worst.quantity, worst.body)),
+        None,
+    )  # fmt: skip
+    drive, gap = errors.worst("drive"), errors.worst("gap")
+    texts = []
+    if at_crank is not None and drive is not None:
+        texts.append(
+            f"of {_size(worst)} that {worst.quantity} of {worst.body} is off by, "
+            f"{_size(at_crank)} are left at the logged angle of {scene.driver.link}, which is off "
+            f"by {_size(drive)}: {_verdict(at_crank.maximum / worst.maximum)}"
+        )
+    if gap is not None and gap.maximum > 0.0:
+        texts.append(f"the joint that opens most, {gap.body}, opens by {_size(gap)}")
+    return f"without a known cause: {'; '.join(texts)}" if texts else ""
+
+
+def _verdict(share: float) -> str:
+    """What is off, by the part of an error that is left at the logged angle of the driver."""
+    if share < SMALL:
+        return "it is the drive that is off, and not the geometry"
+    return "the drive does not explain it" if share > MOST else "the drive is a part of it"
+
+
+def _shape(scene: Scene, excerpt: Excerpt) -> str:
+    """How the error of a column goes on, by parts of its mean square; "" of a log that is too short
+    to show it, or of an error that is no number."""
+    angle = scene.driver.law.at(excerpt.instants)[0]
+    size = float(np.max(np.abs(excerpt.error), initial=0.0))
+    if excerpt.rows.size < LEAST_ROWS or np.ptp(angle) < LEAST_TURNS * math.tau or not size > 0.0:
+        return ""
+    shares = _shares(excerpt.instants, angle, excerpt.error / size)
+    parts = [
+        f"{share:.0%} {word}" for share, word in zip(shares, WORDS, strict=True) if share > TOLD
+    ]
+    return f"{_text(excerpt.channel.column)} {listed(parts)}"
+
+
+def _shares(time_s: Array, angle_rad: Array, error: Array) -> tuple[float, float, float, float]:
+    """The parts of the square of an error that a number, a line, and harmonics of the driver's
+    angle take off, one after the other, and what is left."""
+    middle = (time_s - time_s.mean()) / max(float(np.ptp(time_s)), np.finfo(float).tiny)
+    turns = np.outer(angle_rad, np.arange(1, HARMONICS + 1))
+    columns = np.column_stack([np.ones_like(middle), middle, np.cos(turns), np.sin(turns)])
+    basis = np.linalg.qr(columns)[0]
+    squares = (basis.T @ error) ** 2 / float(error @ error)
+    zero, line, again = float(squares[0]), float(squares[1]), float(np.sum(squares[2:]))
+    return zero, line, again, max(0.0, 1.0 - zero - line - again)
+
+
+def _size(error: Error) -> str:
+    return f"{error_text(error.maximum)} {error.unit}"
+
+
+def _text(column: str) -> str:
+    return cut(harmless(column[:LONGEST]), LONGEST)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from models.motion import State
 from models.scene import Scene
@@ -16,6 +17,7 @@ from reports.plan.elastic import (
     logged_every,
     refuse_unelastic,
 )
+from reports.quantities import ELASTIC
 from reports.way.length import SEGMENTS, GivenAs, Length, Planned
 from reports.way.way import StudyLengths, StudyLinks
 from reports.ways.driven import DrivenWay
@@ -23,25 +25,19 @@ from sim.engine import Drive
 
 if TYPE_CHECKING:
     from reports.compare.elastic.elastic_truth import ElasticTruth
-    from reports.own_log.log_kind import LogKind
-    from reports.requests.solving import Solving
-    from reports.verify.cell_table import CellTable
 
 
 class Bending:
     """What is particular to links that bend, whatever drives them; before the way of rigid ones."""
 
-    @property
-    def log(self) -> LogKind:
-        from reports.ways.elastic.log import LOG  # for logs alone
+    kinds: Sequence[str] = ("elastic",)
+    placed: Sequence[str] = ("deflection",)
+    no_case = "no elastic link in it"
 
-        return LOG
-
-    @property
-    def table(self) -> CellTable:
-        from reports.ways.elastic.table import TABLE  # what is shown is loaded when it is
-
-        return TABLE
+    def bends(self, row: Mapping[Any, Any]) -> bool:
+        """Whether links of a stored cell bend."""
+        segments = row.get("segments")  # a number, or none: NaN is not itself
+        return segments is not None and bool(segments == segments)
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
         return cut_scene(scene, given)
@@ -65,6 +61,11 @@ class ElasticWay(Bending, DrivenWay):
 
     name = "elastic"
     closed_form = False
+    limits = ELASTIC
+    roles = DrivenWay.roles | {"elastic"}
+
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        return self.bends(row)
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return bool(scene.elastic)
@@ -80,12 +81,6 @@ class ElasticWay(Bending, DrivenWay):
             return super().lengths(scene, study, given)
         held = held_steps(scene, given.segments, given.springs)
         return [Length(None, times * held, study.turns) for times in study.times_held]
-
-    @property
-    def solving(self) -> Solving:
-        from reports.requests.elastic_solution import DRIVEN  # slow to import
-
-        return DRIVEN
 
     def refuse(self, run: Planned) -> None:
         super().refuse(run)

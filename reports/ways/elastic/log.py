@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from models.controlled import Controlled
+from models.driver import Controlled, Released
 from models.errors import CrankcheckError
-from models.released import Released
+from models.scene import Scene
 from reports.causes.cause import Cause
 from reports.compare.beside import Truth
 from reports.compare.elastic.elastic_truth import ElasticBeside, ElasticTruth, elastic_truth
-from reports.logs.channel import OwnLog
+from reports.logs.channel import Channel, OwnLog
 from reports.logs.log_beside import LogBeside
 from reports.own_log.drives import DriveFit
 from reports.own_log.log_kind import HeldLog, LogRequest
 from reports.way.length import Springs
+from reports.ways.driven.log import DrivenLog
 from sim.engine import Run
 
 NO_CAUSE = "causes are not looked for where links bend"
@@ -67,7 +68,7 @@ class ElasticLogBeside(LogBeside, ElasticBeside):
         return False
 
 
-class ElasticLog:
+class ElasticLog(DrivenLog):
     """As of `LogKind`."""
 
     truth_name = "beam"
@@ -78,6 +79,10 @@ class ElasticLog:
     def beside(self, log: OwnLog, truth: Truth, run: Run) -> LogBeside:
         assert isinstance(truth, ElasticTruth)
         return ElasticLogBeside.of_log(truth, run)
+
+    def judged_as(self, scene: Scene, channel: Channel) -> tuple[str, ...]:
+        bent = channel.kind.quantity == "deflection"
+        return ("deflection", "segments") if bent else super().judged_as(scene, channel)
 
     def explained(self, held: HeldLog) -> tuple[Sequence[Cause], Sequence[str]]:
         return (), (NO_CAUSE,) if held.out else ()

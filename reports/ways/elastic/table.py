@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from reports.compare.elastic.elastic_facts import ElasticFacts
 from reports.judge.cell import Checked
 from reports.quantities import QUANTITIES
 from reports.verify.cell_table import CellTable
@@ -20,7 +21,7 @@ THEORIES = ("chain\n/ D", "doubt\n/ D", "linear\n/ D")
 def _theories(one: Checked) -> tuple[str, ...]:
     """What the segments leave of the beam, what the beam may be off by, and what the linear theory
     is off it by."""
-    facts = one.errors.elastic if one.errors else None
+    facts = ElasticFacts.of(one.errors)
     if facts is None:
         return ("-", "-", "-")
     about = "~" * facts.estimated

@@ -2,40 +2,53 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from typing import TYPE_CHECKING, NoReturn
+from collections.abc import Collection, Mapping, Sequence, Set
+from typing import Any, NoReturn
 
 import numpy as np
 
-from analytic.free.loosened import loosened
+from analytic.free.free_motion import loosened
 from analytic.kinematics import solve
 from models.array import Array
+from models.driver import LONGEST_S
 from models.errors import CrankcheckError
-from models.forces import Forces
-from models.motion import Motion, State
-from models.released import LONGEST_S
+from models.motion import Forces, Motion, State
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.compare.free.kept_motion import kept_motion, released_state
-from reports.judge.tolerance import FREE
+from reports.compare.free.free_facts import FreeFacts
+from reports.compare.free.free_truth import kept_motion, released_state
 from reports.plan.free import refuse_unreleased, under_control
 from reports.plan.steps import counted_free
+from reports.quantities import FREE, named
+from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import LEAST_STEPS, GivenAs, Length, Planned
-from reports.way.way import StudyLengths, Way
+from reports.way.way import StudyLengths
+from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
-if TYPE_CHECKING:
-    from reports.own_log.log_kind import LogKind
-    from reports.requests.solving import Solving
-    from reports.verify.cell_table import CellTable
+UNITS = (
+    "Let go: errors at the same time over G, by how much a small change of the start has grown; "
+    "geometry at the run's own angle; drift of energy over the largest kinetic energy T. Classes: "
+    "fine is a thousandth of the limit of the phase; 1e-1 and 1e-3 of the error as it is, and to "
+    "when 1e-3 holds."
+)
 
 
-class FreeWay(Way):
+class FreeWay(DrivenWay):
     """As of `Way`."""
 
     name = "free"
     drive: Drive = "free"
+    kinds: Sequence[str] = ("let go",)
     closed_form = False
+    limits: Mapping[str, Tolerance] = FREE
+    roles: Set[Role] = frozenset(("free", "place", "closure", "derived"))
+    placed: Sequence[str] = ("phase", *named("place"))
+    unlogged: Sequence[str] = ("energy",)
+    noted = True
+    no_case = "no case of free motion"
+    units = UNITS
+    over_g: Sequence[str] = FreeFacts.over_g
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return drive == "free"
@@ -51,26 +64,14 @@ class FreeWay(Way):
     def refuse(self, run: Planned) -> None:
         refuse_unreleased(run.scene, run.duration_s)
 
-    @property
-    def log(self) -> LogKind:
-        from reports.ways.free.log import LOG  # for logs alone
-
-        return LOG
-
-    @property
-    def table(self) -> CellTable:
-        from reports.ways.free.table import TABLE  # what is shown is loaded when it is
-
-        return TABLE
-
-    @property
-    def solving(self) -> Solving:
-        from reports.requests.free_solution import SOLVING  # for references alone
-
-        return SOLVING
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        return str(row["drive"]) == "free"
 
     def turn_s(self, scene: Scene) -> float:
         return 1.0
+
+    def moved(self, scene: Scene) -> Scene:
+        return loosened(scene)
 
     def note(self, scene: Scene, duration_s: float) -> str:
         return ""
@@ -83,7 +84,7 @@ class FreeWay(Way):
     drives: tuple[Drive, ...] = ("free",)
     lengths_by: tuple[str, ...] = ("--duration",)
     over = "in free motion"
-    tolerances: Collection[str] = FREE
+    targets: Collection[str] = FREE
     least_judged = LEAST_STEPS
 
     def refuse_length(self, option: str) -> NoReturn:

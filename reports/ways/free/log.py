@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
+from models.array import Array
 from models.errors import CrankcheckError, few
+from models.motion import Motion, Order
+from models.scene import Scene
 from reports.causes.cause import Cause
 from reports.compare.beside import Truth
 from reports.compare.errors import Error, Errors
-from reports.compare.free.free_truth import FreeTruth, free_truth_until
-from reports.compare.free.kept_motion import BEYOND
-from reports.judge.tolerance import FREE
-from reports.logs.channel import OwnLog, Reading
+from reports.compare.free.free_truth import BEYOND, FreeBeside, FreeTruth, free_truth_until
+from reports.compare.tracks import Track, tracks
+from reports.logs.channel import Channel, OwnLog, Reading, logged_motion
+from reports.logs.kinds import KINDS
 from reports.logs.log_beside import LogBeside
 from reports.output.numbers import error_text, listed, short
 from reports.own_log.drives import DriveFit
 from reports.own_log.log_kind import HeldLog, LogRequest
 from reports.own_log.log_limits import EVERY
 from reports.plan.free import refuse_unreleased
-from reports.ways.free.log_beside import FreeLogBeside
+from reports.quantities.free import GEOMETRY
 from sim.engine import Run
 
 LEAST_ROWS = 2
@@ -133,7 +138,7 @@ def _off_at_start(reading: Reading, truth: FreeTruth) -> tuple[float, str, float
 def told_of_no_limit(errors: Errors) -> Iterator[str]:
     """What the log has, and what is held to no limit in free motion, of an engine neither."""
     own = (row for row in errors.rows if row.source == "reported" and row.kind == "total")
-    names = dict.fromkeys(row.quantity for row in own if row.tolerance not in FREE)
+    names = dict.fromkeys(row.quantity for row in own if row.tolerance not in errors.limits)
     if names:
         yield f"held to no limit in free motion: {listed([f'{name} of bodies' for name in names])}"
 
@@ -143,7 +148,6 @@ def told_apart(errors: Errors) -> Iterator[str]:
     phase, geometry = errors.worst("phase", kind="raw"), errors.worst("geometry")
     if phase is None or geometry is None or not (phase.finite and geometry.finite):
         return
-    assert errors.free is not None
     left = geometry.pure / phase.pure if phase.pure > 0.0 else np.inf
     what = (
         "it is the geometry that is off"
@@ -154,7 +158,7 @@ def told_apart(errors: Errors) -> Iterator[str]:
     )
     yield (
         f"at the same time {phase.body} is off by {_size(phase)} at most, with a sensitivity of "
-        f"{short(errors.free.sensitivity)}; at its own angle {geometry.body} is off by "
+        f"{short(errors.of_motion.sensitivity)}; at its own angle {geometry.body} is off by "
         f"{_size(geometry)}: {what}; causes are not looked for in what was let go"
     )
 
@@ -167,6 +171,8 @@ class FreeLog:
     """As of `LogKind`."""
 
     truth_name = "free motion"
+    no_cause = "of {}: see the notes; none is looked for in what was let go"
+    driver_angle = "phase"
 
     def truth(self, log: OwnLog, request: LogRequest) -> tuple[OwnLog, Truth, DriveFit | None]:
         refuse_drives(log.scene.name, request.drive)
@@ -175,6 +181,14 @@ class FreeLog:
     def beside(self, log: OwnLog, truth: Truth, run: Run) -> LogBeside:
         assert isinstance(truth, FreeTruth)
         return FreeLogBeside.of_log(log, truth, run)
+
+    def judged_as(self, scene: Scene, channel: Channel) -> tuple[str, ...]:
+        """Places at the same time and at the log's own angle."""
+        kind = channel.kind
+        if kind.order:
+            return (kind.quantity,)
+        is_phase = (kind.name, channel.of) == ("angle", scene.driver.link)
+        return ("phase" if is_phase else kind.quantity, "geometry")
 
     def explained(self, held: HeldLog) -> tuple[Sequence[Cause], Sequence[str]]:
         assert isinstance(held.truth, FreeTruth)
@@ -187,3 +201,98 @@ class FreeLog:
 
 
 LOG = FreeLog()
+
+
+@dataclass(frozen=True)
+class FreeLogBeside(LogBeside, FreeBeside):
+    """A log as far as it goes, which is where the truth of it is known: ``unknown`` rows after it
+    were left out.
+
+    Geometry is that of the readings as they are, and not of what else was put on the truth at the
+    same time: where the phase has run away, that is of another position.
+    """
+
+    log: OwnLog = field(kw_only=True)
+    unknown: int = field(kw_only=True)
+
+    @staticmethod
+    def of_log(log: OwnLog, truth: FreeTruth, run: Run) -> FreeLogBeside:
+        """The log beside the truth, and the run that it amounts to."""
+        assert run.motion is not None
+        return FreeLogBeside(
+            truth,
+            run,
+            run.motion,
+            step_s=run.dt_s,
+            whole_run=run,
+            free=truth.free,
+            log=log,
+            unknown=log.left_out,
+        )
+
+    @property
+    def left_out(self) -> int:
+        return self.unknown
+
+    @property
+    def no_geometry(self) -> str:
+        driver = self.scene.driver.link
+        if not (self.has_crank and self._says("link", driver, "angle")):
+            return f"no geometry: the log has no angle of {driver} at the times of its rows"
+        if self.free.driver_tells or self._holds((0,)):
+            return ""
+        return (
+            f"no geometry: the angle of {driver} alone does not say where {self.scene.name} is; it "
+            "takes the angles of all links, and both coordinates of all points that move"
+        )
+
+    @property
+    def tells_momentum(self) -> bool:
+        return self._holds((0, 1))
+
+    @cached_property
+    def at_crank(self) -> Motion:
+        own = self.motion.links
+        rest = {name: link for name, link in self.reference.links.items() if name not in own}
+        return self.free.beside(replace(self.motion, links={**own, **rest}))
+
+    def tracks(self, quantities: Sequence[str], reference: Motion) -> tuple[Track, ...]:
+        if tuple(quantities) != (GEOMETRY.name,):
+            return super().tracks(quantities, reference)
+
+        def off(reading: Reading) -> Array:
+            return reading.channel.error(reading.values, reading.channel.expected(reference))
+
+        places = [each for each in self._at_rows if each.channel.kind.order == 0]
+        log = replace(self.log, readings=tuple(places))
+        run = replace(self.run, motion=logged_motion(log, lambda _: reference, off))
+        every = tracks(self.scene, run, reference, quantities)
+        return tuple(track for track in every if not np.all(np.isnan(track.error)))
+
+    @cached_property
+    def _at_rows(self) -> tuple[Reading, ...]:
+        """The readings that belong to the times of the rows."""
+        own = self.log.time_s
+        return tuple(each for each in self.log.readings if np.array_equal(each.instants, own))
+
+    def _says(self, body_kind: str, body: str, *names: str) -> bool:
+        """Whether there are readings of a body of all these names, for itself."""
+        held = {
+            each.channel.kind.name
+            for each in self._at_rows
+            if (each.channel.kind.body_kind, each.channel.of) == (body_kind, body)
+            and not each.channel.relative_to
+        }
+        return held.issuperset(names)
+
+    def _holds(self, orders: Sequence[Order]) -> bool:
+        """Whether the log says of every link and every point that moves all of some orders."""
+        scene = self.scene
+        points = {*scene.pins, *(slider.point for slider in scene.sliders.values())}
+        names = {
+            kind: [name for of, name in KINDS if of == kind and KINDS[of, name].order in orders]
+            for kind in ("link", "point")
+        }
+        return all(self._says("link", link, *names["link"]) for link in scene.links) and all(
+            self._says("point", point, *names["point"]) for point in points - {*scene.ground}
+        )

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from reports.compare.free.free_facts import FreeFacts
 from reports.judge.cell import Checked
-from reports.judge.precision import precision
 from reports.quantities import QUANTITIES, named
 from reports.verify.cell_table import CellTable
+from reports.ways.free.columns import precision
 
 FREE_NUMBERS = {
     QUANTITIES["phase"].head: ["phase"],
@@ -19,7 +20,7 @@ FREE_NUMBERS = {
 
 def _precision(one: Checked) -> list[str]:
     """The classes that are reached, and the time to which the high one of IFToMM's is."""
-    facts = one.errors.free if one.errors else None
+    facts = FreeFacts.of(one.errors)
     return [f"{precision(one)}\n{facts.horizon_s(1e-3):.3g} s" if facts else "-"]
 
 

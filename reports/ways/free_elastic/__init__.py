@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from models.motion import State
 from models.scene import Scene
@@ -14,6 +15,7 @@ from reports.plan.elastic import (
     shortened_note,
 )
 from reports.plan.free import LOOK
+from reports.quantities import FREE_ELASTIC
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
 from reports.ways.elastic import Bending
@@ -22,13 +24,18 @@ from sim.engine import Drive
 
 if TYPE_CHECKING:
     from reports.compare.elastic.elastic_truth import ElasticTruth
-    from reports.requests.solving import Solving
 
 
 class FreeElasticWay(Bending, FreeWay):
     """As of `Way`."""
 
     name = "free_elastic"
+    limits = FREE_ELASTIC
+    kinds = (*Bending.kinds, *FreeWay.kinds)
+    roles = FreeWay.roles | {"elastic"}
+
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        return super().stored(row) and self.bends(row)
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return super().takes(scene, drive) and bool(scene.elastic)
@@ -43,12 +50,6 @@ class FreeElasticWay(Bending, FreeWay):
         held_s, count = self.counted(scene, Length(duration_s=study.duration_s), given)
         lasts_s = held_s * count
         return [Length(held_s / times, duration_s=lasts_s) for times in study.times_held]
-
-    @property
-    def solving(self) -> Solving:
-        from reports.requests.elastic_solution import LET_GO  # slow to import
-
-        return LET_GO
 
     def refuse(self, run: Planned) -> None:
         super().refuse(run)

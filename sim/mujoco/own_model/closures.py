@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Container
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -9,8 +11,41 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.array import Array
-from sim.mujoco.own_model.fault import ModelError
-from sim.mujoco.own_model.naming import REMARK
+from models.errors import EngineError
+
+
+class ModelError(EngineError):
+    """A model that can not be read, or that is no planar mechanism with one driver."""
+
+
+MOST = 40
+SEPARATORS = "./:"
+"""What stands between the name of a body and that of a thing on it."""
+REMARK = ": "
+
+
+def scene_name(name: str, otherwise: str, taken: Container[str]) -> str:
+    """A name that a scene may have, and that is not taken: the model's own as far as that goes."""
+    plain = re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-_")[:MOST]
+    if not plain or not plain[0].isalpha():
+        plain = f"{otherwise}{'-' if plain else ''}{plain}"[:MOST]
+    unused, count = plain, 1
+    while unused in taken:
+        count += 1
+        tail = f"-{count}"
+        unused = plain[: MOST - len(tail)] + tail
+    return unused
+
+
+def point_of(name: str, bodies: Container[str]) -> str:
+    """What a name says of a point: ``crank.B`` on body ``crank`` is ``B``, and a remark after a
+    colon is left out."""
+    point = name.partition(REMARK)[0] or name
+    for at, sign in enumerate(point):
+        if sign in SEPARATORS and point[:at] in bodies and point[at + 1 :]:
+            return point[at + 1 :]
+    return point
+
 
 SITE = mujoco.mjtObj.mjOBJ_SITE.value
 IDLE = int(mujoco.mjtDisableBit.mjDSBL_EQUALITY) | int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)

@@ -2,24 +2,67 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import mujoco  # type: ignore[import-untyped]  # ships no stubs  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
+from models.array import Array
 from models.errors import few, suggestion
 from sim.mujoco.own_model.closures import (
     IDLE,
     Closure,
     Coupling,
+    ModelError,
     body_name,
     equalities,
     name_of,
 )
-from sim.mujoco.own_model.fault import ModelError
-from sim.mujoco.own_model.plane import Plane
+
+UP, ACROSS = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """Unit vectors in space, (3,): ``x`` and ``y`` in the plane, ``normal`` towards who looks at
+    it. Points and vectors of the plane are complex numbers; the origin is that of the world."""
+
+    x: Array
+    y: Array
+    normal: Array
+
+    @staticmethod
+    def across(axis: Array) -> Plane:
+        """The plane across an axis, seen from where the axis points to: counter-clockwise is
+        positive. Up is what is up in the world, or the y-axis of the world for the x-y plane."""
+        normal = axis / np.linalg.norm(axis)
+        up = UP if abs(normal @ UP) < 0.99 else ACROSS
+        y = up - (up @ normal) * normal
+        y /= np.linalg.norm(y)
+        return Plane(np.cross(y, normal), y, normal)
+
+    def flat(self, vector: Array) -> complex:
+        """The part of a point or vector in space (3,) that lies in the plane."""
+        return complex(vector @ self.x, vector @ self.y)
+
+    def height(self, vector: Array) -> float:
+        """Its part across the plane."""
+        return float(vector @ self.normal)
+
+    def off_normal_deg(self, axis: Array) -> float:
+        """By how much an axis is off the normal, whichever way it points [deg]."""
+        return math.degrees(
+            math.atan2(float(np.linalg.norm(np.cross(axis, self.normal))), abs(self.height(axis)))
+        )
+
+    def turned(self, rotation: Array) -> tuple[float, float]:
+        """By how much a rotation (3, 3) turns within the plane [rad], and tilts out of it [deg]."""
+        turn = self.flat(rotation @ self.x)
+        return math.atan2(turn.imag, turn.real), self.off_normal_deg(rotation @ self.normal)
+
 
 JOINTS = {
     kind.value: kind.name.removeprefix("mjJNT_").lower()
@@ -212,3 +255,40 @@ def _joint(model: Any, data: Any, plane: Plane, index: int) -> PlanarJoint:
         )
     direction = plane.flat(axis)
     return PlanarJoint(index, name, "slide", anchor, direction / abs(direction), 1.0)
+
+
+NOTHING = 1e-9
+"""Singular values of the closures below this, over the largest, hold nothing; shares of a motion
+below its root are rounding."""
+
+
+def loose_joints(component: Component) -> list[str]:
+    """The joints that move in some motion of the model as it is drawn, while the driven one stands:
+    the null space of the Jacobian of its closures."""
+    model = component.model
+    joints = [
+        joint.index
+        for body in component.bodies
+        for joint in body.joints
+        if joint.index != component.driven
+    ]
+    columns = [int(model.jnt_dofadr[joint]) for joint in joints]
+    rows = [_rows(component, each)[:, columns] for each in component.closures]
+    if not joints:
+        return []
+    _, values, directions = np.linalg.svd(np.vstack(rows))
+    held = int(np.count_nonzero(values > NOTHING * (values[0] or 1.0)))
+    moving = np.abs(directions[held:]).max(axis=0, initial=0.0) > NOTHING**0.5
+    return [joint_name(model, joint) for joint, moves in zip(joints, moving, strict=True) if moves]
+
+
+def _rows(component: Component, closure: Closure) -> Array:
+    """The speeds in the plane that a closure forbids, (2 or 3, nv)."""
+    model, data, plane = component.model, component.data, component.plane
+    ends = []
+    for body, anchor in zip(closure.bodies, closure.anchors, strict=True):
+        along, about = np.zeros((3, model.nv)), np.zeros((3, model.nv))
+        mujoco.mj_jac(model, data, along, about, anchor, body)
+        ends.append([plane.x @ along, plane.y @ along, plane.normal @ about])
+    rows: Any = np.array(ends[1]) - np.array(ends[0])
+    return np.asarray(rows if closure.kind == "weld" else rows[:2])

@@ -2,17 +2,210 @@
 
 from __future__ import annotations
 
+import cmath
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from models.array import Array
-from sim.mujoco.own_model.limbs import Limbs
-from sim.mujoco.own_model.linkage import Linkage
-from sim.mujoco.own_model.matter import Matter
-from sim.mujoco.own_model.points import size
-from sim.mujoco.own_model.scene import SceneRead
+from models.joints import blocks, sliding_angle
+from models.motion import State
+from models.scene import GROUND, Scene
+from models.tree import Freedom, Limb
+from sim.mujoco.own_model.component import WORLD
+from sim.mujoco.own_model.linkage import Linkage, Placement, pair, size
+from sim.mujoco.own_model.scene import Matter, SceneRead
+
+
+@dataclass(frozen=True)
+class Limbs:
+    """Limbs, parents before children.
+
+    Of each freedom, in their order, the columns of qpos and qvel, and -1 where MuJoCo counts it
+    clockwise. ``shown`` says which limb shows a body of the scene, ``of`` which body a limb belongs
+    to.
+    """
+
+    limbs: tuple[Limb, ...]
+    positions: tuple[int, ...]
+    rates: tuple[int, ...]
+    senses: tuple[float, ...]
+    shown: Mapping[str, str]
+    of: Mapping[str, str]
+
+
+def limbs_of(linkage: Linkage, read: SceneRead) -> Limbs:
+    """The limbs of a linkage: each has the frame of the body of the scene that it belongs to."""
+    model = linkage.component.model
+    called = {WORLD: GROUND}
+    own: dict[int, Placement] = {WORLD: Placement()}
+    limbs, positions, rates, senses = [], [], [], []
+    shown, of = {}, {}
+    for body in linkage.component.bodies:
+        link, placement = linkage.placements[body.id]
+        first = body.id == link
+        called[body.id] = read.names[link] if first else f"{read.names[link]}: {body.id}"
+        own[body.id] = read.frames[link].after(placement)
+        of[called[body.id]] = read.names[link]
+        if first:
+            shown[read.names[link]] = called[body.id]
+        mine, base = own[body.id], own[body.parent]
+        freedoms = []
+        for joint in body.joints:
+            ref = joint.sense * float(model.qpos0[model.jnt_qposadr[joint.index]])
+            axis = 0.0 if joint.kind == "hinge" else cmath.phase(mine.turn * joint.direction)
+            freedoms.append(
+                Freedom(joint.name, joint.kind, pair(mine(joint.anchor)), axis, ref, 0.0)
+            )
+            positions.append(int(model.jnt_qposadr[joint.index]))
+            rates.append(int(model.jnt_dofadr[joint.index]))
+            senses.append(joint.sense)
+        drawn = -mine.shift / mine.turn
+        angle = cmath.phase(base.turn / mine.turn)
+        limbs.append(
+            Limb(called[body.id], called[body.parent], pair(base(drawn)), angle, tuple(freedoms))
+        )
+    return Limbs(tuple(limbs), tuple(positions), tuple(rates), tuple(senses), shown, of)
+
+
+@dataclass(frozen=True)
+class _Moving:
+    """A frame in the plane: place, angle, and their first and second rates."""
+
+    place: complex
+    theta: float
+    speed: complex
+    omega: float
+    push: complex
+    alpha: float
+
+
+STILL = _Moving(0j, 0.0, 0j, 0.0, 0j, 0.0)
+
+
+def coordinates(
+    limbs: Limbs, scene: Scene, state: State, near: Array
+) -> tuple[Array, Array, Array]:
+    """Joint coordinates with their first and second rates at a state, (n,) each, in the order of
+    the freedoms and in the senses of the scene; hinges read the whole turns that bring them nearest
+    to the coordinates ``near``."""
+    moving = {GROUND: STILL} | _moving(scene, state)
+    q: list[float] = []
+    rate: list[float] = []
+    push: list[float] = []
+    for limb in limbs.limbs:
+        base = moving[limbs.of.get(limb.parent, GROUND)]
+        relative = _seen_from(base, moving[limbs.of[limb.body]])
+        for values, found in zip((q, rate, push), _joints(limb, relative), strict=True):
+            values.extend(found)
+    hinges = [freedom.kind == "hinge" for limb in limbs.limbs for freedom in limb.freedoms]
+    turns = np.where(hinges, np.round((near - np.array(q)) / math.tau), 0.0)
+    return np.array(q) + math.tau * turns, np.array(rate), np.array(push)
+
+
+def _moving(scene: Scene, state: State) -> dict[str, _Moving]:
+    """The frames of links and blocks at a state."""
+    frames: dict[str, _Moving] = {GROUND: STILL}
+    for link in scene.links.values():
+        theta, omega, alpha = (each[link.name] for each in (state.theta, state.omega, state.alpha))
+        point = next((name for name in link.points), None)
+        if point is None:
+            continue
+        arm = complex(*link.points[point]) * cmath.exp(1j * theta)
+        frames[link.name] = _Moving(
+            complex(*state.position[point]) - arm,
+            theta,
+            complex(*state.velocity[point]) - 1j * omega * arm,
+            omega,
+            complex(*state.acceleration[point]) - (1j * alpha - omega**2) * arm,
+            alpha,
+        )
+    for name, slider in blocks(scene).items():
+        guide = frames[slider.on]
+        frames[name] = _Moving(
+            complex(*state.position[slider.point]),
+            guide.theta + sliding_angle(slider),
+            complex(*state.velocity[slider.point]),
+            guide.omega,
+            complex(*state.acceleration[slider.point]),
+            guide.alpha,
+        )
+    return frames
+
+
+def _seen_from(base: _Moving, body: _Moving) -> _Moving:
+    """A frame as another one sees it."""
+    back = cmath.exp(-1j * base.theta)
+    place = body.place - base.place
+    turning = 1j * base.omega
+    speed = body.speed - base.speed - turning * place
+    push = body.push - base.push - (1j * base.alpha - base.omega**2) * place - 2 * turning * speed
+    return _Moving(
+        back * place,
+        body.theta - base.theta,
+        back * speed,
+        body.omega - base.omega,
+        back * push,
+        body.alpha - base.alpha,
+    )
+
+
+def _joints(limb: Limb, seen: _Moving) -> tuple[list[float], list[float], list[float]]:
+    """The coordinates of the joints of a limb with their rates, where its parent sees it so."""
+    turn = math.remainder(seen.theta - limb.angle_rad, math.tau)
+    angle, place = limb.angle_rad, complex(*limb.offset)
+    pivot, after = place, False
+    axes: list[complex] = []
+    late: list[bool] = []
+    for freedom in limb.freedoms:
+        frame = cmath.exp(1j * angle)
+        if freedom.kind == "slide":
+            axes.append(frame * complex(*freedom.axis))
+            late.append(after)
+            continue
+        pivot = place + frame * complex(*freedom.anchor)
+        angle += turn
+        place = pivot - cmath.exp(1j * angle) * complex(*freedom.anchor)
+        after = True
+    slid = _split(axes, seen.place - place)
+    # The pivot moves with the slides before the hinge; those after it turn with it.
+    moved = pivot + sum((x * d for x, d, own in zip(slid, axes, late, strict=True) if not own), 0j)
+    arm = seen.place - moved
+    spin = 1j * seen.omega if after else 0j
+    sped = _split(axes, seen.speed - spin * arm)
+    turning = sum((v * d for v, d, own in zip(sped, axes, late, strict=True) if own), 0j)
+    swing = (1j * seen.alpha - seen.omega**2) * arm if after else 0j
+    pushed = _split(axes, seen.push - swing - 2 * spin * turning)
+    own_turn = ((turn, seen.omega, seen.alpha), slid, sped, pushed)
+    return _in_order(limb, own_turn)
+
+
+def _in_order(
+    limb: Limb,
+    values: tuple[tuple[float, float, float], list[float], list[float], list[float]],
+) -> tuple[list[float], list[float], list[float]]:
+    """Coordinates from their refs on, and rates, in the order of the freedoms."""
+    turns, slid, sped, pushed = values
+    slides = iter(zip(slid, sped, pushed, strict=True))
+    rows = [turns if freedom.kind == "hinge" else next(slides) for freedom in limb.freedoms]
+    refs = [freedom.ref for freedom in limb.freedoms]
+    return (
+        [ref + row[0] for ref, row in zip(refs, rows, strict=True)],
+        [row[1] for row in rows],
+        [row[2] for row in rows],
+    )
+
+
+def _split(axes: Sequence[complex], vector: complex) -> list[float]:
+    """The vector as a sum of axes. What no axis can reach stays; `sim.check` sees it."""
+    if not axes:
+        return []
+    matrix = np.array([[axis.real for axis in axes], [axis.imag for axis in axes]])
+    solution, *_ = np.linalg.lstsq(matrix, np.array([vector.real, vector.imag]), rcond=None)
+    return [float(each) for each in solution]
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,8 +19,7 @@ from models.motion import State
 from models.scene import Scene
 from models.tree import Limb
 from sim.engine import Drive, Facts, Log, Poses, Settings
-from sim.mujoco.own_model.limbs import coordinates
-from sim.mujoco.own_model.planar_model import PlanarModel
+from sim.mujoco.own_model.planar_model import PlanarModel, coordinates
 from sim.mujoco.own_model.variants import applied, held
 from sim.mujoco.settings import INTEGRATORS
 from sim.mujoco.stepped import VERSION, SteppedModel

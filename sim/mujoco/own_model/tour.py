@@ -11,12 +11,10 @@ import numpy as np
 
 from models.motion import State
 from models.scene import Scene
-from sim.mujoco.own_model.closures import body_name, name_of
+from sim.mujoco.own_model.closures import ModelError, body_name, name_of
 from sim.mujoco.own_model.component import JOINTS, joint_name, rigid
-from sim.mujoco.own_model.fault import ModelError
-from sim.mujoco.own_model.limbs import coordinates
-from sim.mujoco.own_model.planar_model import PlanarModel
-from sim.mujoco.own_model.points import size
+from sim.mujoco.own_model.linkage import size
+from sim.mujoco.own_model.planar_model import PlanarModel, coordinates
 from sim.mujoco.stepped import heard
 from sim.own_models import Tour
 

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from analytic.assur.assemblies import Assembly, assemblies
+from analytic.assur.eliminant import ContinuumError
 from analytic.assur.leg_rows import AngleRow, CircleRow, LegRow, LegRows, LineRow, ThroughRow
-from analytic.assur.shared_line import ContinuumError
 from models.errors import CrankcheckError
 from models.scene import Point
 from tests.analytic.assur.homotopy import real, solutions

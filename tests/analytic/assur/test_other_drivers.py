@@ -11,9 +11,9 @@ import pytest
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.structure.mobility import analyse
 from models.array import Array
-from models.driver_course import driver_course
+from models.driver import driver_course
 from models.errors import ReachError
-from models.files import load_scene, parse_scene
+from models.files.reading import load_scene, parse_scene
 from models.motion import Motion
 from models.scene import Scene
 from tests.analytic.chain import coordinates

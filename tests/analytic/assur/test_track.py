@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.assur.group_steps import prepare
 from analytic.assur.platform import solve_platform
 from analytic.assur.step import AssurStep
 from analytic.dyads.plane import BodyKinematics
 from analytic.kinematics import solve
+from analytic.prepared import prepare
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import ReachError

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from models.files import parse_scene
+from models.files.reading import parse_scene
 from models.scene import Scene
 
 KINDS = tuple(

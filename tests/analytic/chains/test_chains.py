@@ -7,11 +7,16 @@ import itertools
 import numpy as np
 import pytest
 
+from analytic.lectures.chains.assur_groups import Mechanism, assur_groups, inversions
 from analytic.lectures.chains.chain import Chain, assortments, has_rigid_part
-from analytic.lectures.chains.inversions import Mechanism, assur_groups, inversions
+from analytic.lectures.chains.chain_synthesis import (
+    chain_names,
+    chains,
+    every_joint_moves,
+    type_in_letters,
+    types,
+)
 from analytic.lectures.chains.layout import layout
-from analytic.lectures.chains.number_synthesis import chain_names, chains
-from analytic.lectures.chains.type_synthesis import every_joint_moves, type_in_letters, types
 from models.errors import CrankcheckError
 from tests.worlds.tiers import few
 

@@ -18,11 +18,11 @@ from analytic.kinematics import reach, solve, solve_driven
 from analytic.mechanism.travel import travel
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
-from models.files import parse_scene
+from models.files.reading import parse_scene
+from models.hard import Chain
 from models.laws import FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
 from models.scene import Scene
-from models.window_chain import Chain
 from tests.analytic import four_bars, oracle
 from tests.analytic.chain import law_at
 from tests.analytic.change_points import jets

@@ -16,13 +16,13 @@ from analytic.free.window_chain import ChainMotion
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
+from models.hard import Chain
+from models.joints import centre_of, frames
 from models.motion import Motion
-from models.poses import centre_of, frames
 from models.scene import Same, Scene
-from models.window_chain import Chain
 from reports.compare.beside import truth_of
-from reports.contract.let_go import centres
+from reports.contract.oscillators import centres
 from tests.analytic.chain import coordinates
 from tests.analytic.imported import reached
 from tests.analytic.test_bounds import SIX

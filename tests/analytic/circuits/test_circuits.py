@@ -11,17 +11,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.circuits.circuits import Position, circuits_of
-from analytic.circuits.dead_points import dead_points
-from analytic.circuits.own_arc import own_arc
-from analytic.circuits.rotatability import Rotation, rotations
-from analytic.circuits.transmission import transmissions
-from analytic.dyads.driven import driver_scale
+from analytic.circuits.arcs import own_arc
+from analytic.circuits.circuits import Position, circuits_of, transmissions
+from analytic.circuits.rotatability import Rotation, dead_points, rotations
+from analytic.dyads.chunk import driver_scale
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.mechanism.fourbar import FourBar
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.scene import Scene
 from tests.analytic.four_bars import fourbar, random_bars
 from tests.worlds.tiers import few, slowly

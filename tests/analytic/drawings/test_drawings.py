@@ -12,20 +12,17 @@ import pytest
 
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.lectures.drawings import graphical
-from analytic.lectures.drawings.centrodes import centrodes
-from analytic.lectures.drawings.curvature_circles import curvature_circles
-from analytic.lectures.drawings.drawn_polygons import DrawnPolygons, draw_polygons
+from analytic.lectures.drawings.drawn_polygons import DrawnPolygons, draw_polygons, similarity
 from analytic.lectures.drawings.graphical import Method, Plotted, by_chords, three_graphs
-from analytic.lectures.drawings.instant_centres import instant_centres
-from analytic.lectures.drawings.paper_scale import book_scales, round_scale
+from analytic.lectures.drawings.instant_centres import centrodes, curvature_circles, instant_centres
 from analytic.lectures.drawings.placed_mechanism import DriverState
 from analytic.lectures.drawings.polygon import Vector
-from analytic.lectures.drawings.similarity import similarity
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.motion import Motion, Order
 from models.scene import Scene
+from reports.lectures.drawing.sheets.paper import book_scales, round_scale
 from tests.worlds.tiers import slowly
 
 OMEGA, ALPHA = 10.0, 3.0

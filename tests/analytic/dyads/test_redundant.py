@@ -11,7 +11,7 @@ from analytic.kinematics import reach, solve, solve_driven
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError, StructureError
-from models.files import load_scene, parse_scene
+from models.files.reading import load_scene, parse_scene
 from models.laws import Oscillating
 from models.motion import LinkMotion
 from models.scene import Driver, Link, Point, Scene

@@ -17,7 +17,7 @@ from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.multibody.multibody_motion import MultibodyMotion
 from analytic.multibody.release_multibody import Acting, release_multibody
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.laws import ConstantSpeed, Law
 from models.motion import Motion
 from models.scene import Scene

@@ -18,16 +18,14 @@ from analytic.elastic.discretisation import (
     Polynomials,
     Segments,
 )
-from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.sampled import bent, sampled
-from analytic.elastic.stiffness import fastest_rad_s
+from analytic.elastic.elastic_motion import DrivenElasticMotion, bent, fastest_rad_s, sampled
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from benchmarks.elastic_theories import row
 from models.array import Array
 from models.elastic import Shape
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
 from models.moved_scene import scaled
@@ -192,7 +190,7 @@ def motion() -> DrivenElasticMotion:
 def test_some_at_a_time_it_is_the_same(
     motion: DrivenElasticMotion, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("analytic.elastic.sampled.TOGETHER", 3)
+    monkeypatch.setattr("analytic.elastic.elastic_motion.TOGETHER", 3)
     time_s = np.array([0.7, 0.1, 0.3, 0.0, 0.9, 0.5, 0.2])
     whole, each = motion.at(time_s), sampled(motion, time_s)
     for found, wanted in (

@@ -9,21 +9,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.elastic.cubic_nodes import CubicNodes, cubic_nodes, strain_places
 from analytic.elastic.discretisation import REFERENCE, Discretisation, Polynomials, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.node_start import node_start
-from analytic.elastic.segment_start import segment_start
+from analytic.elastic.engine_start import (
+    CubicNodes,
+    cubic_nodes,
+    node_start,
+    segment_start,
+    strain_places,
+)
 from analytic.forces.kinetostatics import forces
 from models.array import Array
-from models.beamed import BeamedScene
+from models.cut_scenes import BeamedScene, SegmentedScene
 from models.elastic import Shape
 from models.errors import CrankcheckError
-from models.files import parse_scene
+from models.files.reading import parse_scene
+from models.loads import PinSpring
 from models.motion import Motion, State
 from models.scene import Scene
-from models.segmented import SegmentedScene
-from models.springs import PinSpring
 from tests.analytic.elastic.driven import fourbar, largest, with_elastic
 from tests.worlds.tiers import slowly
 

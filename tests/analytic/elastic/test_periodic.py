@@ -15,22 +15,31 @@ from scipy.special import mathieu_a, mathieu_b  # type: ignore[import-untyped]  
 from analytic.elastic import periodic
 from analytic.elastic.discretisation import Discretisation, Elements, Modes, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.linearised import LinearForm, linearise
 from analytic.elastic.natural import lowest_rad_s, natural_modes
-from analytic.elastic.periodic import PeriodicMotion, instants, linear_motion, periodic_motion
+from analytic.elastic.periodic import (
+    LinearForm,
+    PeriodicMotion,
+    instants,
+    linear_motion,
+    linearise,
+    periodic_motion,
+)
 from analytic.elastic.reduced import ReducedForm
 from analytic.elastic.vibration import vibrate
-from analytic.lectures.vibration.any_speed import AnySpeed, apart, at_speed
-from analytic.lectures.vibration.floquet import stability, stability_of
-from analytic.lectures.vibration.monodromy import by_collocation, by_newmark
-from analytic.lectures.vibration.over_inertia import over_inertia
-from analytic.lectures.vibration.over_speeds import OverSpeeds, over_speeds, spectra
-from analytic.lectures.vibration.steady_vibration import steady_vibration
-from analytic.lectures.vibration.swing import spectrum, swings
+from analytic.lectures.vibration.floquet import by_collocation, by_newmark, stability, stability_of
+from analytic.lectures.vibration.over_speeds import OverSpeeds, over_inertia, over_speeds, spectra
+from analytic.lectures.vibration.steady_vibration import (
+    AnySpeed,
+    apart,
+    at_speed,
+    spectrum,
+    steady_vibration,
+    swings,
+)
 from models.array import Array
 from models.characteristics import Polynomial, Sine
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.laws import ConstantSpeed, FromRest
 from models.loads import Load
 from models.scene import Scene

@@ -13,24 +13,23 @@ import pytest
 
 from analytic.elastic.control import ControlledForces, control_elastic, released_under_control
 from analytic.elastic.discretisation import Discretisation, Elements, Modes, Segments
-from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.elastic_motion import DrivenElasticMotion, fastest_rad_s
 from analytic.elastic.released import assembled, release_elastic
-from analytic.elastic.stiffness import fastest_rad_s
 from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
 from analytic.kinematics import solve
 from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
-from models.controlled import Controlled
+from models.characteristics import FourierSum, Pulse
+from models.driver import Controlled
 from models.elastic import Shape
 from models.errors import CrankcheckError, SceneError
-from models.files import find_scene, load_scene, parse_scene
+from models.files.assemble import scene_text
+from models.files.reading import find_scene, load_scene, parse_scene
 from models.laws import ConstantSpeed
 from models.loads import Load
-from models.mjcf import build
+from models.mjcf.document import build
 from models.scene import Scene
-from models.scene_text import scene_text
-from models.waves import FourierSum, Pulse
 from sim.check import refuse_unknown_forces
 from sim.registry import ENGINES, engine
 from tests.analytic.elastic.driven import apart, by_multipliers, following, largest, with_elastic

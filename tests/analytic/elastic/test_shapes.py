@@ -10,14 +10,18 @@ import pytest
 from scipy.integrate import solve_ivp  # type: ignore[import-untyped]
 
 from analytic.elastic.beam import Beam, ElasticBody
-from analytic.elastic.elements import HermiteElements
-from analytic.elastic.modes import SineModes
-from analytic.elastic.polynomials import LegendrePolynomials
-from analytic.elastic.segments import SegmentChain, SegmentedBody
-from analytic.elastic.shapes import Shapes, places, shortening
+from analytic.elastic.discretisation import SegmentChain, SegmentedBody
+from analytic.elastic.shapes import (
+    HermiteElements,
+    LegendrePolynomials,
+    Shapes,
+    SineModes,
+    places,
+    shortening,
+)
 from models.array import Array
+from models.cut_links import Line
 from models.elastic import ElasticLink
-from models.elastic_line import Line
 
 LENGTH_M, DENSITY_KG_M, FLEXURAL_N_M2, AXIAL_N = 0.75, 0.243, 4.725, 6.3e6
 LINK = ElasticLink("rod", FLEXURAL_N_M2, AXIAL_N)

@@ -14,15 +14,14 @@ from scipy.integrate import solve_ivp  # type: ignore[import-untyped]
 from analytic.elastic import vibration
 from analytic.elastic.discretisation import Discretisation, Elements, Modes, Polynomials, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.radau_nodes import radau
+from analytic.elastic.free_windows import radau
 from analytic.elastic.reduced import ReducedForm
-from analytic.elastic.tangent import SlopesOverWindows, tangent
-from analytic.elastic.vibration import vibrate
-from analytic.free.gauss import gauss
+from analytic.elastic.vibration import SlopesOverWindows, tangent, vibrate
+from analytic.free.window import gauss
 from analytic.multibody.multibody_motion import Baumgarte, Method, Projection
 from models.elastic import Shape
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.laws import FromRest
 from models.motion import Motion
 from models.scene import Scene

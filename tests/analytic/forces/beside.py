@@ -10,8 +10,7 @@ import numpy as np
 from analytic.forces import kinetostatics
 from analytic.kinematics import solve, solve_driven
 from models.array import Array
-from models.forces import Forces
-from models.motion import Motion
+from models.motion import Forces, Motion
 from models.scene import Scene
 from tests.second_opinions import multipliers, power
 

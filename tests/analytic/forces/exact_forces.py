@@ -18,11 +18,9 @@ from mpmath import matrix, mp, mpc, mpf
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.characteristics import Characteristic, Constant, Polynomial, Sine
-from models.friction import CoulombFriction
 from models.joints import block_name, local_point, sliding_body
-from models.loads import Load
+from models.loads import CoulombFriction, Load, PinSpring, SlideSpring, Spring
 from models.scene import GROUND, Point, Scene, Slider
-from models.springs import PinSpring, SlideSpring, Spring
 from models.tabulated import Tabulated
 from tests.analytic.chain import Solved, law_at
 from tests.analytic.change_points.jets import Number

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from mpmath import mpf
 
+from analytic.forces.force_elements import spring_lengths
 from analytic.forces.kinetostatics import forces
-from analytic.forces.springs import spring_lengths
 from analytic.kinematics import chunks, solve
 from models.array import Array
-from models.files import load_scene, shipped
-from models.forces import Forces
+from models.files.reading import load_scene, shipped
+from models.motion import Forces
 from models.moved_scene import moved
 from models.scene import Scene
 from tests.analytic.chain import Chain, coordinates

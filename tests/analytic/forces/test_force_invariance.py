@@ -16,9 +16,9 @@ from analytic.forces import kinetostatics
 from analytic.structure.mobility import sides_of
 from models import moved_scene
 from models.characteristics import Characteristic, Constant, Polynomial, Sine
-from models.files import load_scene, shipped
-from models.forces import Forces
-from models.friction import ConstantFriction, CoulombFriction, Friction
+from models.files.reading import load_scene, shipped
+from models.loads import ConstantFriction, CoulombFriction, Friction
+from models.motion import Forces
 from models.scene import Scene
 from models.tabulated import Tabulated
 from tests.analytic.forces.beside import apart, turn, unlocked

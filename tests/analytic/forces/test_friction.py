@@ -13,9 +13,9 @@ from analytic.forces import kinetostatics
 from analytic.forces.efficiency import friction_power
 from analytic.kinematics import reach, solve
 from models.errors import CrankcheckError
-from models.files import load_scene, parse_scene, shipped
-from models.forces import Forces
-from models.friction import ConstantFriction, CoulombFriction
+from models.files.reading import load_scene, parse_scene, shipped
+from models.loads import ConstantFriction, CoulombFriction
+from models.motion import Forces
 from models.scene import Scene
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.analytic.forces.beside import AGREED, agreed, apart, at, out_of_balance, series, turn

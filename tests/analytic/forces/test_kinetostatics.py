@@ -11,17 +11,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analytic.forces.force_elements import spring_lengths
 from analytic.forces.kinetostatics import forces
-from analytic.forces.springs import spring_lengths
 from analytic.kinematics import chunks, reach, solve, solve_driven
 from models.characteristics import Constant, Polynomial
 from models.errors import CrankcheckError
-from models.files import load_scene, parse_scene
+from models.files.reading import load_scene, parse_scene
 from models.laws import ConstantSpeed
-from models.loads import Load
+from models.loads import LineSpring, Load, PinSpring, SlideSpring
 from models.motion import Motion
 from models.scene import GROUND, Driver, Scene
-from models.springs import LineSpring, PinSpring, SlideSpring
 from models.tabulated import Tabulated
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.analytic.forces.beside import AGREED, agreed, apart, at, out_of_balance, series, turn

@@ -12,12 +12,12 @@ import pytest
 
 from analytic.forces.kinetostatics import forces
 from analytic.forces.late_impulses import ON_TIME, LateImpulses, late_impulses
-from analytic.forces.reduced_machine import reduced_machine
+from analytic.forces.virtual_power import reduced_machine
 from analytic.kinematics import solve
 from models.array import Array
 from models.characteristics import Constant
 from models.errors import CrankcheckError
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.laws import Accelerating, ConstantSpeed
 from models.loads import Load
 from models.scene import Driver

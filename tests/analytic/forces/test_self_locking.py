@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from analytic.forces import kinetostatics
-from analytic.forces.coulomb import (
+from analytic.forces.efficiency import efficiency, friction_power, self_locking
+from analytic.forces.friction import (
     SOLVED,
     CoulombErrors,
     CoulombSystem,
@@ -21,14 +22,12 @@ from analytic.forces.coulomb import (
     solve_small,
     weights,
 )
-from analytic.forces.efficiency import efficiency, friction_power
-from analytic.forces.self_locking import self_locking
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import parse_scene
-from models.friction import ConstantFriction, CoulombFriction
+from models.files.reading import parse_scene
 from models.laws import Accelerating, Oscillating
+from models.loads import ConstantFriction, CoulombFriction
 from models.scene import Driver, Scene
 from tests.worlds.loading import rubbed_mechanism
 from tests.worlds.tiers import slowly

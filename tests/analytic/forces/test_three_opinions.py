@@ -14,10 +14,9 @@ from analytic.forces.virtual_power import torque_by_power
 from analytic.kinematics import solve
 from analytic.prepared import prepared
 from models.array import Array
-from models.files import load_scene, parse_scene, shipped
-from models.forces import Forces
+from models.files.reading import load_scene, parse_scene, shipped
 from models.laws import Accelerating
-from models.motion import Motion
+from models.motion import Forces, Motion
 from models.scene import Driver, Scene
 from tests.analytic.assur.triad_scenes import KINDS, triad
 from tests.analytic.forces.beside import (

@@ -16,7 +16,7 @@ from analytic.free.machine import Machine
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
 from models.array import Array
-from models.poses import centre_of, mass_of
+from models.joints import centre_of, mass_of
 from models.scene import Scene, as_bytes
 from tests.analytic.multibody.scenes import scene
 from tests.second_opinions.constraints import Constraints

@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from analytic.free.doubt import _moved
+from analytic.free.coordinate_history import _moved
 from analytic.free.limit_position import REACH
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
 from analytic.free.toggle_barrier import ToggleBarrier
 from models.array import Array
+from models.driver import let_go
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.hard import fourbar as triple_rocker
-from models.released import let_go
 from models.scene import Scene
 from tests.analytic.free.mechanisms import (
     fourbar,

@@ -12,26 +12,20 @@ import numpy as np
 import pytest
 
 from analytic.free.bodies_motion import BodiesMotion
-from analytic.free.formula_change import FormulaChange
 from analytic.free.free_motion import FreeMotion
+from analytic.free.kinks import FormulaChange, WindowKinks
 from analytic.free.machine import Machine
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
 from analytic.free.window import WindowSolution
-from analytic.free.window_kinks import WindowKinks
 from analytic.kinematics import reach
 from analytic.multibody.multibody_motion import Projection
-from models.characteristics import Constant
+from models.characteristics import Constant, Pulse, Staircase
 from models.errors import CrankcheckError, StructureError
-from models.files import load_scene, parse_scene
-from models.friction import ConstantFriction, CoulombFriction
-from models.loads import Load
-from models.scene import Scene
-from models.springs import LineSpring, PinSpring
-from models.staircase import Staircase
-from models.start import Start
+from models.files.reading import load_scene, parse_scene
+from models.loads import ConstantFriction, CoulombFriction, LineSpring, Load, PinSpring
+from models.scene import Scene, Start
 from models.tabulated import Tabulated
-from models.waves import Pulse
 from tests.analytic.free.mechanisms import (
     driver_by_steps,
     fourbar,

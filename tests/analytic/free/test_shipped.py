@@ -25,11 +25,11 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.characteristics import Constant
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
+from models.hard import UPRIGHT, Chain
+from models.joints import centre_of, mass_of
 from models.loads import Load
-from models.poses import centre_of, mass_of
 from models.scene import Scene
-from models.window_chain import UPRIGHT, Chain
 from tests.analytic.free.mechanisms import (
     driver_by_steps,
     fourbar,

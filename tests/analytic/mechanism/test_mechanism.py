@@ -10,17 +10,19 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve, solve_driven
-from analytic.mechanism.coriolis import coriolis
 from analytic.mechanism.cycle import Along, Output, series
-from analytic.mechanism.fourbar import FourBar
-from analytic.mechanism.grashof import four_bar_type, inverted_slider_crank_type, slider_crank_type
-from analytic.mechanism.grashof_of_scene import grashof_of
-from analytic.mechanism.speeds import extreme_speeds
-from analytic.mechanism.travel import Travel, travel, travels
+from analytic.mechanism.fourbar import (
+    FourBar,
+    four_bar_type,
+    grashof_of,
+    inverted_slider_crank_type,
+    slider_crank_type,
+)
+from analytic.mechanism.travel import Travel, coriolis, extreme_speeds, travel, travels
+from models.driver import passing
 from models.errors import CrankcheckError, ReachError, StructureError
-from models.files import load_scene, parse_scene
+from models.files.reading import load_scene, parse_scene
 from models.laws import ConstantSpeed
-from models.passing import passing
 from models.scene import Driver
 from tests.analytic.four_bars import fourbar, random_bars
 from tests.worlds.tiers import slowly

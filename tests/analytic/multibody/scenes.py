@@ -7,7 +7,7 @@ import numpy as np
 from analytic.kinematics import solve
 from analytic.multibody.multibody_motion import MultibodyMotion
 from analytic.multibody.release_multibody import release_multibody
-from models.files import parse_scene
+from models.files.reading import parse_scene
 from models.scene import Scene
 
 G = 9.81

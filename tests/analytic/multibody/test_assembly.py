@@ -16,14 +16,14 @@ from analytic.free.free_motion import FreeMotion
 from analytic.free.release import release
 from analytic.kinematics import solve
 from analytic.multibody.assembly import Assembly
-from analytic.multibody.configuration import Configuration
+from analytic.multibody.bodies import Configuration
 from analytic.multibody.multibody_motion import Baumgarte, MultibodyMotion
 from analytic.multibody.release_multibody import release_multibody, start_state
 from models.array import Array
+from models.driver import let_go
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
-from models.friction import ConstantFriction
-from models.released import let_go
+from models.files.reading import load_scene, shipped
+from models.loads import ConstantFriction
 from models.scene import Scene
 from tests.analytic.chain import coordinates
 from tests.analytic.multibody.scenes import (
@@ -303,7 +303,7 @@ def test_one_that_runs_away_is_told_until_when(let_go: LetGo, load: str) -> None
 
 def test_one_that_turns_ever_faster_is_refused_soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """By a load that grows with the angle its turns never end, in less and less time."""
-    monkeypatch.setattr("analytic.free.window_count.MOST_WINDOWS", 1_000)
+    monkeypatch.setattr("analytic.free.integration.MOST_WINDOWS", 1_000)
     steep = CUBE.replace('"omega"', '"angle"')
     with pytest.raises(CrankcheckError, match=r"loads\.motor over angle drives it"):
         release(scene(SLIDER_CRANK + steep.format("crank", 0.1)), 2.0).at(np.array([2.0]))

@@ -12,18 +12,17 @@ import pytest
 from analytic.free.release import release
 from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve
-from analytic.multibody.configuration import Configuration
-from analytic.multibody.joint_equations import JointEquations
+from analytic.multibody.assembly import JointEquations
+from analytic.multibody.bodies import Configuration, RigidBodies
 from analytic.multibody.multibody_motion import MultibodyMotion, Projection
 from analytic.multibody.release_multibody import release_multibody
-from analytic.multibody.rigid import RigidBodies
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
+from models.hard import Chain
 from models.loads import Load
 from models.moved_scene import scaled
 from models.tabulated import Tabulated
-from models.window_chain import Chain
 from tests.analytic.free.mechanisms import fourbar
 from tests.analytic.multibody.scenes import (
     DOUBLE_PENDULUM,

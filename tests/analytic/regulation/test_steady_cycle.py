@@ -13,25 +13,21 @@ from scipy.integrate import solve_ivp
 
 from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
-from analytic.lectures.regulation.cycle_scene import cycle_scene, with_flywheel
 from analytic.lectures.regulation.cycle_search import cycle_of, steady_cycle
 from analytic.lectures.regulation.flywheel import WantedFlywheel, wanted_flywheel
 from analytic.lectures.regulation.periodic_solution import StallError
-from analytic.lectures.regulation.steady_cycle import SteadyCycle
+from analytic.lectures.regulation.steady_cycle import SteadyCycle, cycle_scene, with_flywheel
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from analytic.structure.mobility import sides_of
-from models.characteristics import Constant, Polynomial, Sine
+from models.characteristics import Constant, Polynomial, Pulse, Sine, Staircase
+from models.driver import Released
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
-from models.friction import ConstantFriction, CoulombFriction
+from models.files.reading import load_scene, shipped
 from models.laws import Accelerating, ConstantSpeed
+from models.loads import ConstantFriction, CoulombFriction, LineSpring, PinSpring, SlideSpring
 from models.moved_scene import mirrored
-from models.released import Released
 from models.scene import GROUND, Driver, Scene
-from models.springs import LineSpring, PinSpring, SlideSpring
-from models.staircase import Staircase
 from models.tabulated import Tabulated
-from models.waves import Pulse
 from tests.analytic.regulation.worked import shaft, yoke
 from tests.worlds.tiers import few, slowly
 

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from models.characteristics import Characteristic, Constant
-from models.files import load_scene, parse_scene
+from models.driver import Released
+from models.files.reading import load_scene, parse_scene
 from models.laws import ConstantSpeed
 from models.loads import Load, Over
-from models.released import Released
 from models.scene import Driver, Scene
 
 SHAFT = """

@@ -10,13 +10,14 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from analytic.lectures.schemes import screws
-from analytic.lectures.schemes.freedom_names import axis_in_words, names_of_freedoms
 from analytic.lectures.schemes.joint_chains import chain_of
 from analytic.lectures.schemes.joint_class import analyse_joint
 from analytic.lectures.schemes.screws import (
+    axis_in_words,
     carried,
     displaced,
     gap,
+    names_of_freedoms,
     reciprocal,
     rotation,
     translation,

@@ -11,17 +11,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from analytic.lectures.schemes.drawing_frame import DrawingFrame
-from analytic.lectures.schemes.higher_pairs import replaced, teeth_centres
-from analytic.lectures.schemes.neighbourhood import settled
-from analytic.lectures.schemes.passive import effect_of
-from analytic.lectures.schemes.scheme_loops import IN_PLANE, Loops
-from analytic.lectures.schemes.scheme_mobility import SchemeMobility, scheme_mobility
+from analytic.lectures.schemes.joint_chains import replaced, teeth_centres
+from analytic.lectures.schemes.scheme_loops import IN_PLANE, DrawingFrame, Loops, settled
+from analytic.lectures.schemes.scheme_mobility import SchemeMobility, effect_of, scheme_mobility
 from analytic.lectures.schemes.screws import rank, reciprocal, rotation
 from models.errors import StructureError
 from models.lectures.scheme import HIGHER, Place, Scheme, SchemeJoint
-from models.lectures.scheme_files import load_scheme, shipped_schemes
-from models.lectures.scheme_text import scheme_text
+from models.lectures.scheme_files import load_scheme, scheme_text, shipped_schemes
 from models.scene import GROUND
 
 SCHEMES = shipped_schemes()

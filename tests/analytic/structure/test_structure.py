@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.lectures.chains.by_driver import StructureByDriver, by_drivers
+from analytic.lectures.chains.assur_groups import StructureByDriver, by_drivers
 from analytic.structure.groups import Bridge
-from analytic.structure.mobility import analyse
-from analytic.structure.unsolved import MOST_LOOKS, LeftOver
+from analytic.structure.mobility import MOST_LOOKS, LeftOver, analyse
 from models.errors import StructureError
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.laws import ConstantSpeed
 from models.scene import Driver, Scene
 from tests.second_opinions import newton

@@ -11,10 +11,7 @@ import pytest
 
 from analytic.lectures.synthesis import coupler
 from analytic.lectures.synthesis.solutions import Solutions, solutions_of
-from models.lectures.tasks.coupler import CouplerTask
-from models.lectures.tasks.quick_return import QuickReturnTask
-from models.lectures.tasks.rocker import RockerTask
-from models.lectures.tasks.stroke import StrokeTask
+from models.lectures.tasks.positions import CouplerTask, QuickReturnTask, RockerTask, StrokeTask
 from models.lectures.tasks.task import TaskTable
 
 Draw = np.random.Generator

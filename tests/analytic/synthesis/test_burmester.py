@@ -13,8 +13,7 @@ from pylinkage.synthesis import compute_pole, function_generation, motion_genera
 
 from analytic.lectures.synthesis.burmester import five_positions, four_positions
 from analytic.lectures.synthesis.function.fourbar import fourbars
-from analytic.lectures.synthesis.guided_body import Dyad, about_circumcentre
-from analytic.lectures.synthesis.pose import Pose, pole
+from analytic.lectures.synthesis.pose import Dyad, Pose, about_circumcentre, pole
 from models.errors import CrankcheckError
 from tests.analytic.assur.homotopy import Equation, finite_solutions
 from tests.worlds.tiers import few

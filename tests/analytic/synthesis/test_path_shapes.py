@@ -10,15 +10,22 @@ import pytest
 
 from analytic.kinematics import solve_driven
 from analytic.lectures.synthesis.path import unit_four_bar as unit
-from analytic.lectures.synthesis.path.arc_length import at_shares, shares, smooth
-from analytic.lectures.synthesis.path.atlas import atlas, closed_starts, curves, similar
-from analytic.lectures.synthesis.path.candidate import Candidate, in_order
+from analytic.lectures.synthesis.path.atlas import (
+    at_shares,
+    atlas,
+    closed_starts,
+    curves,
+    descriptors,
+    match,
+    shares,
+    similar,
+    smooth,
+    spread,
+)
+from analytic.lectures.synthesis.path.candidate import Candidate, drafted, in_order
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, assembled, cognates
-from analytic.lectures.synthesis.path.descriptors import descriptors, match
 from analytic.lectures.synthesis.path.fit import _Problem, placed
-from analytic.lectures.synthesis.path.path_draft import drafted
 from analytic.lectures.synthesis.path.pieces import open_starts, pieces
-from analytic.lectures.synthesis.path.spread import spread
 from analytic.lectures.synthesis.path.task import PathTask, UnitPath
 from analytic.lectures.synthesis.path.timed_starts import _costs, timed_starts
 from analytic.lectures.synthesis.path.unit_four_bar import FULL, Complexes, Family, lengths

@@ -12,12 +12,17 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve_driven
-from analytic.lectures.synthesis.exact_line import peaucellier
 from analytic.lectures.synthesis.examine import examine
-from analytic.lectures.synthesis.hoeken import best_hoeken, hoeken, hoeken_of
-from analytic.lectures.synthesis.line_draft import StraightLine
+from analytic.lectures.synthesis.line_draft import StraightLine, peaucellier
 from analytic.lectures.synthesis.path.unit_four_bar import Complexes
-from analytic.lectures.synthesis.straight_line import TEXTBOOK, Kind, straight_line
+from analytic.lectures.synthesis.straight_line import (
+    TEXTBOOK,
+    Kind,
+    best_hoeken,
+    hoeken,
+    hoeken_of,
+    straight_line,
+)
 from analytic.lectures.synthesis.straight_part import measured
 from models.errors import CrankcheckError
 from models.scene import Scene

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.lectures.synthesis.asked import AskedSlide
-from analytic.lectures.synthesis.examine import Examined, examine
-from analytic.lectures.synthesis.passing import passing_times
+from analytic.lectures.synthesis.design import AskedSlide
+from analytic.lectures.synthesis.examine import Examined, examine, passing_times
 from analytic.lectures.synthesis.sensitivity import is_measured, monte_carlo, sensitivity
 from analytic.lectures.synthesis.solutions import Solutions, followed, solutions_of
 from analytic.lectures.synthesis.strokes import stroke_proposals
@@ -20,7 +19,7 @@ from analytic.mechanism.travel import travel
 from models.errors import CrankcheckError, ReachError
 from models.laws import Oscillating
 from models.lectures.tasks.files import load_task
-from models.lectures.tasks.stroke import StrokeTask
+from models.lectures.tasks.positions import StrokeTask
 from tests.analytic.synthesis.random_tasks import HEAD, TASKS, random_solutions
 from tests.worlds.tiers import at_length, few, slowly
 

@@ -15,9 +15,9 @@ from mpmath import mp, mpf
 
 from analytic import prepared
 from analytic.kinematics import reach, solve, solve_driven
-from analytic.turns.cells import CellSolver
+from analytic.turns.count import CellSolver
 from models.array import Array
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.laws import ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
 from models.scene import Driver, Scene

@@ -11,7 +11,7 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.advise.advice import Advice, Offer, Price, Prices, offers
 from reports.advise.demand import choices, demanded
 from reports.advise.evidence import MeasuredSteps, MeasuredStudy

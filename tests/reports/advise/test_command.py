@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from typer.testing import Result
 
-from models.files import find_scene, load_scene, read_text
+from models.files.reading import find_scene, load_scene, read_text
 from models.scene import Scene
 from reports.advise.demand import at_speed
 from reports.compare.beside import Beside, Truth

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from models.errors import CrankcheckError
-from models.files import load_scene, parse_scene, scene_texts
+from models.files.reading import load_scene, parse_scene, scene_texts
 from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.advise.demand import MOST_SUBSTEPS, OWN, Choice, Demand, at_speed, choices, demanded

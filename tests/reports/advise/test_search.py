@@ -10,7 +10,7 @@ from typing import Any, cast, get_args
 import numpy as np
 import pytest
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.advise.advice import ROUNDS, Prices, prices, timings
 from reports.advise.demand import Choice, choices, demanded
 from reports.advise.evidence import MeasuredSteps, MeasuredStudy

@@ -7,7 +7,7 @@ from itertools import cycle
 
 import numpy as np
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.causes import Cause, causes
 from tests.worlds.plantings import PLANTINGS
 from tests.worlds.sheets import Sheet, sheet

@@ -17,7 +17,7 @@ import pytest
 
 import crankcheck
 from analytic.kinematics import solve, solve_driven
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.causes import Cause, causes
 from reports.logs.channel import Channel
 from reports.logs.kinds import KINDS as KINDS_OF

@@ -16,15 +16,14 @@ import pytest
 from analytic import prepared
 from analytic.kinematics import solve
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import Motion
 from reports.causes import Case, Cause, causes
-from reports.causes.words import change
+from reports.causes.account import change
 from reports.compare.beside import Truth
-from reports.logs.beside_truth import beside_truth
 from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.kinds import KINDS
-from reports.logs.log_beside import AtCrank
+from reports.logs.log_beside import AtCrank, beside_truth
 from reports.logs.units import UNITS
 from tests.reports.causes.infected_sheets import diagnosed
 from tests.worlds.sheets import SCENE, angle, at, later, of, omega, only, sheet

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from models.files import shipped
+from models.files.reading import shipped
 from reports.workers.isolated import Isolated, Limits, Lost
 from tests.worlds.fuzzing import Ended, attempt
 from tests.worlds.tiers import few

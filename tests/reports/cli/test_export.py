@@ -16,7 +16,7 @@ from PIL import Image
 from analytic.elastic.discretisation import Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.free.release import release
-from models.files import kinds, load_scene, shipped
+from models.files.reading import kinds, load_scene, shipped
 from models.laws import Oscillating
 from models.motion import Motion
 from reports.drawing import gif

@@ -12,8 +12,8 @@ import pandas as pd
 import pytest
 
 from models.errors import CrankcheckError
-from models.files import load_scene, scene_texts
-from models.scene_text import scene_text
+from models.files.assemble import scene_text
+from models.files.reading import load_scene, scene_texts
 from reports.requests.verify import VerifyRequest, plan
 from reports.stability.matrix import FILE, Graded, Matrix, read_matrix, to_json
 from reports.store.reader import read_store

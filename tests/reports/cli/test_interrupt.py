@@ -127,7 +127,7 @@ else:
 """
 """The command, as `python -m` and the program of the wheel start it, with Ctrl-C at an import."""
 EARLY = ("reports.cli", "typer", "rich.console", "reports.cli.application", "reports.cli.commands")
-LATE = ("numpy", "analytic.kinematics", "pydantic", "models.files", "rich.table")
+LATE = ("numpy", "analytic.kinematics", "pydantic", "models.files.reading", "rich.table")
 SOLVE = ("solve", "fourbar-lecture-1", "--at-deg", "90")
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from models.files import shipped
+from models.files.reading import shipped
 from tests.worlds.command_line import crank, crank_alone, flat
 from tests.worlds.tiers import few
 from tests.worlds.without_pdf import without_pdf

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from models.files import load_scene, shipped
-from models.scene_text import scene_text
+from models.files.assemble import scene_text
+from models.files.reading import load_scene, shipped
 from tests.analytic.dyads.test_redundant import parallelogram
 from tests.worlds.command_line import crank, refused
 from tests.worlds.loading import massless

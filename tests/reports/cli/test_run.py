@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 
 from analytic.kinematics import solve
-from models.files import load_scene
-from models.scene_text import scene_text
+from models.files.assemble import scene_text
+from models.files.reading import load_scene
 from sim.run import run
 from tests.worlds.command_line import crank, refused, told
 from tests.worlds.loading import massless

@@ -16,7 +16,7 @@ from rich.console import Console
 
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.scene import Scene
 from reports.describe.facts import facts
 from reports.requests.solve import SolveRequest

@@ -15,7 +15,7 @@ from analytic.elastic.discretisation import REFERENCE
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.free.release import release
 from analytic.kinematics import solve
-from models.files import load_scene
+from models.files.reading import load_scene
 from tests.worlds.command_line import crank, flat, refused, told
 from tests.worlds.let_go import EVERYTHING
 from tests.worlds.tiers import slow

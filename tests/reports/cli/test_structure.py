@@ -11,7 +11,7 @@ import pytest
 
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.lectures.scheme_files import SCHEMES, shipped_schemes
 from models.lectures.touching import CONTACTS, shipped_contacts
 from reports.lectures.drawing.assemblies import all_assemblies

@@ -15,7 +15,7 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError, EngineError
-from models.files import shipped
+from models.files.reading import shipped
 from reports.judge.rules import RULES
 from reports.requests import verify as command
 from reports.requests.verify import VerifyRequest

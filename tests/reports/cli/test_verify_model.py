@@ -13,11 +13,9 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from models.files import load_scene
-from reports.own_model.account import Account, checked_line, read_here
-from reports.own_model.checked_line import CheckedLine
-from reports.own_model.judged import JudgedModel
-from reports.own_model.running import judged_lines
+from models.files.reading import load_scene
+from reports.own_model.account import Account, CheckedLine, checked_line, read_here
+from reports.own_model.judged import JudgedModel, judged_lines
 from reports.requests import verify_model
 from reports.requests.verify import VerifyRequest
 from reports.requests.verify_model import IN_FOLDER

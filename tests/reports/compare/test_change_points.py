@@ -14,14 +14,14 @@ import pytest
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.errors import ReachError
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.hard import fourbar, slider_crank, slotted_lever
 from models.motion import Crossing
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.branch import departure
-from reports.compare.change_points import WINDOW_RAD, conditioning, near
-from reports.compare.errors import Errors
+from reports.compare.errors import Errors, SceneFacts
+from reports.compare.hardness import WINDOW_RAD, conditioning, near
 from reports.judge.cell import Checked, check
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Finding
@@ -150,9 +150,11 @@ def test_too_few_iterations_do_not_get_through_the_pivot_of_a_lever() -> None:
 def test_limits_are_those_of_the_motion_away_from_the_change_points(name: str) -> None:
     found = ran(SCENES[name], "pymunk", 360)
     # The sine of both is about that of the angle from the change point, on the worse side.
-    assert 0.9 * math.sin(WINDOW_RAD) < found.errors.conditioning < 1.2 * math.sin(WINDOW_RAD)
-    assert found.limits["angle"].number < 5.0 * found.errors.step_rad**2
-    assert found.limits["velocity"].number < 0.05 * found.errors.step_rad / 0.1
+    assert (
+        0.9 * math.sin(WINDOW_RAD) < found.errors.of_scene.conditioning < 1.2 * math.sin(WINDOW_RAD)
+    )
+    assert found.limits["angle"].number < 5.0 * found.errors.of_scene.step_rad**2
+    assert found.limits["velocity"].number < 0.05 * found.errors.of_scene.step_rad / 0.1
     assert found.limits["acceleration"].number < 0.01
 
 
@@ -195,22 +197,24 @@ def test_a_scene_without_change_points_has_no_such_rows_and_the_smallest_sine() 
     scene = load_scene("fourbar-lecture-1")
     errors = ran(scene, "pymunk", 360).errors
     assert {row.kind for row in errors.rows} == {"total", "geometric", "start"}
-    assert not errors.starts_in_passage
+    assert not errors.of_scene.starts_in_passage
     motion = solve(scene, np.linspace(0.0, scene.driver.law.period_s, 361))
-    assert errors.conditioning == min(float(np.min(s)) for s in motion.conditioning.values())
+    assert errors.of_scene.conditioning == min(
+        float(np.min(s)) for s in motion.conditioning.values()
+    )
 
 
 @pytest.mark.parametrize("start_deg", [3.0, 170.1])
 @pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
 def test_a_run_may_start_beside_a_change_point(engine: str, start_deg: float) -> None:
     found = ran(grashof("kite", *KITE, start_deg=start_deg), engine, 720)
-    assert found.errors.starts_in_passage
+    assert found.errors.of_scene.starts_in_passage
     assert found.verdict == "within", found.failures
 
 
 def test_rates_at_change_points_make_good_an_error_of_place_in_one_step() -> None:
     for step in (0.01, 0.005):
-        errors = Errors((), (), (), curvature=1.0, conditioning=0.5, step_rad=step)
+        errors = Errors((), (), (), SceneFacts(curvature=1.0, conditioning=0.5, step_rad=step))
         found = limits(SCENES["kite"], errors, {})
         for name, order in (("velocity", 1), ("acceleration", 2)):
             wide = in_passage(name, found[name], errors)

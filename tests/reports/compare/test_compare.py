@@ -14,13 +14,12 @@ import pytest
 from analytic.kinematics import solve
 from analytic.structure.mobility import sides_of
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import LinkMotion
 from models.moved_scene import mirrored, moved, rotated, scaled
 from models.scene import Scene
-from reports.compare.beside import SETTLING, Beside, Truth
+from reports.compare.beside import SETTLING, Beside, Truth, incomplete
 from reports.compare.compare import compare
-from reports.compare.completeness import incomplete
 from reports.compare.errors import ErrorKind, Errors
 from reports.judge.cell import check
 from reports.judge.tolerance import limits
@@ -122,7 +121,7 @@ def test_a_late_crank_is_in_drive_and_total_not_in_geometry(fourbar: Scene, heal
     peak_ratio = 0.62  # of the rocker's speed to the crank's, largest over the turn
     assert pure(errors, "angle") == pytest.approx(1e-5 * peak_ratio, rel=0.05)
     late = lagging(healthy.dt_s)  # a clock off by one sample
-    assert pure(late, "drive") == pytest.approx(late.step_rad)
+    assert pure(late, "drive") == pytest.approx(late.of_scene.step_rad)
 
 
 def test_velocities_half_a_step_late_show_in_themselves_alone(fourbar: Scene, healthy: Run) -> None:
@@ -137,7 +136,7 @@ def test_velocities_half_a_step_late_show_in_themselves_alone(fourbar: Scene, he
     right = compared(fourbar, replace(motion, velocity_time_s=early))
     wrong = compared(fourbar, motion)
     alpha = 0.9  # about the largest pure acceleration of the four-bar's links
-    assert pure(wrong, "velocity") == pytest.approx(wrong.step_rad / 2 * alpha, rel=0.15)
+    assert pure(wrong, "velocity") == pytest.approx(wrong.of_scene.step_rad / 2 * alpha, rel=0.15)
     assert pure(wrong, "velocity") > limits(fourbar, wrong, {})["velocity"].number
     assert pure(right, "velocity") < ROUNDING
     assert pure(wrong, "angle") < ROUNDING
@@ -155,7 +154,7 @@ def test_a_trembling_position_shows_in_differenced_rates(fourbar: Scene, errors_
         if (row.quantity, row.source, row.kind, row.body)
         == ("acceleration", "differenced", "total", "rocker")
     )
-    assert rocker == pytest.approx(4 * 1e-7 / errors.step_rad**2, rel=1e-3)
+    assert rocker == pytest.approx(4 * 1e-7 / errors.of_scene.step_rad**2, rel=1e-3)
     assert pure(errors, "velocity") < ROUNDING
 
 

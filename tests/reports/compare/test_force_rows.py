@@ -14,24 +14,22 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
 from models.characteristics import Characteristic, Constant, Polynomial, Sine
-from models.files import load_scene, parse_scene
-from models.forces import Forces
-from models.friction import ConstantFriction
-from models.loads import Load
-from models.motion import Motion
+from models.files.reading import load_scene, parse_scene
+from models.loads import ConstantFriction, Load
+from models.motion import Forces, Motion
 from models.scene import Scene
 from models.tabulated import Tabulated
 from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Errors
-from reports.compare.force_rows import force_rows
-from reports.compare.jumps import NEAR, near_jumps
-from reports.compare.loading import inertia_share, load_slopes, loading
+from reports.compare.force_rows import NEAR, force_rows, near_jumps
+from reports.compare.hardness import inertia_share, load_slopes, loading
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import Evidence
-from reports.stability.catalogue import CATALOGUE
+from reports.stability.all_cases import CATALOGUE
 from sim.engine import Run
 from sim.run import run
+from tests.worlds.facts import with_facts
 
 FOURBAR = load_scene("fourbar-lecture-1")
 
@@ -67,7 +65,7 @@ def test_without_forces_the_errors_are_the_same_to_the_bit() -> None:
     names = {"reaction", "normal", "moment", "torque"}
     assert [row for row in asked.rows if row.quantity not in names] == list(plain.rows)
     assert {row.quantity for row in asked.rows} & names == {"reaction", "torque"}
-    assert plain.unbalanced is None
+    assert plain.of_forces.unbalanced is None
 
 
 def test_forces_of_steps_have_none_at_the_start_and_that_is_no_error() -> None:
@@ -125,8 +123,8 @@ def test_of_a_sum_that_is_not_zero_the_pin_is_told() -> None:
         more = {**own.pins["C"], "rocker": own.pins["C"]["rocker"] + 0.1}
         return replace(own, pins={**own.pins, "C": more})
 
-    assert _errors(_run("mujoco")).unbalanced.share < 1e-12  # type: ignore[union-attr]
-    found = _errors(_with(_run("mujoco"), pushed)).unbalanced
+    assert _errors(_run("mujoco")).of_forces.unbalanced.share < 1e-12  # type: ignore[union-attr]
+    found = _errors(_with(_run("mujoco"), pushed)).of_forces.unbalanced
     assert (found.point, found.share) == ("C", pytest.approx(0.1 * 2**0.5 / 5.75, rel=0.01))
 
 
@@ -194,11 +192,11 @@ def test_forces_that_the_reference_knows_at_no_sample_are_not_taken_for_judged()
 def test_what_the_engine_says_against_its_forces_fails_a_rule() -> None:
     said = ("at 1 s the impulse on pin C is 2, and 3 by the momentum of the bodies",)
     errors = _errors(_with(_run("pymunk"), lambda forces: replace(forces, contradictions=said)))
-    assert errors.contradictions == said
+    assert errors.of_forces.contradictions == said
     finding = RULES["CC126"].check(Evidence("ok", "", 1.0, errors, {}))
     assert finding.level == "fail"
     assert said[0] in finding.text
-    silent = Evidence("ok", "", 1.0, replace(errors, contradictions=()), {})
+    silent = Evidence("ok", "", 1.0, with_facts(errors, contradictions=()), {})
     assert RULES["CC126"].check(silent) is None
 
 

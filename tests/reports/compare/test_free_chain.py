@@ -13,9 +13,9 @@ from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene
-from models.window_chain import Chain
-from reports.compare.free_chain import ChainErrors, compared, hold
+from models.files.reading import load_scene
+from models.hard import Chain
+from reports.compare.free.hard_runs import ChainErrors, compared, hold
 from sim.engine import BodyPose, Poses
 from sim.run import run
 from tests.worlds.fake.engine import FakeEngine, turned_link

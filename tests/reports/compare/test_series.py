@@ -15,8 +15,7 @@ from models.scene import Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.last_turn import trace
-from reports.compare.series import angle_error, length, rate, second_rate, size
-from reports.compare.tracks import tracks
+from reports.compare.tracks import angle_error, length, rate, second_rate, size, tracks
 from sim.engine import Run
 from tests.worlds.fake.engine import turned_link
 

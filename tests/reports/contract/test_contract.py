@@ -10,8 +10,7 @@ from rich.console import Console
 
 from models.errors import EngineError
 from reports.contract.clauses import CLAUSES
-from reports.contract.ruling import SCENES, Ruling, named, put_to, put_to_all, refuses_all
-from reports.contract.table import show
+from reports.contract.ruling import SCENES, Ruling, named, put_to, put_to_all, refuses_all, show
 from reports.workers.isolated import Limits
 from sim.registry import engine
 from tests.worlds.own_engines import fresh, with_faults

@@ -12,7 +12,7 @@ from analytic.elastic.discretisation import Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.kinematics import solve
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.describe.elastic_course import ElasticCourse, elastic_course
 from reports.drawing.moving import (

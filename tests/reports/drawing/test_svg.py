@@ -14,7 +14,7 @@ from PIL import Image
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import ReachError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.scene import Scene
 from reports.drawing import gif, shape
 from reports.drawing.force_arrows import CUT, LONGEST, force_arrows, rounded

@@ -12,7 +12,7 @@ import pytest
 
 import crankcheck as face
 from models.errors import CrankcheckError
-from models.files import find_scene, load_scene
+from models.files.reading import find_scene, load_scene
 from reports.plan.chosen_study import StudyChoice, chosen_study
 from reports.plan.elastic import counted_released
 from reports.plan.free import scenes_of, under_control

@@ -7,10 +7,10 @@ from functools import cache
 
 import pytest
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.compare.elastic.released_truth import ReleasedElasticTruth
-from reports.describe.held_to import held_to
+from reports.compare.errors import DRIVEN, RIGID
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
 from reports.judge.tolerance import limits
@@ -20,7 +20,8 @@ from reports.requests.compare import compare
 from reports.requests.judge import judge
 from reports.requests.run import run as simulated
 from reports.selftest.segment_changes import in_chain, springs, stiffer
-from reports.verify.footer import footer
+from reports.verify.cell_table import footer
+from tests.worlds.facts import with_facts
 from tests.worlds.tiers import slowly
 
 PULSE, CONTROLLED = "fourbar-elastic-pulse", "fourbar-elastic-controlled"
@@ -71,7 +72,7 @@ def checked() -> Checked:
 def test_the_segments_are_told_from_the_engine_and_the_phase_is_the_beams(
     checked: Checked,
 ) -> None:
-    facts, raw = checked.errors.elastic, worst(checked, "phase", "raw")
+    facts, raw = checked.errors.of_links, worst(checked, "phase", "raw")
     assert facts.chain == pytest.approx(worst(checked, "deflection"), rel=0.01)
     assert facts.chain == pytest.approx(0.05, rel=0.1)  # 0.80/n^2
     assert facts.doubt < 1e-5
@@ -111,13 +112,13 @@ def test_the_footer_says_what_stands_under_its_heads(checked: Checked) -> None:
 
 
 def test_the_words_under_errors_are_those_of_what_links_were_given_as(checked: Checked) -> None:
-    facts = checked.errors.elastic
-    told = held_to(free=True, elastic=facts)
+    facts = checked.errors.of_links
+    told = facts.compared_with(checked.errors.of_motion, "")
     assert "segments against the exact chain of as many; let go, angles" in told
     assert "geometry" not in told
-    told = held_to(free=False, elastic=replace(facts, springs="beam"))
+    told = replace(facts, springs="beam").compared_with(DRIVEN, "")
     assert not [part for part in ("chain", "let go") if part in told]
-    assert "log's" not in held_to(free=True, elastic=None)
+    assert "log's" not in RIGID.compared_with(checked.errors.of_motion, "")
 
 
 def test_springs_that_are_a_part_in_a_hundred_too_stiff_are_out() -> None:
@@ -142,7 +143,7 @@ def test_a_truth_that_is_in_doubt_ends() -> None:
     assert isinstance(doubted.truth, ReleasedElasticTruth)
     assert 0.0 < doubted.truth.known_s < LASTS_S[PULSE]
     found = check(doubted)
-    assert found.errors.free.left_out > 0
+    assert found.errors.of_motion.left_out > 0
     assert "the truth ends" in " ".join(found.errors.notes)
 
 
@@ -173,8 +174,8 @@ def test_what_rings_is_let_go_for_a_few_swings_of_it_unless_more_is_asked_for() 
 
 def test_what_starts_straight_is_off_by_its_fast_waves_too(checked: Checked) -> None:
     def limit(step: float, *, straight: bool, of: str = "segments") -> float:
-        facts = replace(checked.errors.elastic, straight=straight, segments=16, slender=0.0)
-        errors = replace(checked.errors, step_rad=step, elastic=facts)
+        facts = replace(checked.errors.of_links, straight=straight, segments=16, slender=0.0)
+        errors = with_facts(checked.errors, step_rad=step, of_links=facts)
         return limits(scene(PULSE), errors, {})[of].number
 
     even = limit(1e-3, straight=False)

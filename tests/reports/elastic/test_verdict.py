@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from analytic.elastic.natural import lowest_rad_s
-from analytic.lectures.vibration.any_speed import at_speed
-from models.files import load_scene
+from analytic.lectures.vibration.steady_vibration import at_speed
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
@@ -57,7 +57,7 @@ def checked() -> Checked:
 
 
 def test_the_engine_and_the_segments_are_told_apart(checked: Checked) -> None:
-    facts, deflection = checked.errors.elastic, off(checked)
+    facts, deflection = checked.errors.of_links, off(checked)
     assert off(checked, "segments") < 1e-4
     assert deflection == pytest.approx(0.05, rel=0.1)  # 0.80/n^2
     assert facts.chain == pytest.approx(deflection, rel=0.01)
@@ -120,7 +120,7 @@ def eight() -> Checked:
 
 def test_eight_elements_are_within_a_thousandth_of_the_beam(eight: Checked) -> None:
     assert max(off(eight), off(eight, "reaction"), off(eight, "torque")) < 1e-4
-    facts = eight.errors.elastic
+    facts = eight.errors.of_links
     slope = math.pi * 1.051e-3 / 0.75  # of a half-wave as high as its largest deflection
     assert facts.doubt == pytest.approx(slope**2, rel=2e-3)
     # They are given next to nothing for their start.
@@ -142,14 +142,14 @@ def test_nothing_is_compared_with_a_chain_of_segments(eight: Checked) -> None:
 def test_a_beam_near_its_frequency_is_as_far_off_as_the_theory_of_small_slopes() -> None:
     """Bent by a half of a per cent of its length: slopes of 0.017, whose square is left out."""
     found = check(beam(at_speed(SCENE, lowest_rad_s(SCENE) / 5.5)))
-    assert found.errors.elastic.doubt == pytest.approx(2.8e-4, rel=0.1)
-    assert off(found) < found.errors.elastic.doubt
+    assert found.errors.of_links.doubt == pytest.approx(2.8e-4, rel=0.1)
+    assert off(found) < found.errors.of_links.doubt
 
 
 def test_elements_come_to_the_beam_with_more_than_their_fourth_power() -> None:
     coarse, fine = (check(beam(elements=elements)) for elements in (2, 4))
     assert off(coarse) > 16.0 * off(fine)
-    assert coarse.errors.elastic.chain == pytest.approx(off(coarse), rel=0.3)  # what they lock by
+    assert coarse.errors.of_links.chain == pytest.approx(off(coarse), rel=0.3)  # what they lock by
 
 
 @pytest.mark.parametrize(

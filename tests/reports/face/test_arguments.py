@@ -16,7 +16,7 @@ import pytest
 
 import crankcheck
 from crankcheck.testing import assert_within
-from models.files import shipped
+from models.files.reading import shipped
 from tests.worlds.tiers import slowly
 
 SCENE = "fourbar-lecture-1"

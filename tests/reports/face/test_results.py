@@ -17,7 +17,7 @@ import pandas as pd
 import pytest
 
 import crankcheck
-from models.files import parse_scene
+from models.files.reading import parse_scene
 from reports.drawing.svg import svg
 from reports.own_model.account import read_here
 from reports.requests import verify_model as model_verdict
@@ -247,7 +247,7 @@ def verdict(model: Path) -> crankcheck.ModelVerdict:
     """Read and run in this process."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("reports.own_model.account.Isolated", Here)
-        patch.setattr("reports.own_model.running.Isolated", Here)
+        patch.setattr("reports.own_model.judged.Isolated", Here)
         return checked(model)
 
 

@@ -11,7 +11,7 @@ import pytest
 
 import crankcheck
 from analytic.free.release import release
-from models.files import shipped
+from models.files.reading import shipped
 
 SCENE, FREE, ELASTIC = "fourbar-lecture-1", "fourbar-swing", "fourbar-elastic"
 

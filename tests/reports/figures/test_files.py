@@ -13,8 +13,8 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.figures.free.phase import _over_one_turn
-from reports.figures.free_runs.free_run import free_runs
+from reports.figures.free_figures import _over_one_turn
+from reports.figures.free_runs import free_runs
 from reports.figures.saving import FORMATS
 from reports.requests.figures import FiguresRequest
 from reports.results.overview import Report

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-from models.files import find_scene, load_scene, read_text
+from models.files.reading import find_scene, load_scene, read_text
 from reports.figures.all_figures import FIGURES
 from reports.figures.error_parts import LOOKS
 from reports.figures.marks import COLOURS, marks

@@ -18,26 +18,26 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from analytic.lectures.regulation.flywheel import WantedFlywheel, wanted_flywheel
 from analytic.lectures.regulation.turning_machine import TurningMachine
-from analytic.lectures.vibration.over_inertia import over_inertia as inertia_map
 from analytic.lectures.vibration.over_speeds import OverSpeeds, over_speeds
+from analytic.lectures.vibration.over_speeds import over_inertia as inertia_map
 from analytic.lectures.vibration.steady_vibration import SteadyVibration, steady_vibration
-from models.files import load_scene
-from models.friction import ConstantFriction, CoulombFriction
-from models.loads import Load
+from models.files.reading import load_scene
+from models.loads import ConstantFriction, CoulombFriction, Load
 from models.scene import Scene
 from models.tabulated import Tabulated
 from reports.describe.elastic_course import drawn_course
-from reports.figures.elastic.control import draw
-from reports.figures.forces.all_figures import FORCE_FIGURES
-from reports.figures.forces.force_turn import force_turn
-from reports.figures.forces.torque import mean_torque
-from reports.lectures.drawing.workbook.family_curves import FamilyCurves, family_curves
-from reports.lectures.drawing.workbook.family_figure import draw_family
-from reports.lectures.drawing.workbook.family_report import family_drawing, family_page_of
+from reports.figures.elastic_figures import ELASTIC_FIGURES
+from reports.figures.force_figures import FORCE_FIGURES, mean_torque
+from reports.figures.force_turn import force_turn
+from reports.lectures.drawing.workbook.family import FamilyCurves, family_curves
+from reports.lectures.drawing.workbook.family_report import (
+    draw_family,
+    family_drawing,
+    family_page_of,
+)
 from reports.lectures.drawing.workbook.live_workbook import formulas_of
-from reports.lectures.machine.figures import over_inertia, over_speed, over_turn
-from reports.lectures.machine.figures.all_figures import REGULATION_FIGURES
-from reports.lectures.machine.figures.regulated import Regulated
+from reports.lectures.machine.figures import vibration as figures
+from reports.lectures.machine.figures.regulation import REGULATION_FIGURES, Regulated
 from tests.reports.figures.test_files import texts
 from tests.reports.figures.test_looks import has_room
 from tests.worlds.tiers import few, slowly
@@ -48,7 +48,7 @@ turn_of = cache(lambda name: force_turn(load_scene(name)))
 DRAWN = [
     (name, figure)
     for name in ("shaper", "tangent", "slider-crank-self-locking")
-    for figure in FORCE_FIGURES
+    for figure in FORCE_FIGURES.draws
     if figure != "efficiency" or load_scene(name).friction
 ]
 QUICK = {case for case in DRAWN if case[0] == "shaper" or case[1] == "efficiency"}
@@ -61,7 +61,7 @@ SLIDER_CRANK, RODS = "slider-crank-excel-350", [3.5, 2.5, 2.2, 2.1]
 @pytest.mark.parametrize("drawn", few(DRAWN, QUICK, "the same figures, other curves"), ids=str)
 def test_words_of_forces_have_room(drawn: tuple[str, str]) -> None:
     name, figure = drawn
-    has_room(FORCE_FIGURES[figure], turn_of(name))
+    has_room(FORCE_FIGURES.draws[figure], turn_of(name))
 
 
 def test_a_turn_is_drawn_from_0_to_360_deg_and_two_from_their_start_on(fourbar: Scene) -> None:
@@ -95,7 +95,7 @@ def test_beside_where_friction_locks_nothing_is_drawn_but_the_efficiency() -> No
     far = np.abs(np.abs(degrees - 180.0) - 90.0) > 15.5
     assert np.sum(far & ~is_drawn) <= 3  # where the load turns round
     assert any("within 5 deg" in note for note in turn.notes)
-    figure = FORCE_FIGURES["efficiency"](turn)
+    figure = FORCE_FIGURES.draws["efficiency"](turn)
     curve = np.ravel(figure.axes[0].lines[-1].get_ydata())
     assert np.nanmin(curve) < 0.05
     assert np.nanmax(curve) <= 1.0
@@ -107,31 +107,31 @@ def test_a_turn_locked_nearly_everywhere_draws_no_forces_and_says_so() -> None:
     scene = load_scene("slider-crank-self-locking")
     turn = force_turn(replace(scene, friction={"piston": CoulombFriction("piston", 10.0)}))
     assert np.isfinite(turn.motion.forces.torque).any()
-    left = {name for name, draw in FORCE_FIGURES.items() if draw(turn) is not None}
+    left = {name for name, draw in FORCE_FIGURES.draws.items() if draw(turn) is not None}
     assert left == {"reduced", "efficiency"}
     assert "within 5 deg of it are not drawn, which is all of the turn" in turn.notes[-1]
 
 
 def test_without_friction_and_where_the_loads_drive_there_is_no_efficiency(fourbar: Scene) -> None:
-    assert FORCE_FIGURES["efficiency"](force_turn(fourbar)) is None
+    assert FORCE_FIGURES.draws["efficiency"](force_turn(fourbar)) is None
     scene = load_scene("slider-crank-self-locking")
     turned = {
         k: replace(x, direction_rad=x.direction_rad + math.pi) for k, x in scene.loads.items()
     }
     helped = force_turn(replace(scene, loads=turned))
     assert helped.acting.has_equilibria(2).any()
-    assert FORCE_FIGURES["efficiency"](helped) is None
+    assert FORCE_FIGURES.draws["efficiency"](helped) is None
 
 
 def test_the_shares_of_the_torque_are_the_torque(fourbar: Scene) -> None:
     """Inertia, weights and loads, and friction: constant friction of the drive's pin is its own."""
     rubbing = replace(fourbar, friction={"A": ConstantFriction("A", 0.25)})
-    figure = FORCE_FIGURES["torque"](force_turn(rubbing))
+    figure = FORCE_FIGURES.draws["torque"](force_turn(rubbing))
     curves = [np.ravel(line.get_ydata()) for line in figure.axes[0].lines]
     friction, inertia, held, torque = (c for c in curves if c.size > 2)
     np.testing.assert_allclose(friction, 0.25, rtol=1e-12)
     np.testing.assert_allclose(inertia + held + friction, torque, atol=1e-12)
-    bare = FORCE_FIGURES["torque"](force_turn(fourbar))
+    bare = FORCE_FIGURES.draws["torque"](force_turn(fourbar))
     alone = [np.ravel(line.get_ydata()) for line in bare.axes[0].lines]
     np.testing.assert_allclose(inertia, next(c for c in alone if c.size > 2), atol=1e-9)
 
@@ -174,23 +174,23 @@ def speeds(request: pytest.FixtureRequest) -> OverSpeeds:
 
 def mapped(vibration: SteadyVibration) -> Figure:
     factors, few = np.array([1.0, 30.0]), np.linspace(17.0, 19.0, 3)
-    return over_inertia.draw(inertia_map(vibration.scene, ONE, few, "rocker", factors))
+    return figures.draw_over_inertia(inertia_map(vibration.scene, ONE, few, "rocker", factors))
 
 
-@pytest.mark.parametrize("draw", [over_turn.draw, over_turn.draw_spectrum, mapped])
+@pytest.mark.parametrize("draw", [figures.draw_over_turn, figures.draw_spectrum, mapped])
 def test_words_of_vibration_have_room(
     vibration: SteadyVibration, draw: Callable[..., Figure]
 ) -> None:
     has_room(draw, vibration)
 
 
-@pytest.mark.parametrize("draw", [over_speed.draw, over_speed.draw_waterfall])
+@pytest.mark.parametrize("draw", [figures.draw_over_speed, figures.draw_waterfall])
 def test_words_over_speeds_have_room(speeds: OverSpeeds, draw: Callable[..., Figure]) -> None:
     has_room(draw, speeds)
 
 
 def test_the_curve_is_the_deflection(vibration: SteadyVibration) -> None:
-    (axes,) = over_turn.draw(vibration).axes
+    (axes,) = figures.draw_over_turn(vibration).axes
     curve = np.asarray(axes.lines[0].get_ydata(), dtype=float)
     swing = vibration.swings["coupler"]
     assert np.abs(curve).max() == pytest.approx(1e3 * swing.largest_m, rel=2e-3)
@@ -206,10 +206,10 @@ def test_control_takes_out_what_rings_without_it() -> None:
     both = [each.links[scene.driver.link] for each in (course.motion, course.uncontrolled)]
     with_it, without = (np.ptp(link.omega[late]) for link in both)
     assert with_it < 0.2 * without
-    _, speeds, ahead = draw(course).axes
+    _, speeds, ahead = ELASTIC_FIGURES.draws["control"](course).axes
     assert [len(line.get_ydata()) for line in speeds.lines[:2]] == [201, 201]
     assert ahead.get_ylabel() == "crank ahead by [deg]"
-    assert draw(replace(course, uncontrolled=None)) is None
+    assert ELASTIC_FIGURES.draws["control"](replace(course, uncontrolled=None)) is None
 
 
 @pytest.fixture(scope="module")

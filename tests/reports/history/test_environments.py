@@ -28,7 +28,7 @@ from reports.history.environments import (
     wanted,
 )
 from reports.history.verification import alone, cache_folder, user_cache
-from reports.workers.programs import Ended, run_child
+from reports.workers.signals import Ended, run_child
 from tests.worlds.programs import ROOT
 
 ONE = EngineVersion("mujoco", Version("3.6.0"))

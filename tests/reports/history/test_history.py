@@ -15,11 +15,11 @@ from packaging.version import Version
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from models.files import shipped
+from models.files.reading import shipped
 from reports.history import verification
 from reports.history.environments import EngineVersion, NotMeasuredError
 from reports.requests.history import HistoryRequest
-from reports.workers.programs import Ended
+from reports.workers.signals import Ended
 from tests.worlds.command import COMMAND, PYTHON, script, shadows
 from tests.worlds.command_line import flat
 from tests.worlds.fake_installer import fake_installer

@@ -12,21 +12,22 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from models.files import load_scene, shipped
-from models.friction import ConstantFriction
+from models.files.reading import load_scene, shipped
 from models.laws import ConstantSpeed
+from models.loads import ConstantFriction
 from models.scene import Scene
-from reports.compare.asked import not_asked_for
+from reports.compare.compare import not_asked_for
 from reports.compare.errors import Error
-from reports.compare.uneven import uneven, unevenly_turned
+from reports.compare.hardness import uneven, unevenly_turned
 from reports.judge.cell import Cell, CellRunner, examined
 from reports.judge.rules import RULES
-from reports.judge.too_good import LEAST, too_good
+from reports.judge.rules.reference import LEAST, too_good
 from reports.selftest.fault import integrates
 from sim.engine import Run
 from sim.registry import ENGINES, engine
 from sim.run import run, setup
 from sim.settings import resolved
+from tests.worlds.facts import with_facts
 from tests.worlds.fake.engine import FakeEngine
 from tests.worlds.tiers import few
 from tests.worlds.turns import of_turns
@@ -195,11 +196,11 @@ def test_no_body_of_a_shipped_scene_comes_near_what_is_too_good(each: str) -> No
     scene = load_scene(each)  # once: its truth is found once
     for name, profile, steps in product(ENGINES, ("tuned", "as-shipped"), (45, 720)):
         errors = examined(of_turns(scene, name, steps, profile=profile))[0].errors
-        assert errors.uneven
-        wide = {body: 10.0 * far for body, far in errors.uneven.items()}
+        assert errors.of_scene.uneven
+        wide = {body: 10.0 * far for body, far in errors.of_scene.uneven.items()}
         adapter = engine(name)
         placing = adapter.placing(resolved(adapter.profiles[profile], None))
-        assert too_good(replace(errors, uneven=wide), placing, adapter.order) == []
+        assert too_good(with_facts(errors, uneven=wide), placing, adapter.order) == []
 
 
 @pytest.mark.parametrize("share", [0.9, 1.1])
@@ -207,12 +208,12 @@ def test_a_widest_gap_that_no_step_leaves_is_too_good_where_something_moves_unev
     share: float,
 ) -> None:
     errors = examined(of_turns(FOURBAR))[0].errors
-    least = LEAST * errors.step_rad**2 * max(errors.uneven.values())
+    least = LEAST * errors.of_scene.step_rad**2 * max(errors.of_scene.uneven.values())
     gaps = (row for row in errors.rows if row.quantity == "gap")
     rows = tuple(replace(row, maximum=share * least * row.scale) for row in gaps)
     found = too_good(replace(errors, rows=rows), "integrated", 2)
     assert [row.quantity for row in found] == ["gap"] * (share < 1.0)
-    assert too_good(replace(errors, rows=rows, uneven={}), "integrated", 2) == []
+    assert too_good(with_facts(errors, rows=rows, uneven={}), "integrated", 2) == []
 
 
 def verdict_of(runner: Callable[..., Run]) -> dict[str, str]:

@@ -17,18 +17,18 @@ from analytic.kinematics import solve
 from benchmarks.verify_overhead import LINKS, chain
 from models.array import Array
 from models.errors import EngineError, ReachError
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.laws import Accelerating
 from models.motion import Motion
 from models.scene import Scene
 from reports.judge import cell as cells
 from reports.judge.cell import Cell, check, unfinished
-from reports.judge.frames import cell_frame, error_frame
-from reports.judge.rows import ELASTIC_COLUMNS, ERROR_COLUMNS, FORCE_COLUMNS, FREE_COLUMNS
-from reports.judge.tolerance import DEFAULTS, FORCES
+from reports.judge.rows import ERROR_COLUMNS, cell_frame, error_frame
+from reports.judge.tolerance import FORCES
 from reports.plan.singular import refuse_singular
-from reports.verify.all_cells import check_all
-from reports.workers.scheduler import FEW
+from reports.quantities import DEFAULTS, named
+from reports.verify.advised import check_all
+from reports.workers.isolated import FEW
 from sim.engine import Run
 from sim.run import run
 from tests.worlds.fake.engine import FakeEngine
@@ -175,7 +175,7 @@ def test_a_cell_that_kills_its_process_costs_only_itself(monkeypatch: pytest.Mon
     cells = [of_turns(scene, engine) for scene in scenes for engine in ("mujoco", "pymunk")]
     assert len(cells) >= FEW + 2
     cells[2] = replace(cells[2], profile="deadly")
-    monkeypatch.setattr("reports.verify.all_cells.advised", deadly_check)
+    monkeypatch.setattr("reports.verify.advised.advised", deadly_check)
     heard: list[str] = []
     found = check_all(cells, 2, lambda one: heard.append(one.cell.label))
     assert [one.status for one in found] == ["ok", "ok", "crashed", "ok", "ok", "ok"]
@@ -186,7 +186,7 @@ def test_a_cell_that_kills_its_process_costs_only_itself(monkeypatch: pytest.Mon
 
 
 def test_a_cell_of_no_engine_of_ours_is_apart_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("reports.verify.all_cells.advised", deadly_check)
+    monkeypatch.setattr("reports.verify.advised.advised", deadly_check)
     (found,) = check_all([of_turns("fourbar-lecture-1", "penalty", profile="deadly")], 2)
     assert found.reason == "the engine ended its process (exit code 1)"
 
@@ -242,8 +242,9 @@ def test_a_failure_is_a_row_with_its_reason_and_the_same_columns(frame: pd.DataF
 def test_error_columns_carry_units_and_nothing_that_is_not_reported(frame: pd.DataFrame) -> None:
     units = ("_rad", "_m", "_rad_s", "_m_s", "_rad_s2", "_m_s2", "_n", "_n_m", "_j", "_kg_m2_s")
     names = {name for name, *_ in ERROR_COLUMNS}
+    other = {name for name, of, *_ in ERROR_COLUMNS if of in named("force", "free", "elastic")}
     assert all(name.endswith(units) for name in names)
-    assert names - FORCE_COLUMNS - FREE_COLUMNS - ELASTIC_COLUMNS == names & set(frame.columns)
+    assert names - other == names & set(frame.columns)
     pure = {f"{name.replace('-', '_')}_pure" for name in DEFAULTS if name not in FORCES}
     assert pure <= set(frame.columns)
     assert pd.isna(frame["angular_acceleration_error_rad_s2"][0])

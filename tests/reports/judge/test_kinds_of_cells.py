@@ -12,21 +12,23 @@ import numpy as np
 import pytest
 
 from analytic.forces.late_impulses import LateImpulses
-from models.files import load_scene, parse_scene
-from models.friction import ConstantFriction
-from models.released import let_go
+from models.driver import let_go
+from models.files.reading import load_scene, parse_scene
+from models.loads import ConstantFriction
 from models.scene import Scene
-from reports.compare.errors import Errors
-from reports.judge import halving
+from reports.compare.errors import DRIVEN, Errors
+from reports.compare.free import free_facts
 from reports.judge.cell import Cell, CellRunner, Checked, check, examined
-from reports.judge.precision import precision
-from reports.judge.rows import FORCE_COLUMNS, cell_row
+from reports.judge.rows import ERROR_COLUMNS, cell_row
 from reports.judge.rules import FORCES
-from reports.judge.tolerance import DEFAULTS, FREE, default, in_passage, numbers_for
-from reports.judge.too_good import too_good
+from reports.judge.rules.reference import too_good
+from reports.judge.tolerance import default, in_passage
+from reports.quantities import DEFAULTS, FREE, named
 from reports.quantities.places import WITHIN_A_STEP
+from reports.ways.free.columns import precision
 from sim.engine import Run
 from sim.run import run
+from tests.worlds.facts import with_facts
 from tests.worlds.tiers import slowly
 from tests.worlds.turns import of_turns
 
@@ -72,12 +74,13 @@ def test_the_order_of_forces_and_their_floor_are_told_beside_those_of_places() -
 def test_columns_of_forces_are_there_where_they_were_asked_for() -> None:
     asked = cell_row(checked("slider-crank-offset", "mujoco", 90))
     plain = cell_row(checked("slider-crank-offset", "mujoco", 90, with_forces=False))
-    more = {*FORCE_COLUMNS, "force_pure", "force_trend", "force_order", "force_floor"}
+    columns = {name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("force")}
+    more = {*columns, "force_pure", "force_trend", "force_order", "force_floor"}
     for name in ("reaction", "normal", "moment", "torque"):
         more |= {f"{name}_pure", f"{name}_limit_pure"}
     assert asked.keys() - plain.keys() == more
     assert list(plain) == [name for name in asked if name not in more]
-    assert all(isinstance(asked[name], float) for name in FORCE_COLUMNS)
+    assert all(isinstance(asked[name], float) for name in columns)
 
 
 def test_near_a_change_point_forces_are_not_judged_and_a_limit_that_was_given_stands() -> None:
@@ -87,15 +90,15 @@ def test_near_a_change_point_forces_are_not_judged_and_a_limit_that_was_given_st
     given = replace(limit, origin="--tol")
     assert in_passage("reaction", given, found.errors) == given
     assert in_passage("velocity", found.limits["velocity"], found.errors).number < math.inf
-    assert found.errors.loading == 0.0  # without loads no limit is other than before
-    assert not any(found.errors.load_slopes.values())
+    assert found.errors.of_forces.loading == 0.0  # without loads no limit is other than before
+    assert not any(found.errors.of_forces.load_slopes.values())
 
 
 @pytest.mark.parametrize("name", ["toggle-press", "shaper-cutting"])
 def test_loads_that_come_on_within_a_few_steps_are_in_the_budget(name: str) -> None:
     found = checked(name, "mujoco", 720)
     assert found.verdict == "within", found.failures
-    without = replace(found.errors, loading=0.0, load_slopes={})
+    without = with_facts(found.errors, loading=0.0, load_slopes={})
     over = [
         row.quantity
         for row in found.errors.rows
@@ -107,8 +110,8 @@ def test_loads_that_come_on_within_a_few_steps_are_in_the_budget(name: str) -> N
 def test_of_where_a_slider_is_no_more_is_felt_than_its_limit() -> None:
     errors = checked("toggle-press", "mujoco", 360).errors
     tolerance, most = DEFAULTS["torque"], default(WITHIN_A_STEP, errors)
-    slope = errors.load_slopes["torque"] / errors.conditioning
-    plain = default(tolerance, replace(errors, load_slopes={}))
+    slope = errors.of_forces.load_slopes["torque"] / errors.of_scene.conditioning
+    plain = default(tolerance, with_facts(errors, load_slopes={}))
     silent = tuple(row for row in errors.rows if row.quantity != "displacement")
     places = (row for row in errors.rows if row.quantity == "displacement")
     far = (*silent, *(replace(row, maximum=row.scale) for row in places))
@@ -226,21 +229,21 @@ def test_loads_of_one_stroke_that_hold_the_truth_are_named() -> None:
 
 def test_limits_grow_with_late_impulses_and_with_what_lasts_and_drifts() -> None:
     errors = errors_of()
-    assert numbers_for(errors) is FREE
+    assert errors.limits == FREE
     assert {"phase", "geometry", "energy", "momentum", "angle", "gap", "velocity"} <= set(FREE)
     assert "drive" not in FREE
-    late = replace(errors, late=LateImpulses(0.01, 0.02, 0.03))
+    late = with_facts(errors, late=LateImpulses(0.01, 0.02, 0.03))
     assert default(FREE["energy"], late) == pytest.approx(4.0 * 0.02 + 0.5 * 0.03, rel=1e-6)
-    longer = replace(errors, travel_rad=100.0 * errors.travel_rad)
-    for each in (late, longer, replace(errors, drifted_rad=100.0)):
+    longer = with_facts(errors, travel_rad=100.0 * errors.of_motion.travel_rad)
+    for each in (late, longer, with_facts(errors, drifted_rad=100.0)):
         assert default(FREE["phase"], each) > default(FREE["phase"], errors)
         assert default(FREE["geometry"], each) == default(FREE["geometry"], errors)
 
 
 def test_what_lasts_grows_with_powers_of_the_step_and_the_curvature() -> None:
     def lasted(**changed: float) -> float:
-        errors = replace(errors_of(), **changed)
-        longer = replace(errors, travel_rad=100.0 * errors.travel_rad)
+        errors = with_facts(errors_of(), **changed)
+        longer = with_facts(errors, travel_rad=100.0 * errors.of_motion.travel_rad)
         return default(FREE["phase"], longer) - default(FREE["phase"], errors)
 
     assert lasted(step_rad=0.01) == pytest.approx(8.0 * lasted(step_rad=0.005))
@@ -251,7 +254,7 @@ def test_no_order_is_graded_where_a_start_grows_much(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     assert check(cell(converge=True)).convergence is not None
-    monkeypatch.setattr(halving, "MOST_GROWTH", 0.5)
+    monkeypatch.setattr(free_facts, "MOST_GROWTH", 0.5)
     assert check(cell(converge=True)).convergence is None
 
 
@@ -259,7 +262,7 @@ def test_limits_that_the_truth_passes_are_no_departure() -> None:
     """Through limits of the driver, which takes a longer truth: only there assemblies change."""
     scene = load_scene("fourbar-double-rocker-swing")
     checked = check(cell("mujoco", seconds=1.3, scene=scene))
-    assert checked.errors.free.passages >= 1
+    assert checked.errors.of_motion.passages >= 1
     assert (checked.status, checked.verdict) == ("ok", "within")
     assert any("limits of its angle" in note for note in checked.errors.notes)
 
@@ -268,7 +271,7 @@ def test_what_is_let_go_may_be_as_near_as_the_fourth_order_of_the_step() -> None
     """MuJoCo's loops, as tuned for that, do not give way; driven ones always do."""
     errors = errors_of("mujoco")
     assert too_good(errors, "integrated", 2) == []
-    assert too_good(replace(errors, free=None), "integrated", 2) != []
+    assert too_good(replace(errors, of_motion=DRIVEN), "integrated", 2) != []
 
 
 def test_forces_are_judged_where_they_are_asked_for() -> None:

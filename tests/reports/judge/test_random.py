@@ -4,7 +4,7 @@ The mechanisms follow from `SEED` alone: the same command makes the same ones. O
 alarm is printed as a scene file, with the command that shows it.
 
 Limits follow from the step and the geometry, not from the masses (but for the accelerations of the
-first samples, `reports.judge.start_allowance`). So an alarm that masses raise is a true one, and
+first samples, `reports.judge.rules.limits`). So an alarm that masses raise is a true one, and
 has to come with advice that was tried. Of 500 `HARD` mechanisms 8 are out of tolerance in MuJoCo,
 of which 7 are told what lowers the error threefold (measured).
 
@@ -27,7 +27,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from analytic.kinematics import solve
-from models.files import load_scene, parse_scene
+from models.files.reading import load_scene, parse_scene
 from models.scene import span
 from reports.judge.cell import Cell, Checked, check
 from reports.judge.rules import PLACES, RATES

@@ -9,11 +9,13 @@ from dataclasses import replace
 import pytest
 
 from models.scene import Scene
-from reports.compare.errors import Error, Errors, largest
+from reports.compare.errors import Error, Errors, SceneFacts, largest
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.three_steps import Convergence, convergence
-from reports.judge.tolerance import DEFAULTS, Limit, limits
+from reports.judge.tolerance import Limit, limits
+from reports.quantities import DEFAULTS
+from tests.worlds.facts import with_facts
 
 KINDS = {
     "drive": "driver",
@@ -67,7 +69,7 @@ HEALTHY = Evidence(
     status="ok",
     reason="",
     stopped_at_s=1.0,
-    errors=Errors((*ROWS, *START), (), (), 1.0, 0.8, 0.01, jolt=0.5),
+    errors=Errors((*ROWS, *START), (), (), SceneFacts(1.0, 0.8, 0.01, jolt=0.5)),
     limits={name: Limit(1e-3, "default") for name in DEFAULTS},
     convergence=halved(*SECOND_ORDER),
     unasked=(),
@@ -77,7 +79,7 @@ HEALTHY = Evidence(
 
 def with_errors(**changed: object) -> Evidence:
     """The healthy evidence with something else in its errors."""
-    return replace(HEALTHY, errors=replace(HEALTHY.errors, **changed))
+    return replace(HEALTHY, errors=with_facts(HEALTHY.errors, **changed))
 
 
 def with_row(new: Error, **changed: object) -> Evidence:
@@ -219,7 +221,7 @@ def test_rates_of_the_first_samples_have_a_limit_of_their_own(index: int, size: 
 
 
 def test_the_start_may_be_off_by_half_a_steps_acceleration_and_not_without_end() -> None:
-    half_a_step = HEALTHY.errors.step_rad / 2
+    half_a_step = HEALTHY.errors.of_scene.step_rad / 2
     late = [replace(START[0], maximum=half_a_step), replace(START[3], maximum=0.5)]
     assert {f.level for f in judge(with_errors(rows=(*ROWS, *late)))} == {"pass"}
     wild = (*ROWS, replace(START[0], maximum=0.2))

@@ -11,29 +11,33 @@ import pytest
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
+from models.joints import mass_ratio
 from models.laws import ConstantSpeed, Oscillating
-from models.poses import mass_ratio
 from models.scene import Scene
 from reports.compare.beside import SETTLING, Beside, Truth
 from reports.compare.compare import compare
-from reports.compare.drive_rounding import summed
-from reports.compare.errors import Errors
+from reports.compare.errors import Errors, SceneFacts
 from reports.compare.force_rows import OF_STEPS
+from reports.compare.whole_errors import summed
 from reports.judge.cell import check
-from reports.judge.start_allowance import allowance
-from reports.judge.tolerance import DEFAULTS, check_names, limits, parse
+from reports.judge.rules.limits import allowance
+from reports.judge.tolerance import check_names, limits, parse
+from reports.quantities import DEFAULTS
 from sim.run import run
+from tests.worlds.facts import with_facts
 from tests.worlds.fake.engine import turned_link
 from tests.worlds.tiers import slowly
 from tests.worlds.turns import of_turns
 
-ERRORS = Errors((), (), (), curvature=1.0, conditioning=0.8, step_rad=0.01)
+ERRORS = Errors((), (), (), SceneFacts(curvature=1.0, conditioning=0.8, step_rad=0.01))
 
 
 def numbers(scene: Scene, **changed: float) -> dict[str, float]:
     """The limits of errors of which something else is said."""
-    return {n: limit.number for n, limit in limits(scene, replace(ERRORS, **changed), {}).items()}
+    return {
+        n: limit.number for n, limit in limits(scene, with_facts(ERRORS, **changed), {}).items()
+    }
 
 
 def test_every_tolerance_has_a_reason() -> None:
@@ -57,7 +61,7 @@ def test_places_have_room_for_what_closing_the_pins_sets_off(fourbar: Scene) -> 
     """Where bodies turn fast about a centre that is far from their pins, beyond the curvature."""
     slow, fast = (numbers(fourbar, worst_jolt=jolt) for jolt in (0.4, 3.0))
     for name in ("angle", "displacement", "position", "gap"):
-        assert fast[name] == pytest.approx(2.0 * 3.0 * ERRORS.step_rad**2, rel=1e-4)
+        assert fast[name] == pytest.approx(2.0 * 3.0 * ERRORS.of_scene.step_rad**2, rel=1e-4)
         assert slow[name] < fast[name] / 4
     assert all(fast[name] == slow[name] for name in ("velocity", "acceleration"))
 
@@ -120,19 +124,19 @@ def test_the_first_velocities_jump_by_no_more_than_the_jolt(name: str, steps: in
     errors = check(of_turns(name, "pymunk", steps)).errors
     velocity = errors.worst("velocity", "reported", "start")
     differenced = errors.worst("acceleration", "differenced", "start")
-    assert 0.3 < velocity.pure / (errors.jolt * errors.step_rad) < 1.1
-    assert 0.3 < differenced.pure / errors.jolt < 1.1
+    assert 0.3 < velocity.pure / (errors.of_scene.jolt * errors.of_scene.step_rad) < 1.1
+    assert 0.3 < differenced.pure / errors.of_scene.jolt < 1.1
 
 
 def test_the_jolt_of_a_crank_alone_is_half_of_what_keeps_its_end_on_its_circle() -> None:
     """With a long rod the slider's acceleration is the crank's, and nothing turns but the crank."""
     scene = load_scene("slider-crank-central")
     crank = 0.5 * 0.1 / scene.longest_m  # half of omega^2 r of its end, over w^2 L
-    assert crank < check(of_turns(scene, "pymunk")).errors.jolt < 5.0 * crank
+    assert crank < check(of_turns(scene, "pymunk")).errors.of_scene.jolt < 5.0 * crank
 
 
-JOLTED = Errors((), (), (), curvature=2.0, conditioning=0.5, step_rad=0.01, jolt=3.0)
-FINE = replace(JOLTED, step_rad=JOLTED.step_rad / 2)
+JOLTED = with_facts(ERRORS, curvature=2.0, conditioning=0.5, jolt=3.0)
+FINE = with_facts(JOLTED, step_rad=0.005)
 WILD = 1e9
 
 
@@ -146,9 +150,9 @@ def test_the_allowance_follows_the_step_and_halves_where_two_steps_are_differenc
 
 
 def test_light_bodies_that_hold_heavy_ones_may_part_faster_at_the_start() -> None:
-    apart = allowance("acceleration", replace(JOLTED, mass_ratio=100.0))
+    apart = allowance("acceleration", with_facts(JOLTED, mass_ratio=100.0))
     assert apart == pytest.approx(100.0 * allowance("acceleration", JOLTED))
-    wild = replace(JOLTED, mass_ratio=WILD, jolt=WILD)
+    wild = with_facts(JOLTED, mass_ratio=WILD, jolt=WILD)
     assert max(allowance("acceleration", wild), allowance("velocity", wild)) <= 0.1
 
 
@@ -158,10 +162,10 @@ def test_joints_closed_in_places_may_start_with_the_accelerations_of_a_step_besi
         for errors in (JOLTED, FINE)
     )
     assert change == pytest.approx(2.0 * half)
-    assert change == pytest.approx(1.4 * JOLTED.step_rad * JOLTED.curvature**1.5)
+    assert change == pytest.approx(1.4 * 0.01 * 2.0**1.5)
     for rate in ("velocity", "velocity-differenced", "acceleration-differenced"):
         assert allowance(rate, JOLTED, "solved") == allowance(rate, JOLTED)
-    assert allowance("acceleration", replace(JOLTED, curvature=WILD), "solved") <= 0.1
+    assert allowance("acceleration", with_facts(JOLTED, curvature=WILD), "solved") <= 0.1
 
 
 def test_the_mass_ratio_leaves_out_what_has_no_mass(slider_crank: Scene) -> None:

@@ -10,9 +10,9 @@ import pandas as pd
 import pytest
 
 from models.errors import CrankcheckError
-from reports.logs import extent
+from reports.logs import text_lines
 from reports.logs.columns import Columns, columns_of, read_columns
-from reports.logs.text import Layout
+from reports.logs.text_rows import Layout
 
 ROWS = [(0.0, 1.5), (0.1, -2.25), (0.2, 3e-7)]
 
@@ -213,7 +213,7 @@ def test_what_is_no_number_is_told_by_row_and_column(tmp_path: Path, cell: str, 
 
 
 def test_rows_beyond_the_most_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(extent, "MOST_ROWS", 2)
+    monkeypatch.setattr(text_lines, "MOST_ROWS", 2)
     with pytest.raises(CrankcheckError, match="3 rows; at most 2 are read"):
         read_columns(written(tmp_path, "t,a\n0,1\n1,1\n2,1\n"))
 

@@ -13,10 +13,10 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.describe.frame import motion_frame, run_frame
-from reports.logs import force_names
+from reports.logs import force_columns
 from reports.logs.columns import columns_of
 from reports.logs.meanings import understood
 
@@ -72,7 +72,7 @@ def test_a_log_of_a_loaded_mechanism_has_the_budget_of_its_loads() -> None:
     step_s = press.driver.law.period_s / 360
     verdict = crankcheck.judge(press, ran("mujoco", press), step_s=step_s, forces=True)
     assert verdict.verdict == "within", verdict.failures
-    assert verdict.errors.loading > 1.0
+    assert verdict.errors.of_forces.loading > 1.0
 
 
 @pytest.mark.parametrize(
@@ -159,11 +159,11 @@ def test_bad_columns_are_refused(log: dict[str, float], words: str) -> None:
 
 @pytest.mark.parametrize("name", ["B_fz_n", "torque_deg", "normal_n", "C_fx_n_m", "time_s"])
 def test_other_columns_are_none(name: str) -> None:
-    assert not force_names.names_force(name, SCENE)
+    assert not force_columns.names_force(name, SCENE)
 
 
 def test_the_names_that_are_proposed_are_ours_and_each_stands_once(frame: pd.DataFrame) -> None:
-    names = force_names.shown_names(SCENE)
+    names = force_columns.shown_names(SCENE)
     assert len(set(names)) == len(names)
     assert set(names) <= set(frame)
     with pytest.raises(CrankcheckError, match="such as torque_n_m, A_crank_fx_n, A_crank_fy_n, "):
@@ -180,7 +180,7 @@ def test_lengths_and_friction_that_we_write_are_left_alone() -> None:
     assert any("friction_n_m" in name for name in named)
     unused = dict(understood(columns_of(columns, "log"), SCENE, forces=True).unused)
     for name in named:
-        why = force_names.FRICTION if "friction" in name else force_names.LENGTH
+        why = force_columns.FRICTION if "friction" in name else force_columns.LENGTH
         assert unused[name] == why, name
 
 
@@ -204,7 +204,7 @@ ONE = {"B_fx [MN]": 1e6, "B_fx_mN": 1e-3, "B_fx [KN]": 1e3, "torque [mN m]": 1e-
 
 @pytest.mark.parametrize(("column", "one"), ONE.items())
 def test_milli_and_mega_are_told_by_the_size_of_the_letter(column: str, one: float) -> None:
-    assert force_names.force_meaning(column, force_names.force_places(SCENE))[1] == one
+    assert force_columns.force_meaning(column, force_columns.force_places(SCENE))[1] == one
 
 
 def test_forces_at_a_logged_angle_and_of_a_part_of_a_row_are_refused(

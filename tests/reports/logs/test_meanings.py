@@ -13,17 +13,16 @@ import pytest
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.describe.frame import motion_frame
 from reports.logs.channel import OwnLog
 from reports.logs.columns import columns_of
+from reports.logs.kinds import LENGTH, Meaning
 from reports.logs.map_file import FileTable, map_of, map_text, read_map
 from reports.logs.meanings import understood
-from reports.logs.names import meaning
-from reports.logs.own_columns import LENGTH, Meaning
-from reports.logs.scene_names import SceneNames
+from reports.logs.names import SceneNames, meaning
 from reports.logs.time_columns import time_of
 
 SCENE = load_scene("fourbar-lecture-1")

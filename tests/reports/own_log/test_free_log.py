@@ -11,10 +11,10 @@ import pytest
 
 import crankcheck
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.free.kept_motion import kept_motion
+from reports.compare.free.free_truth import kept_motion
 from reports.judge.cell import Cell, check
 from reports.own_log.table import footer, no_cause_text
 from reports.page.log_page import log_page
@@ -154,7 +154,7 @@ def test_rows_of_which_the_truth_is_not_known_are_left_out_and_counted() -> None
     motion = kept_motion(chain, 8.0).at(time_s)
     name = chain.driver.link
     one = judged({f"{name}_rad": motion.links[name].theta}, chain, 1e-12, time_s)
-    assert one.errors.free.left_out == 81 - one.log.time_s.size > 0
+    assert one.errors.of_motion.left_out == 81 - one.log.time_s.size > 0
     assert any("samples after it are not judged" in note for note in one.notes)
 
 

@@ -23,7 +23,7 @@ import pytest
 import crankcheck
 from analytic.kinematics import solve
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.logs.map_file import read_map
 from tests.reports.own_log.conftest import Judge
 from tests.worlds import stranger

@@ -15,7 +15,7 @@ from analytic.kinematics import solve
 from crankcheck import CrankcheckError, LogVerdict
 from crankcheck.testing import assert_within
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.describe.frame import motion_frame
 from reports.describe.with_forces import with_forces

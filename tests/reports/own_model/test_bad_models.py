@@ -14,12 +14,12 @@ import pytest
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError
-from models.files import load_scene
-from models.mjcf import build
+from models.files.reading import load_scene
+from models.mjcf.document import build
 from reports.own_model import assembly
 from reports.own_model.account import read, read_here
-from reports.own_model.request import ModelRequest
-from reports.own_model.running import run_lines
+from reports.own_model.assembly import ModelRequest
+from reports.own_model.judged import run_lines
 from reports.workers.isolated import Limits
 from tests.worlds.own_four_bar import CLOSED, HEALTHY, ROCKER_JOINT, planted, rocker, tied
 from tests.worlds.own_models import line, read_text

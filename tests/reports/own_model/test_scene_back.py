@@ -16,17 +16,16 @@ from hypothesis import strategies as st
 
 from analytic.kinematics import solve
 from models.errors import EngineError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.laws import ConstantSpeed
-from models.mjcf import build
+from models.mjcf.document import build
 from models.motion import State
 from models.scene import Driver, Scene
 from reports.judge.cell import Cell, check
-from reports.own_model.assembly import assembled
-from reports.own_model.request import ModelRequest
-from sim.mujoco.own_model.fault import ModelError
-from sim.mujoco.own_model.patch import advice, patched
-from sim.mujoco.own_model.read import read_model
+from reports.own_model.assembly import ModelRequest, assembled
+from sim.mujoco.own_model.closures import ModelError
+from sim.mujoco.own_model.variants import advice, patched
+from sim.mujoco.reader import read_model
 from sim.own_models import Advised
 from tests.worlds.drawn_model import HALF, UPRIGHT, Drawing, drawn, rotation
 from tests.worlds.own_four_bar import planted

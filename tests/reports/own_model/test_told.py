@@ -11,8 +11,8 @@ from rich.console import Console
 
 from reports.judge.cell import unfinished
 from reports.output.numbers import short
-from reports.own_model import checked_line, sentences
-from reports.own_model.checked_line import without_run
+from reports.own_model import account, sentences
+from reports.own_model.account import without_run
 from reports.own_model.judged import JudgedModel, errors_of, judged_model
 from reports.own_model.table import show
 from tests.worlds.own_models import ACTUATORS, CROWDED, FACTS, SLIDER_CRANK, judged
@@ -178,7 +178,7 @@ def test_factors_and_shares_of_a_limit_in_words(told: str, words: str) -> None:
 def test_a_long_course_keeps_its_largest_error(
     rubbing: JudgedModel, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(checked_line, "MOST", 30)
+    monkeypatch.setattr(account, "MOST", 30)
     long = judged.__wrapped__(SLIDER_CRANK, "motor").own
     whole, course = rubbing.own.course, long.course
     assert whole.time_s.size == long.cell.steps + 1

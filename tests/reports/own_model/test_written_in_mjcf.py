@@ -15,7 +15,7 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.judge.halving import worst_place
 from reports.own_model.account import Account, read_here
-from reports.own_model.request import ModelRequest
+from reports.own_model.assembly import ModelRequest
 from tests.worlds.own_four_bar import BY_SITES, CLOSED, HEALTHY, ROCKER_JOINT, planted, tied
 from tests.worlds.own_models import line, read_text, texts
 

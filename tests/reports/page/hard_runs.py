@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.drawing.moving import INSTANTS, displacements, drawing, moving_points
 from reports.output.provenance import provenance

@@ -9,7 +9,7 @@ import pandas as pd
 
 from analytic.kinematics import solve
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import Motion
 from models.scene import Scene
 from reports.logs.columns import columns_of

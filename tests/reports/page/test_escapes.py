@@ -13,7 +13,7 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
-from models.files import parse_scene, shipped
+from models.files.reading import parse_scene, shipped
 from reports.page.build import page as built
 from reports.requests.figures import FiguresRequest
 from reports.store.reader import read_store

@@ -18,11 +18,11 @@ from reports.page.comment import summary
 from reports.page.sections import SECTIONS
 from reports.page.sections.section import PageReport
 from reports.requests.figures import _planned
-from reports.results.drawable import PLACE_ELASTIC
-from reports.results.recommend import ELASTIC_TARGETS, Recommendation, recommendations
+from reports.results.recommend import Recommendation, recommendations
 from reports.results.table import recommendation_table
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store
+from reports.ways.elastic.results import RESULTS
 from tests.reports.page.conftest import Write, swept
 from tests.reports.page.hostile import Outline
 from tests.reports.page.tab import OUT, Tab
@@ -154,7 +154,7 @@ def test_what_is_rigid_keeps_its_sections_without_what_bends(small: Stored, bent
 
 
 def test_the_course_of_the_beam_is_that_of_the_engine_less_its_error(bent: Stored) -> None:
-    last = PageReport(bent).elastic_lines[-1].cells.iloc[-1]
+    last = PageReport(bent).of_kind("elastic")[-1].cells.iloc[-1]
     trace = bent.trace(str(last["key"]))
     largest = abs(trace["deflection.coupler"] - trace["deflection_error.coupler"]).max()
     off = abs(trace["deflection_error.coupler"]).max() / largest
@@ -169,7 +169,7 @@ def told(found: tuple[Recommendation, ...]) -> str:
 
 def test_settings_are_recommended_by_the_deflection(small: Stored, bent: Stored) -> None:
     found = recommendations(bent)
-    assert [one.target for one in found] == list(ELASTIC_TARGETS)
+    assert [one.target for one in found] == list(RESULTS.targets)
     assert "/ D" in told(found)
     assert "rad" not in told(found)
     text = found[0].snippet()
@@ -202,5 +202,5 @@ def test_figures_of_elastic_cells_say_what_their_errors_are_of(bent: Stored) -> 
     for draw in (convergence.draw, work_precision.draw):
         with styled():
             figure = draw(report, ELASTIC)
-        assert figure.axes[0].get_ylabel() == PLACE_ELASTIC
+        assert figure.axes[0].get_ylabel() == RESULTS.axis
     assert f"convergence-{ELASTIC}" in _planned(report, ["convergence"], [])

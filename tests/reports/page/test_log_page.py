@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 
 from analytic.kinematics import solve
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.causes.cause import Cause
 from reports.logs.map_file import ChannelTable, Map
 from reports.own_log.judged import JudgedLog

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from models.array import Array
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import Motion
 from models.scene import Scene
 from reports.logs.map_file import ChannelTable, Map

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from reports.judge.cell import unfinished
-from reports.own_model.checked_line import without_run
+from reports.own_model.account import without_run
 from reports.own_model.judged import JudgedModel, judged_model
 from reports.page.build import _plotly
 from reports.page.model_page import model_page

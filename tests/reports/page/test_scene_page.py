@@ -14,7 +14,7 @@ from analytic.elastic.discretisation import Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.free.release import release
 from analytic.lectures.synthesis.design import Proposal
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.lectures.design.constructions.construction_page import construction_page
 from reports.lectures.drawing.sheets.polygons.polygon_instant import placed_at_time
 from reports.lectures.drawing.sheets.polygons.polygon_page import polygon_page

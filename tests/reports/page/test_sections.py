@@ -11,7 +11,7 @@ from dataclasses import replace
 import pandas as pd
 import pytest
 
-from models.files import find_scene
+from models.files.reading import find_scene
 from reports.output.numbers import duration
 from reports.page.build import render
 from reports.page.sections.precision import build as build_precision

@@ -11,7 +11,7 @@ import pytest
 
 from analytic.kinematics import reach
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.laws import Oscillating
 from reports.plan.singular import passage_note, refuse_singular
 from tests.worlds.command_line import crank, refused

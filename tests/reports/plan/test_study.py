@@ -13,9 +13,8 @@ import pytest
 
 from models.characteristics import Constant
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
-from models.friction import ConstantFriction
-from models.loads import Load
+from models.files.reading import load_scene, shipped
+from models.loads import ConstantFriction, Load
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.plan.chosen import chosen_scenes, left_out_note

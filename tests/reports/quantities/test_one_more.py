@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.judge.cell import check
-from reports.judge.frames import cell_frame, error_frame
+from reports.judge.rows import cell_frame, error_frame
 from tests.worlds.turns import of_turns
 
 ROOT = Path(__file__).parents[3]

@@ -16,8 +16,8 @@ import crankcheck
 from analytic.lectures.regulation.cycle_search import cycle_of
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.characteristics import Polynomial, Sine
-from models.files import load_scene
-from models.scene_text import scene_text
+from models.files.assemble import scene_text
+from models.files.reading import load_scene
 from tests.analytic.regulation.worked import shaft, yoke
 from tests.worlds.command_line import crank, refused
 from tests.worlds.tiers import few, slowly

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 from rich.console import Console
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.judge.cell import Cell
 from reports.results.candidates import candidates
 from reports.results.cost import costs_of, equal, noise, reached, time_to

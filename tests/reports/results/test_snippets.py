@@ -10,17 +10,18 @@ from xml.etree import ElementTree as Xml
 import pytest
 from rich.console import Console
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.judge.cell import Cell
 from reports.plan.study import Variant, load_study
 from reports.requests.sweep import SweepRequest
-from reports.results.recommend import TARGETS, Recommendation, recommendations
+from reports.results.recommend import Recommendation, recommendations
+from reports.results.result_kind import TARGETS
 from reports.store.reader import Stored, read_store
 from sim.engine import Drive
 from sim.mujoco.settings import writing
+from sim.offers import snippet
 from sim.registry import engine as adapter
 from sim.settings import profile_of, resolved
-from sim.snippets import snippet
 from tests.sim.test_snippets import other
 from tests.worlds import bare
 from tests.worlds.bare import BARE

@@ -9,7 +9,7 @@ from itertools import product
 
 import pytest
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.hard import fourbar
 from reports.judge.rules import RULES
 from reports.selftest import trial

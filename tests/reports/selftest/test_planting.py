@@ -15,13 +15,12 @@ import pytest
 
 from analytic.kinematics import solve
 from models.array import Array
-from models.files import load_scene
-from models.poses import mass_of
-from models.spring_ends import line_ends
-from models.springs import PinSpring
+from models.files.reading import load_scene
+from models.joints import line_ends, mass_of
+from models.loads import PinSpring
 from reports.compare.free.free_truth import free_truth
 from reports.judge.cell import CellRunner, check, examined
-from reports.selftest.all_faults import FAULTS, chosen_faults
+from reports.selftest.all_faults import FAULTS, RUNS, chosen_faults
 from reports.selftest.elastic_runs import (
     BEAM_RUNS,
     BENT,
@@ -51,7 +50,7 @@ from reports.selftest.segment_changes import (
     segments,
     springs,
 )
-from reports.selftest.trial import _cell, _passed, passes
+from reports.selftest.trial import _passed, passes
 from reports.selftest.unseen_elastic import UNSEEN_ELASTIC
 from reports.selftest.unseen_free import UNSEEN_FREE
 from sim.engine import Run
@@ -333,7 +332,7 @@ def test_masses_with_one_factor_move_alike_under_weight_alone(engine_name: str) 
 
 
 def test_a_free_run_without_its_energy_is_not_whole() -> None:
-    cell = _cell(load_scene(SWING), "mujoco", 360, converge=False, kind="free")
+    cell = RUNS["free"].cell(load_scene(SWING), "mujoco", 360, False)
     failed = examined(cell, FAULTS["energy-missing"].plant(1.0))[0].failures
     assert [(one.rule, one.text) for one in failed] == [("CC109", "missing from the log: energy")]
 

@@ -13,9 +13,9 @@ import pytest
 
 from analytic.elastic.discretisation import REFERENCE
 from analytic.free.release import release
-from models.files import load_scene
+from models.cut_scenes import SegmentedScene
+from models.files.reading import load_scene
 from models.scene import Link, Scene
-from models.segmented import SegmentedScene
 from reports.selftest import free_changes, node_changes, segment_changes
 from reports.selftest.all_faults import FAULTS
 from reports.selftest.elastic_runs import BEAM_RUNS, BENT, LOOSE, elastic_cell

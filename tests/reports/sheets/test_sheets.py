@@ -14,7 +14,7 @@ from analytic.kinematics import reach
 from analytic.lectures.drawings.drawn_polygons import draw_polygons
 from analytic.lectures.drawings.placed_mechanism import DriverState
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.lectures.drawing.sheets.canvas import Canvas, line, text

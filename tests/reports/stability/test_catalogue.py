@@ -17,8 +17,8 @@ from models.errors import ReachError
 from models.hard import slider_crank_by_piston, slotted_lever, triad_platform
 from models.laws import Oscillating
 from models.scene import Driver, Scene
+from reports.stability.all_cases import CATALOGUE, GROUPS
 from reports.stability.case import Trial
-from reports.stability.catalogue import CATALOGUE, GROUPS
 from reports.stability.catalogue.change_points import TRIAD_CRANK_M
 from reports.stability.error_series import nearest
 from reports.stability.grading import graded
@@ -170,7 +170,7 @@ def test_how_near_a_block_is_to_its_pivot_is_said(case: str, value: float, sine:
 
 def test_every_elastic_case_gives_segments_and_few_samples() -> None:
     for case in CATALOGUE.values():
-        for trial in map(case.trial, case.values if case.elastic else ()):
+        for trial in map(case.trial, case.values if case.way == "elastic" else ()):
             segments = len(trial.scene.links) + trial.segments - 1
             assert len(trial.given.links) == segments, case.name
             assert trial.steps / trial.every <= 4000, case.name

@@ -15,7 +15,7 @@ import pytest
 from typer.testing import Result
 
 from models.errors import CrankcheckError
-from reports.stability.catalogue import CATALOGUE
+from reports.stability.all_cases import CATALOGUE
 from reports.stability.critical import critical
 from reports.stability.grading import graded
 from reports.stability.matrix import FILE, Matrix, label, read_matrix, to_json

@@ -15,18 +15,18 @@ from analytic.kinematics import solve
 from benchmarks.toggle import LINES, RandomThrow, Thrown, right_from, threw, throws, told
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene
-from reports.compare.free.toggle_passage import toggle_passage
+from models.files.reading import load_scene
+from reports.compare.free.hard_runs import toggle_passage
 from reports.requests.stability import _cases
+from reports.stability.all_cases import CATALOGUE
 from reports.stability.case import Trial
-from reports.stability.catalogue import CATALOGUE
 from reports.stability.catalogue.free_motion import from_rest
 from reports.stability.error_series import ErrorSeries, error_series
-from reports.stability.free_error_series import free_error_series, free_start
 from reports.stability.grades import outcome
 from reports.stability.grading import graded
 from reports.stability.limit import at_limit
 from reports.stability.toggle import at_toggle, thrown_start
+from reports.ways.free.series import free_error_series, free_start
 from sim.engine import Energy, Run
 from sim.run import run
 
@@ -187,11 +187,11 @@ def test_a_step_that_is_too_large_is_seen_and_nothing_said_of_a_crank_that_nobod
 
 def test_cases_of_free_motion_are_run_when_asked_for() -> None:
     def named(*names: str, free: bool = False, elastic: bool = False) -> list[str]:
-        return [case.name for case in _cases([*names], free=free, elastic=elastic)]
+        return [case.name for case in _cases([*names], {"free": free, "elastic": elastic})]
 
     free, driven, elastic = named(free=True), named(), named(elastic=True)
     assert {*free} == {n for n, case in CATALOGUE.items() if case.judge in ("let-go", "toggle")}
-    assert {*elastic} == {case.name for case in CATALOGUE.values() if case.elastic}
+    assert {*elastic} == {case.name for case in CATALOGUE.values() if case.way == "elastic"}
     assert sorted(free + driven + elastic) == sorted(CATALOGUE)
     assert named("free-long") == ["free-long"]
     with pytest.raises(CrankcheckError, match="--free and kite: no case of free motion; those are"):

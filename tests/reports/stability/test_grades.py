@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.compare.errors import Departure
 from reports.stability.case import Case, Trial
 from reports.stability.critical import critical, line

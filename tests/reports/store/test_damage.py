@@ -19,7 +19,7 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from models.regular import UnreadableError
+from models.files.inputs import UnreadableError
 from reports.requests.diff import DiffRequest
 from reports.requests.report import ReportRequest
 from reports.requests.verify import VerifyRequest

@@ -14,9 +14,9 @@ import pytest
 from rich.console import Console
 
 from analytic.kinematics import solve
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
-from reports.compare.free.kept_motion import released_state
+from reports.compare.free.free_truth import released_state
 from reports.judge.cell import Cell
 from reports.requests.sweep import SweepRequest
 from reports.store.reader import read_store
@@ -136,7 +136,7 @@ class Watched(Isolated[Answer]):
 
 @pytest.mark.usefixtures("_bad_engine")
 def test_a_wider_limit_runs_what_was_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("reports.workers.scheduler.Isolated", Watched)
+    monkeypatch.setattr("reports.workers.isolated.Isolated", Watched)
     folder = tmp_path / "store"
 
     def ran(limit_s: float, *faults: str, again: bool = False) -> str:

@@ -12,14 +12,13 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.lectures.synthesis.asked import Asked
-from analytic.lectures.synthesis.examine import Examined
-from analytic.lectures.synthesis.passing import passing_times
+from analytic.lectures.synthesis.design import Asked
+from analytic.lectures.synthesis.examine import Examined, passing_times
 from analytic.lectures.synthesis.solutions import solutions_of
 from models.errors import CrankcheckError
 from models.laws import ConstantSpeed, Oscillating
-from models.lectures.tasks.coupler import CouplerTask
 from models.lectures.tasks.files import load_task, shipped_tasks
+from models.lectures.tasks.positions import CouplerTask
 from models.lectures.tasks.task import TaskTable
 from models.scene import span
 from reports.lectures.design.proof import by_reference, proven

@@ -10,11 +10,11 @@ from typer.testing import CliRunner, Result
 
 from analytic.lectures.synthesis import coupler
 from analytic.lectures.synthesis.solutions import solutions_of
-from models.files import read_scene
+from models.files.reading import read_scene
 from models.lectures.tasks.files import find_task, load_task
 from reports.cli import app
 from reports.lectures.design import synth as command
-from reports.lectures.design.solution_table import solution_frame
+from reports.lectures.design.design_tables import solution_frame
 from tests.worlds.command_line import flat, refused
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.plan.steps import MOST_SEARCHED

@@ -15,13 +15,13 @@ from optuna.trial import TrialState
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from models.files import shipped
+from models.files.reading import shipped
 from reports.requests.tune import TuneRequest
 from reports.tune.attempt import Attempt, Bench
 from reports.workers.signals import Stopped
 from sim.engine import Settings
 from sim.mujoco.knobs import EVALUATIONS
-from sim.tuning import Knob, search_space
+from sim.offers import Knob, search_space
 from tests.worlds.command import PYTHON, script
 from tests.worlds.programs import Start
 from tests.worlds.tiers import slow

@@ -8,13 +8,13 @@ from xml.etree import ElementTree as Xml
 
 import pytest
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, unfinished
 from reports.output.junit import junit
 from reports.verify import advised as advice
 from reports.verify.advised import advised
-from reports.verify.junit import suite
+from reports.verify.table import suite
 from tests.worlds.turns import of_turns
 
 

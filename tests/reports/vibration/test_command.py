@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from models.files import find_scene, read_text
+from models.files.reading import find_scene, read_text
 from tests.worlds.command_line import crank, refused
 
 SPEED = "speed_rad_s = 7.3686"

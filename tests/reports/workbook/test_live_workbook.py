@@ -16,14 +16,12 @@ import pytest
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
+from models.files.reading import load_scene, shipped
 from models.laws import ConstantSpeed
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
-from reports.lectures.drawing.workbook.beside_values import left_out
-from reports.lectures.drawing.workbook.evaluated import evaluated
 from reports.lectures.drawing.workbook.family import family
-from reports.lectures.drawing.workbook.formula_table import Input
-from reports.lectures.drawing.workbook.live_workbook import formulas_of, live_workbook
+from reports.lectures.drawing.workbook.formula_table import Input, evaluated
+from reports.lectures.drawing.workbook.live_workbook import formulas_of, left_out, live_workbook
 from reports.lectures.drawing.workbook.scene_family import scene_curves, scene_family, varied_scene
 from reports.lectures.drawing.workbook.scene_family_workbook import scene_family_workbook
 from tests.worlds.live_tables import KINDS, held_to_the_reference, inputs_of, live, scene_of

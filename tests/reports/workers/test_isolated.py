@@ -18,11 +18,9 @@ import pytest
 
 from models.errors import CrankcheckError, SceneError
 from reports.workers import isolated as isolation
-from reports.workers.isolated import Isolated, Limits, Lost
+from reports.workers.isolated import FEW, Isolated, Limits, Lost, as_they_end, run_all
 from reports.workers.one_thread import CHOICES, THREADS, one_thread
-from reports.workers.programs import run_child
-from reports.workers.scheduler import FEW, as_they_end, run_all
-from reports.workers.signals import Stopped
+from reports.workers.signals import Stopped, run_child
 from tests.worlds import jobs
 from tests.worlds.programs import ROOT, until
 from tests.worlds.tiers import slowly

@@ -14,28 +14,23 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.elastic.node_start import node_start
-from analytic.elastic.segment_start import segment_start
+from analytic.elastic.engine_start import node_start, segment_start
 from analytic.free.machine import Machine
 from models.array import Array
-from models.beamed import BeamedScene
-from models.characteristics import Characteristic, Polynomial
+from models.characteristics import Characteristic, Polynomial, Pulse, Staircase
+from models.cut_scenes import BeamedScene, SegmentedScene
+from models.driver import Released
 from models.elastic import Shape
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.laws import ConstantSpeed, Oscillating
-from models.loads import Load, Over
+from models.loads import LineSpring, Load, Over, PinSpring, SlideSpring, Spring
 from models.motion import Motion
-from models.released import Released
 from models.scene import GROUND, Driver, Scene
-from models.segmented import SegmentedScene
-from models.springs import LineSpring, PinSpring, SlideSpring, Spring
-from models.staircase import Staircase
-from models.waves import Pulse
 from sim.engine import Run, Settings
-from sim.exudyn import session
+from sim.exudyn import engine
 from sim.exudyn.engine import ENGINE
-from sim.exudyn.jumps import StepMeans
+from sim.exudyn.loads import StepMeans
 from sim.run import run
 from tests.worlds import runs
 from tests.worlds.let_go import released
@@ -317,9 +312,9 @@ def test_a_beam_that_is_not_that_of_the_scene_is_refused(
     key: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     own = BeamedScene(load_scene("fourbar-elastic"), 2)
-    held = session.held_beams
+    held = engine.held_beams
     monkeypatch.setattr(
-        session,
+        engine,
         "held_beams",
         lambda *args: {
             name: tuple(replace(one, **{key: getattr(one, key) * 1.001 + 1e-9}) for one in beam)

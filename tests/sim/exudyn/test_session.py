@@ -11,14 +11,13 @@ import pytest
 
 from analytic.kinematics import solve
 from models.errors import EngineError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.hard import double_parallelogram
 from models.laws import FromRest, Oscillating, SpeedChange
 from models.scene import Scene
 from sim.engine import Run, Settings
-from sim.exudyn.crank import CrankCourse, speeds
-from sim.exudyn.engine import ENGINE
-from sim.exudyn.session import ExudynSession
+from sim.exudyn.crank_drive import CrankCourse, speeds
+from sim.exudyn.engine import ENGINE, ExudynSession
 from tests.worlds import runs
 from tests.worlds.runs import driven_by
 

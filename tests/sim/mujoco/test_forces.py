@@ -15,19 +15,19 @@ import pytest
 
 from analytic.forces import kinetostatics
 from analytic.free.window_chain import ChainMotion
-from models import mjcf_friction, tree
+from models import tree
 from models.characteristics import Constant, Sine
 from models.errors import EngineError
-from models.files import load_scene, shipped
-from models.forces import Forces
-from models.friction import CoulombFriction
+from models.files.reading import load_scene, shipped
+from models.hard import Chain
 from models.joints import block_name
-from models.loads import Load
-from models.mjcf import build
+from models.loads import CoulombFriction, Load
+from models.mjcf import forces
+from models.mjcf.document import build
+from models.motion import Forces
 from models.scene import Scene
 from models.tabulated import Tabulated
-from models.window_chain import Chain
-from sim.mujoco import session
+from sim.mujoco import engine
 from sim.run import run
 from tests.worlds import runs
 from tests.worlds.equilibrium import left_over
@@ -278,7 +278,7 @@ def test_the_tree_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
         plans.append(args)
         return tree.plan(*args, **options)
 
-    for module in (mjcf_friction, session):
+    for module in (forces, engine):
         monkeypatch.setattr(module, "plan", counted)
     opened(FOURBAR, settings={"close": "B"})
     assert len(plans) == 1

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check
 from tests.worlds.tiers import slowly

@@ -13,16 +13,13 @@ import pytest
 from analytic.free.release import release
 from analytic.free.window_chain import ChainMotion
 from models.array import Array
-from models.characteristics import Characteristic, Polynomial, Sine
-from models.files import load_scene, parse_scene
+from models.characteristics import Characteristic, Polynomial, Pulse, Sine, Staircase
+from models.files.reading import load_scene, parse_scene
+from models.hard import Chain
 from models.loads import Load
-from models.staircase import Staircase
 from models.tabulated import Tabulated
-from models.waves import Pulse
-from models.window_chain import Chain
-from sim.mujoco.load_stages import LoadStages, stage_sizes
-from sim.mujoco.session import MujocoSession
-from sim.mujoco.stroke_shares import forward_parts
+from sim.mujoco.engine import MujocoSession
+from sim.mujoco.loading import LoadStages, forward_parts, stage_sizes
 from sim.run import run
 from tests.worlds.runs import acted_on, opened
 from tests.worlds.tiers import slowly

@@ -19,14 +19,19 @@ from analytic.kinematics import solve
 from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene
-from reports.own_model.assembly import assembled
-from reports.own_model.request import ModelRequest
+from reports.own_model.assembly import ModelRequest, assembled
 from sim.mujoco.own_model import session
-from sim.mujoco.own_model.fault import ModelError
-from sim.mujoco.own_model.patch import RecommendedAttributes, advice, patched
-from sim.mujoco.own_model.read import ReadModel, read_model
+from sim.mujoco.own_model.closures import ModelError
 from sim.mujoco.own_model.session import OwnModelSession
-from sim.mujoco.own_model.variants import RECOMMENDED, applied, profiles
+from sim.mujoco.own_model.variants import (
+    RECOMMENDED,
+    RecommendedAttributes,
+    advice,
+    applied,
+    patched,
+    profiles,
+)
+from sim.mujoco.reader import ReadModel, read_model
 from sim.mujoco.settings import INTEGRATORS
 from sim.own_models import Advised, Tour
 from tests.worlds.own_four_bar import CLOSED, HEALTHY, planted

@@ -16,18 +16,16 @@ from scipy.integrate import solve_ivp  # type: ignore[import-untyped]  # ships n
 from analytic.free.release import release
 from analytic.multibody.release_multibody import start_state
 from models.array import Array
-from models.characteristics import Polynomial
+from models.characteristics import Polynomial, Pulse
+from models.driver import Released
 from models.errors import EngineError
-from models.files import load_scene, parse_scene
-from models.loads import Load
-from models.mjcf import build
+from models.files.reading import load_scene, parse_scene
+from models.loads import LineSpring, Load, PinSpring, SlideSpring, Spring
+from models.mjcf.document import build
 from models.motion import State
-from models.released import Released
 from models.scene import GROUND, Driver, Link, Point, Scene
-from models.springs import LineSpring, PinSpring, SlideSpring, Spring
-from models.waves import Pulse
 from sim.check import refuse_other_model
-from sim.mujoco.session import MujocoSession
+from sim.mujoco.engine import MujocoSession
 from sim.run import run
 from tests.worlds import runs
 from tests.worlds.equilibrium import left_over

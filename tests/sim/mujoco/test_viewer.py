@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from models.characteristics import Sine
-from models.files import load_scene
-from models.friction import ConstantFriction
-from models.loads import Load
+from models.files.reading import load_scene
+from models.loads import ConstantFriction, Load
 from sim.mujoco import viewer as mujoco_viewer
 from tests.worlds.runs import acted_on, start_of
 

@@ -13,10 +13,10 @@ import pytest
 from analytic.forces.kinetostatics import forces
 from models.array import Array
 from models.characteristics import Constant, Sine
-from models.files import load_scene
-from models.forces import Forces
+from models.files.reading import load_scene
 from models.hard import double_parallelogram
 from models.loads import Load
+from models.motion import Forces
 from models.scene import GROUND, Scene
 from reports.contract.clauses.reactions import named
 from sim.engine import Drive, Run

@@ -14,23 +14,21 @@ import pytest
 from analytic.free.release import release
 from analytic.kinematics import solve
 from models.array import Array
-from models.characteristics import Constant, Polynomial, Sine
+from models.characteristics import Constant, Polynomial, Sine, Staircase
+from models.driver import Released
 from models.errors import EngineError
-from models.files import load_scene
-from models.loads import Load
-from models.released import Released
+from models.files.reading import load_scene
+from models.hard import Chain
+from models.loads import LineSpring, Load, PinSpring, SlideSpring, Spring
 from models.scene import GROUND, Driver, Scene
-from models.springs import LineSpring, PinSpring, SlideSpring, Spring
-from models.staircase import Staircase
 from models.tabulated import Tabulated
-from models.window_chain import Chain
 from sim.engine import Run
+from sim.offers import Stepping
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.force_recipe import FORCE_RECIPE
 from sim.pymunk.snippet import SNIPPET
 from sim.run import run
 from sim.settings import resolved
-from sim.snippets import Stepping
 from tests.worlds.let_go import released
 from tests.worlds.runs import acted_on, opened, ran
 from tests.worlds.tiers import slowly

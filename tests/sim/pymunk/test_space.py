@@ -10,7 +10,7 @@ import pymunk
 import pytest
 
 from models.errors import EngineError
-from models.files import load_scene, parse_scene, shipped
+from models.files.reading import load_scene, parse_scene, shipped
 from models.scene import Scene
 from sim.pymunk.space import build
 from tests.worlds.runs import start_of
@@ -43,7 +43,7 @@ def test_the_crank_is_kinematic_or_under_a_servo_dynamic_with_a_motor() -> None:
     model = build(scene, start_of(scene))
     assert model.crank.body_type == pymunk.Body.KINEMATIC
     assert kinds(model.space) == ["PivotJoint"] * 3
-    servo = build(scene, start_of(scene), servo=True)
+    servo = build(scene, start_of(scene), drive="servo")
     assert servo.crank.body_type == pymunk.Body.DYNAMIC
     assert servo.motor is not None
     assert kinds(servo.space) == ["PivotJoint"] * 4 + ["SimpleMotor"]
@@ -99,7 +99,7 @@ def test_a_free_link_without_mass_is_named_but_a_prescribed_crank_needs_none() -
         build(bare("rocker"), state)
     build(bare("crank"), state)
     with pytest.raises(EngineError, match="crank: mass_kg 0"):
-        build(bare("crank"), state, servo=True)
+        build(bare("crank"), state, drive="servo")
 
 
 @pytest.mark.parametrize("line", [20.0, 200.0, 340.0])

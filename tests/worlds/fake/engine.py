@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import EngineError
-from models.joints import blocks, bodies, sliding_angle
+from models.joints import blocks, bodies, centre_of, mass_of, sliding_angle
 from models.motion import Motion, State
-from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
 from sim.engine import (
     BodyPose,

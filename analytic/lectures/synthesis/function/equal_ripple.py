@@ -70,7 +70,7 @@ class EqualRipple:
     before: float
 
 
-def equal_ripple(task: FunctionTask, start: Generator, free: Sequence[str]) -> EqualRipple:
+def equal_ripple(task: FunctionTask, start: Generator, varied: Sequence[str]) -> EqualRipple:
     """The generator with equal ripples near one that meets the task's precision points.
 
     Parameters
@@ -79,7 +79,7 @@ def equal_ripple(task: FunctionTask, start: Generator, free: Sequence[str]) -> E
         The function and its maps.
     start : Generator
         One that meets n points in one assembly.
-    free : sequence of str
+    varied : sequence of str
         Which of the starts may be moved: n - 3 of "input" and "output".
 
     Raises
@@ -92,14 +92,14 @@ def equal_ripple(task: FunctionTask, start: Generator, free: Sequence[str]) -> E
     exact = float(np.max(np.abs(start.error(course.turns, course.ways, sign))))
     if exact <= ROUNDING:  # it generates the function everywhere
         return EqualRipple(start, task.x_points, exact, exact)
-    now = course.ripples(start, sign, 4 + len(free))
+    now = course.ripples(start, sign, 4 + len(varied))
     if isinstance(now, str):
         raise CrankcheckError(f"equal ripples can not be looked for: {now}")
     before = now.largest
     for _ in range(STEPS):
         if now.unevenness <= max(EVEN * now.largest, ROUNDING):
             return EqualRipple(now.generator.positive, course.zeros(now), now.largest, before)
-        now = _stepped(course, now, free)
+        now = _stepped(course, now, varied)
     raise CrankcheckError(
         f"no equal ripples after {STEPS} steps: the errors still differ by "
         f"{now.unevenness / now.largest:.1e} of the largest; the points of Chebyshev's spacing "
@@ -118,13 +118,13 @@ def _one_sign(start: Generator, task: FunctionTask) -> float:
     return float(signs[0])
 
 
-def _stepped(course: _Course, now: Ripples, free: Sequence[str]) -> Ripples:
+def _stepped(course: _Course, now: Ripples, varied: Sequence[str]) -> Ripples:
     """A step that makes the largest error smaller: Newton's for equal tips, or where that leads
     nowhere the best of linear errors; each halved until it does."""
     for propose in (_newton, _linear):
-        step = propose(course, now, free)
+        step = propose(course, now, varied)
         for _ in range(HALVINGS):
-            moved = now.generator.moved(step, free)
+            moved = now.generator.moved(step, varied)
             after = course.ripples(moved, now.sign, len(now.x)) if moved.sound else ""
             if isinstance(after, Ripples) and _better(after, now):
                 return after
@@ -136,10 +136,10 @@ def _stepped(course: _Course, now: Ripples, free: Sequence[str]) -> Ripples:
     )
 
 
-def _newton(course: _Course, now: Ripples, free: Sequence[str]) -> Array:
+def _newton(course: _Course, now: Ripples, varied: Sequence[str]) -> Array:
     """The step after which the tips, were they linear and in place, were equal."""
     turns, ways = course.at(now.x)
-    gradient = now.generator.gradient(turns, now.sign, free)
+    gradient = now.generator.gradient(turns, now.sign, varied)
     system = np.column_stack([gradient, -np.sign(now.tips)])
     try:
         step = np.linalg.solve(system, -now.generator.error(turns, ways, now.sign))[:-1]
@@ -148,11 +148,11 @@ def _newton(course: _Course, now: Ripples, free: Sequence[str]) -> Array:
     return np.asarray(step, dtype=np.float64)
 
 
-def _linear(course: _Course, now: Ripples, free: Sequence[str]) -> Array:
+def _linear(course: _Course, now: Ripples, varied: Sequence[str]) -> Array:
     """The step after which the largest error of many looks, were they linear, is least."""
     x = np.concatenate([course.x[::8], now.x])
     turns, ways = course.at(x)
-    gradient = now.generator.gradient(turns, now.sign, free)
+    gradient = now.generator.gradient(turns, now.sign, varied)
     error = now.generator.error(turns, ways, now.sign) / now.largest
     sizes = np.linalg.norm(gradient, axis=0)
     scaled, ones = gradient / sizes, np.ones((len(x), 1))

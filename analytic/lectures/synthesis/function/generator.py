@@ -2,18 +2,25 @@
 
 The numbers k1, k2, k3 are those of Freudenstein's equation. What is worked out here leads a search;
 what a mechanism is said to do is asked of the reference.
+
+n points give n linear equations in products of lengths and starts. Three points have four such
+products: one vector fits, up to its length. Where starts are found there are two more products than
+equations, and x = u p + v q fits for all u, v; that the products belong together is one equation
+more, homogeneous, quadratic in u, v of four points, cubic of five. So there are at most two
+solutions and at most three, and the roots of one polynomial are all of them.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 
 from models.array import Array
+from models.errors import CrankcheckError
 
 WIDEST = 1e4
 """A length that is so many times larger or smaller than the scale is none of a mechanism."""
@@ -79,34 +86,36 @@ class Generator(ABC):
         plus, minus = (np.abs(self.error(turns, ways, sign)) for sign in (1.0, -1.0))
         return np.where(np.nan_to_num(plus, nan=np.inf) <= minus, 1.0, -1.0)
 
-    def gradient(self, turns: Array, sign: float | Array, free: Sequence[str]) -> Array:
-        """The derivatives of the error by k1, k2, k3 and the free starts (T, 3 + free)."""
+    def gradient(self, turns: Array, sign: float | Array, varied: Sequence[str]) -> Array:
+        """The derivatives of the error by k1, k2, k3 and the free starts (T, 3 + varied)."""
         phi = self.input_start + turns
         slopes = self.slopes(phi, self.output(phi, sign))
         columns = [-slopes[0], -slopes[1], -slopes[2]]
-        columns += [-slopes[3]] * ("input" in free) + [np.ones_like(turns)] * ("output" in free)
+        columns += [-slopes[3]] * ("input" in varied) + [np.ones_like(turns)] * ("output" in varied)
         return np.stack(columns, axis=1)
 
-    def moved(self, step: Array, free: Sequence[str]) -> Self:
+    def moved(self, step: Array, varied: Sequence[str]) -> Self:
         """That with its numbers and its free starts moved, in the order of `gradient`."""
         starts = {
             f"{name}_start": getattr(self, f"{name}_start") + float(by)
-            for name, by in zip([n for n in STARTS if n in free], step[3:], strict=True)
+            for name, by in zip([n for n in STARTS if n in varied], step[3:], strict=True)
         }
         k1, k2, k3 = (old + float(by) for old, by in zip(self.k, step, strict=False))
         return replace(self, k=(k1, k2, k3), **starts)
 
-    def polished(self, turns: Array, ways: Array, free: Sequence[str]) -> Self:
+    def polished(self, turns: Array, ways: Array, varied: Sequence[str]) -> Self:
         """That of which the errors in precision points (n,) are rounding: Newton's method, as long
         as it helps."""
         best, signs = self, self.signs(turns, ways)
         error = best.error(turns, ways, signs)
         for _ in range(POLISHES):
             try:
-                step = np.asarray(np.linalg.solve(best.gradient(turns, signs, free), -error), float)
+                step = np.asarray(
+                    np.linalg.solve(best.gradient(turns, signs, varied), -error), float
+                )
             except np.linalg.LinAlgError:
                 break
-            nearer = best.moved(step, free)
+            nearer = best.moved(step, varied)
             left = nearer.error(turns, ways, signs)
             if not np.max(np.abs(left)) < np.max(np.abs(error)):
                 break
@@ -125,3 +134,68 @@ def opposite(angle: float) -> float:
 def toggled(turned: tuple[str, ...], now: tuple[str, ...]) -> tuple[str, ...]:
     """The starts that are turned after another turn of some: twice is not at all."""
     return tuple(name for name in STARTS if (name in turned) != (name in now))
+
+
+RANK = 1e-13
+"""Of the largest singular value: equations that are nearer to each other are one."""
+REAL = 1e-7
+"""A root with a smaller imaginary part is a double one: its two parts are that far apart by
+rounding. Roots that are nearer are one."""
+LOOKS = 24
+"""Directions among which the one is chosen that a root is furthest from."""
+
+Form = Callable[[Array], float]
+
+
+def one_vector(equations: Array) -> Array:
+    """The unit vector that n equations (n, n + 1) leave. Raises CrankcheckError for several."""
+    return np.asarray(_null_space(equations, 1)[0])
+
+
+def vectors_of(equations: Array, form: Form, degree: int) -> list[Array]:
+    """The vectors, up to their length, that n equations (n, n + 2) leave and a homogeneous form of
+    a degree vanishes at: all of them, at most as many as the degree.
+
+    Raises
+    ------
+    CrankcheckError
+        Equations of which some are one, or a form that vanishes at every vector.
+    """
+    p, q = _null_space(equations, 2)
+    turns = np.pi * np.arange(LOOKS) / LOOKS
+    sizes = np.array([abs(form(np.cos(t) * p + np.sin(t) * q)) for t in turns])
+    k = int(np.argmax(sizes))
+    if sizes[k] <= RANK:
+        raise _special()
+    # The direction with the largest value leads: no root is at infinity, nor near it.
+    lead = np.cos(turns[k]) * p + np.sin(turns[k]) * q
+    rest = np.cos(turns[k]) * q - np.sin(turns[k]) * p
+    nodes = np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
+    values = [form(t * lead + rest) for t in nodes]
+    return [t * lead + rest for t in _real_roots(np.polyfit(nodes, values, degree))]
+
+
+def _null_space(equations: Array, dimension: int) -> Array:
+    """An orthonormal basis of what equations leave (dimension, m)."""
+    scaled = equations / np.linalg.norm(equations, axis=1, keepdims=True)
+    _, sizes, rows = np.linalg.svd(scaled)
+    if sizes[-1] <= RANK * sizes[0]:
+        raise _special()
+    return np.asarray(rows[-dimension:])
+
+
+def _real_roots(polynomial: Array) -> list[float]:
+    """Those of a polynomial, double ones once, in order."""
+    roots: list[float] = []
+    for root in sorted(np.roots(polynomial), key=lambda each: float(each.real)):
+        near = REAL * (1.0 + abs(root))
+        if abs(root.imag) <= near and not (roots and root.real - roots[-1] <= near):
+            roots.append(float(root.real))
+    return roots
+
+
+def _special() -> CrankcheckError:
+    return CrankcheckError(
+        "the precision points are so special that a whole family of mechanisms meets them, as with "
+        "an output in proportion to the input; ask for fewer points, or change a range"
+    )

@@ -6,9 +6,21 @@ import cmath
 import math
 from collections.abc import Iterator, Mapping
 
-from analytic.lectures.synthesis.asked import Asked, AskedAngle, AskedSlide, PrecisionPosition
-from analytic.lectures.synthesis.construction import Dot, Element, Segment, Step
-from analytic.lectures.synthesis.fourbar_draft import COUPLER, INPUT, OUTPUT, PINS, PIVOTS
+from analytic.lectures.synthesis.design import (
+    COUPLER,
+    INPUT,
+    OUTPUT,
+    PINS,
+    PIVOTS,
+    Asked,
+    AskedAngle,
+    AskedSlide,
+    Dot,
+    Element,
+    PrecisionPosition,
+    Segment,
+    Step,
+)
 from analytic.lectures.synthesis.function.generator import Generator
 from analytic.lectures.synthesis.function.slider_crank import SliderCrankGenerator
 from analytic.lectures.synthesis.function.structural_error import FunctionProposal

@@ -22,8 +22,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.lectures.synthesis.function.fourbar import Found, over
-from analytic.lectures.synthesis.function.generator import Generator, opposite, toggled
-from analytic.lectures.synthesis.function.pencil import one_vector, vectors_of
+from analytic.lectures.synthesis.function.generator import (
+    Generator,
+    one_vector,
+    opposite,
+    toggled,
+    vectors_of,
+)
 from models.array import Array
 
 

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.kinematics import solve_driven
-from analytic.lectures.synthesis.design import Proposal
+from analytic.lectures.synthesis.design import OUTPUT, PINS, Proposal
 from analytic.lectures.synthesis.examine import Examined
-from analytic.lectures.synthesis.fourbar_draft import OUTPUT, PINS
 from analytic.lectures.synthesis.function.generator import Generator
 from analytic.lectures.synthesis.function.task import FunctionTask
 from models.array import Array

@@ -5,6 +5,21 @@ with a crank and over places in their couplers, and kept while the process lives
 assembly are kept: those of the other one are their mirror images, for which a curve is mirrored.
 
 Source of the idea: J. A. Hrones and G. L. Nelson, Analysis of the Four-Bar Linkage (1951).
+
+A curve drawn at constant speed is z(s) = sum of c_k exp(2 pi i k s), s its share of the length. A
+descriptor is the coefficients c_k of -H..H but for c_0, which is the place, over the root of the
+sum of all squares, which is the size. A turn by rho and a start later by sigma make of c_k the
+number c_k exp(i rho + 2 pi i k sigma). The similarity of two curves is
+
+    max over sigma of | sum of conj(c_k) d_k exp(2 pi i k sigma) |      from 0 to 1,
+
+which no turn and no start changes. With coefficients normalised one by one to a phase of 0, as in
+the sources, a nearly round curve, whose c_-1 is nearly 0, would have a descriptor by chance.
+
+Source: J. R. McGarva and G. Mullineux, Harmonic representation of closed curves, Applied
+Mathematical Modelling 17 (1993), pages 213 to 218; I. Ullah and S. Kota, Optimal synthesis of
+mechanisms for path generation using Fourier descriptors and global search methods, Journal of
+Mechanical Design 119 (1997), pages 504 to 510.
 """
 
 from __future__ import annotations
@@ -15,12 +30,10 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from scipy.interpolate import CubicSpline  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.lectures.synthesis.path.arc_length import at_shares, shares, smooth
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, real_size
-from analytic.lectures.synthesis.path.descriptors import descriptors, match
 from analytic.lectures.synthesis.path.fit import Fitted, placed
-from analytic.lectures.synthesis.path.spread import between, spread
 from analytic.lectures.synthesis.path.task import UnitPath, refuse_points
 from analytic.lectures.synthesis.path.unit_four_bar import (
     BOUNDS,
@@ -31,6 +44,110 @@ from analytic.lectures.synthesis.path.unit_four_bar import (
     lengths,
 )
 from models.array import Array
+
+FINE = 32
+"""Chords to which each piece of a spline is cut, to measure it."""
+
+
+def shares(curves: Complexes) -> Array:
+    """Which share of the whole length is drawn at each point of curves (E, M), from 0 to 1."""
+    steps = np.abs(np.diff(curves, axis=1))
+    total = np.cumsum(steps, axis=1)
+    share = np.concatenate([np.zeros((len(curves), 1)), total], axis=1)
+    return np.asarray(share / np.maximum(share[:, -1:], np.finfo(np.float64).tiny))
+
+
+def at_shares(share: Array, values: Complexes | Array, wanted: Array) -> Complexes | Array:
+    """Values (E, M) between their own shares, at wanted shares (E, W), each within 0 to 1.
+
+    All rows at once: each is moved by its number, so that they follow each other on one axis.
+    """
+    rows = 2.0 * np.arange(len(share))[:, None]
+    flat = (share + rows).ravel()
+    upper = np.searchsorted(flat, (wanted + rows).ravel(), side="right").reshape(wanted.shape)
+    first = np.arange(len(share))[:, None] * share.shape[1]
+    upper = np.clip(upper, first + 1, first + share.shape[1] - 1)
+    low, high = share.ravel()[upper - 1], share.ravel()[upper]
+    part = (wanted - low) / np.maximum(high - low, 1e-300)
+    before, after = values.ravel()[upper - 1], values.ravel()[upper]
+    between: Complexes | Array = before + part * (after - before)
+    return between
+
+
+def smooth(points: Complexes, closed: bool) -> tuple[Complexes, Array]:
+    """A fine curve through points, in order, and the shares of its length in them, (N,).
+
+    It is a cubic spline over the length of the chords; a closed curve ends where it starts, and
+    the shares are below 1.
+    """
+    knots = np.append(points, points[0]) if closed else points
+    at = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(knots)))])
+    spline = CubicSpline(at, knots, bc_type="periodic" if closed else "not-a-knot")
+    inner = np.linspace(0.0, 1.0, FINE, endpoint=False)
+    fine = np.append((at[:-1, None] + np.diff(at)[:, None] * inner).ravel(), at[-1])
+    curve = spline(fine)
+    share = shares(curve[None])[0][::FINE]
+    return curve, share[: len(points)]
+
+
+HARMONICS = 10
+"""Coefficients on either side: of a four-bar's coupler curve the rest is below a hundredth."""
+SAMPLES = 64
+"""Places on a curve that they are found from."""
+STARTS = 128
+"""That are compared."""
+ORDERS = np.concatenate([np.arange(1, HARMONICS + 1), np.arange(-HARMONICS, 0)])
+
+
+@dataclass(frozen=True)
+class Match:
+    """How well a curve meets each of others: the similarity, (E,), and the start [share of the
+    length], (E,), to which the curve's own start belongs on them."""
+
+    similarity: Array
+    start: Array
+
+
+def descriptors(curves: Complexes) -> Complexes:
+    """Those of closed curves (E, M), whose last point is the first again, (E, 2 HARMONICS)."""
+    even = np.tile(np.arange(SAMPLES) / SAMPLES, (len(curves), 1))
+    drawn = at_shares(shares(curves), curves, even)
+    every = np.fft.fft(drawn, axis=1)
+    every[:, 0] = 0.0
+    # With the size of all that a curve has, one of finer waves than are kept is like none.
+    size = np.sqrt(np.sum(np.abs(every) ** 2, axis=1, keepdims=True))
+    return np.asarray(every[:, ORDERS] / np.maximum(size, np.finfo(np.float64).tiny))
+
+
+def match(one: Complexes, others: Complexes) -> Match:
+    """One descriptor (2 HARMONICS,) beside others (E, 2 HARMONICS), over all starts."""
+    product = np.zeros((len(others), STARTS), dtype=np.complex64)
+    product[:, ORDERS] = one.conj() * others
+    # The inverse transform sums the products at all starts at once.
+    value = np.abs(np.fft.ifft(product, axis=1)) * STARTS
+    best = np.argmax(value, axis=1)
+    return Match(np.asarray(value[np.arange(len(others)), best], dtype=np.float64), best / STARTS)
+
+
+def spread(count: int, dimensions: int, seed: int) -> Array:
+    """So many points of the unit box, (count, dimensions): multiples of irrational numbers.
+
+    Source: M. Roberts, The unreasonable effectiveness of quasirandom sequences (2018): powers of
+    the root of x^(d+1) = x + 1; the seed moves all points by one random vector.
+    """
+    root = 2.0
+    for _ in range(60):
+        root = (1.0 + root) ** (1.0 / (dimensions + 1))
+    steps = root ** -np.arange(1.0, dimensions + 1.0)
+    start = np.random.default_rng(seed).random(dimensions)
+    return np.asarray((start + np.arange(1, count + 1)[:, None] * steps) % 1.0)
+
+
+def between(share: Array, bounds: tuple[tuple[float, float], ...]) -> Array:
+    """Shares of a box (count, d) as numbers within bounds, (d, count)."""
+    low, high = (np.array(side)[:, None] for side in zip(*bounds, strict=True))
+    return np.asarray(low + (high - low) * share.T)
+
 
 ENTRIES: dict[Family, int] = {"crank-rocker": 9000, "double-crank": 4000}
 LOOKS = 96

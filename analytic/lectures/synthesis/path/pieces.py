@@ -13,10 +13,16 @@ from functools import cache
 
 import numpy as np
 
-from analytic.lectures.synthesis.path.arc_length import at_shares, shares, smooth
-from analytic.lectures.synthesis.path.atlas import arms, curves
+from analytic.lectures.synthesis.path.atlas import (
+    arms,
+    at_shares,
+    between,
+    curves,
+    shares,
+    smooth,
+    spread,
+)
 from analytic.lectures.synthesis.path.fit import Fitted, placed
-from analytic.lectures.synthesis.path.spread import between, spread
 from analytic.lectures.synthesis.path.task import UnitPath
 from analytic.lectures.synthesis.path.unit_four_bar import BOUNDS, Complexes, Family, lengths
 from models.array import Array

@@ -19,10 +19,9 @@ import numpy as np
 from analytic.lectures.synthesis.design import Proposal
 from analytic.lectures.synthesis.examine import Examined, examine
 from analytic.lectures.synthesis.path.atlas import closed_starts
-from analytic.lectures.synthesis.path.candidate import Candidate, candidates
+from analytic.lectures.synthesis.path.candidate import Candidate, candidates, proposed
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve
 from analytic.lectures.synthesis.path.fit import Fitted, placed
-from analytic.lectures.synthesis.path.path_draft import proposed
 from analytic.lectures.synthesis.path.pieces import open_starts
 from analytic.lectures.synthesis.path.rounds import Clock, Progress, fitted
 from analytic.lectures.synthesis.path.task import PathTask, UnitPath

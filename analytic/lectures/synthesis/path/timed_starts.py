@@ -12,8 +12,8 @@ import math
 
 import numpy as np
 
+from analytic.lectures.synthesis.path.atlas import between, spread
 from analytic.lectures.synthesis.path.fit import LARGEST, Fitted, placed
-from analytic.lectures.synthesis.path.spread import between, spread
 from analytic.lectures.synthesis.path.task import UnitPath
 from analytic.lectures.synthesis.path.unit_four_bar import (
     BOUNDS,

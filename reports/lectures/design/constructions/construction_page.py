@@ -5,18 +5,25 @@ from __future__ import annotations
 import numpy as np
 
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
-from analytic.lectures.synthesis.asked import AskedPlace, names_of
-from analytic.lectures.synthesis.construction import Circle, Curve, Dot, Element
-from analytic.lectures.synthesis.design import Proposal
+from analytic.lectures.synthesis.design import (
+    AskedPlace,
+    Circle,
+    Curve,
+    Dot,
+    Element,
+    Proposal,
+    names_of,
+)
 from analytic.lectures.synthesis.examine import Examined
 from models.array import Array
 from reports.describe.facts import describe_law
 from reports.drawing.moving import drawing
 from reports.drawing.shape import turn_of
-from reports.lectures.design.constructions.construction_looks import CURVES, curves_of
-from reports.lectures.design.constructions.construction_view import ConstructionView
-from reports.lectures.design.constructions.positions_on_way import positions_on_way
-from reports.lectures.design.constructions.strokes import strokes, xy
+from reports.lectures.design.constructions.construction_looks import CURVES, curves_of, strokes, xy
+from reports.lectures.design.constructions.construction_view import (
+    ConstructionView,
+    positions_on_way,
+)
 from reports.output.numbers import count, listed
 from reports.output.provenance import crankcheck_version
 from reports.page.build import Head, assembled

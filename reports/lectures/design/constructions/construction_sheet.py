@@ -5,24 +5,25 @@ Source of the way of drawing: lecture "Tong hop co cau" (synthesis), examples 2 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle as Round
 
-from analytic.lectures.synthesis.construction import Circle, Dot, Element
-from analytic.lectures.synthesis.design import Proposal
+from analytic.lectures.synthesis.design import Circle, Curve, Dot, Element, Proposal, Step
 from analytic.lectures.synthesis.examine import Examined
 from models.array import Array
 from models.errors import CrankcheckError
-from reports.figures.style import INK, LARGE, cut
-from reports.lectures.design.constructions.construction_letters import dot_letters, step_numbers
+from reports.figures.style import INK, LARGE, QUIET, cut
 from reports.lectures.design.constructions.construction_looks import (
     GIVEN,
     OTHERS,
     OTHERS_WIDTH,
     look_of,
+    strokes,
+    xy,
 )
 from reports.lectures.design.constructions.construction_view import ConstructionView
 from reports.lectures.design.constructions.step_column import (
@@ -31,13 +32,76 @@ from reports.lectures.design.constructions.step_column import (
     parts_of,
     write_column,
 )
-from reports.lectures.design.constructions.strokes import strokes, xy
-from reports.lectures.drawing.sheets.canvas import Canvas, layer_words
-from reports.lectures.drawing.sheets.letters import write_letters
-from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper
+from reports.lectures.drawing.sheets.canvas import (
+    MARGIN,
+    Canvas,
+    draw_border,
+    inner_box,
+    layer_words,
+    write_head,
+)
+from reports.lectures.drawing.sheets.letters import NUMBER, Letter, write_letters
+from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper, sheet_note
 from reports.lectures.drawing.sheets.scheme import PIN_MM, draw_foot, draw_outline, draw_scheme
-from reports.lectures.drawing.sheets.sheet_frame import MARGIN, draw_border, inner_box, write_head
-from reports.lectures.drawing.sheets.sheet_note import sheet_note
+
+NEAR_MM = 0.5
+"""Points that stand nearer have their letters in one label."""
+NUMBERED, NUMBER_PLACES = 2, 14
+"""So many lines of a step have its number, at one of so many places along them."""
+
+
+def dot_letters(
+    steps: Sequence[Step], points: Mapping[str, Array], at: Callable[[Array], Array], box: Box
+) -> list[Letter]:
+    """The letters of all dots in the box, and of the mechanism's ``points`` [m] that have no letter
+    by then: C1 is also the letter of a point C in the first position."""
+    low, high = box.corners
+    dots = [each for step in steps for each in step.elements if isinstance(each, Dot)]
+    named = [(dot.letter, at(xy(dot.place)), dot.look) for dot in dots if dot.letter]
+    named += [(name, at(place), "result") for name, place in points.items()]
+    spots: list[tuple[list[str], Array, str]] = []
+    for letter, place, look in named:
+        if np.any((place < low) | (place > high)):
+            continue
+        spot = next((each for each in spots if np.hypot(*(each[1] - place)) < NEAR_MM), None)
+        if spot is None:
+            spots.append(([letter], place, look))
+        elif letter not in spot[0] and f"{letter}1" not in spot[0]:
+            spot[0].append(letter)
+    return [
+        Letter(", ".join(names), place, PIN_MM, color=GIVEN if look == "given" else INK)
+        for names, place, look in spots
+    ]
+
+
+def step_numbers(steps: Sequence[Step], drawn: Mapping[int, Sequence[Array]]) -> list[Letter]:
+    """The number of each step at its longest lines [mm] that are no links; ``drawn`` are the lines
+    of elements, by their identity."""
+    letters = []
+    for number, step in enumerate(steps, 1):
+        every = [each for each in step.elements if not isinstance(each, Dot)]
+        some = [each for each in every if each.look != "result"]
+        longest = sorted(
+            ((max(map(_length, lines)), each) for each in some if (lines := drawn[id(each)])),
+            key=lambda pair: -pair[0],
+        )
+        for _, each in longest[:NUMBERED]:
+            line = max(drawn[id(each)], key=_length)
+            colour = look_of(each, steps).colour if isinstance(each, Curve) else QUIET
+            letters.append(Letter(f"({number})", _along(line), 0.1, NUMBER, colour))
+    return letters
+
+
+def _length(line: Array) -> float:
+    return float(np.sum(np.hypot(*np.diff(line, axis=0).T)))
+
+
+def _along(line: Array) -> Array:
+    """Places along a line, evenly, off its ends."""
+    way = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
+    there = np.linspace(0.06, 0.94, NUMBER_PLACES) * way[-1]
+    return np.stack([np.interp(there, way, line[:, k]) for k in (0, 1)], axis=1)
+
 
 PADDING, GAP = 11.0, 3.0
 COLUMNS_MM = (54.0, 64.0, 76.0, 90.0, 106.0)

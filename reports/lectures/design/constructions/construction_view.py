@@ -2,22 +2,70 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
-from analytic.lectures.synthesis.construction import Circle, Curve, Dot, Element, Segment, Step
-from analytic.lectures.synthesis.design import Proposal
-from analytic.lectures.synthesis.examine import Examined, examine
+from analytic.circuits.arcs import SignedScene
+from analytic.kinematics import solve_driven
+from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMechanism
+from analytic.lectures.synthesis.design import (
+    Circle,
+    Curve,
+    Dot,
+    Element,
+    PrecisionPosition,
+    Proposal,
+    Segment,
+    Step,
+)
+from analytic.lectures.synthesis.examine import UNMET, Examined, examine
 from models.array import Array
-from models.errors import CrankcheckError
-from reports.lectures.design.constructions.precision_placements import placements_of
-from reports.lectures.design.constructions.strokes import strokes, xy
+from models.errors import CrankcheckError, ReachError
+from models.motion import Motion
+from models.scene import Scene
+from reports.lectures.design.constructions.construction_looks import strokes, xy
+from reports.lectures.drawing.sheets.driver_range import sense_of_law
 from reports.lectures.drawing.sheets.scheme import extent_of
 from reports.output.numbers import readable
+
+
+def placements_of(examined: Examined) -> tuple[PlacedMechanism | None, ...]:
+    """The mechanism in each position, on the branch that meets it, even where the driver can not
+    lead there; None where it can not be assembled at the driver's angle."""
+    return tuple(_placed(examined.scene, position) for position in examined.positions)
+
+
+def _placed(scene: Scene, position: PrecisionPosition) -> PlacedMechanism | None:
+    """On the scene's own branches where these meet the position, else on those that are nearest."""
+    signed = SignedScene.of(scene)
+    every = (
+        signed.with_signs(signs) for signs in itertools.product((1, -1), repeat=len(signed.dyads))
+    )
+    least, best = math.inf, None
+    for one in (scene, *every):
+        off, placed = _standing(one, position)
+        if off < least:
+            least, best = off, placed
+        if least <= UNMET:
+            break
+    return best
+
+
+def _standing(scene: Scene, position: PrecisionPosition) -> tuple[float, PlacedMechanism | None]:
+    """How far off a position a scene is, and how it stands there."""
+    theta, one = np.array([position.driver_rad]), np.ones(1)
+    try:
+        motion = solve_driven(scene, theta, one, 0.0 * one, bound=False)
+    except ReachError:
+        return math.inf, None
+    state = DriverState(position.driver_rad, sense_of_law(scene))
+    off = float(position.off(motion, scene.longest_m)[0])
+    return off, PlacedMechanism.standing(scene, motion, state)
+
 
 NEAR = {"given": math.inf, "result": 1.5, "auxiliary": 0.5}
 """What is further from the mechanism than so many times its size does not shrink the figure."""
@@ -130,3 +178,34 @@ def _away(place: Array, middle: Array) -> str:
     angle = round(math.degrees(math.atan2(y, x))) % 360
     where = f"({readable(float(place[0]))}, {readable(float(place[1]))}) m"
     return f"at {where}, {readable(math.hypot(x, y))} m from the middle towards {angle}°"
+
+
+TOUCHED = 1e-3
+"""A driver that turns back this near to a position [rad] is in it."""
+
+
+def positions_on_way(view: ConstructionView, motion: Motion) -> list[float | None]:
+    """The samples at which a motion first goes through the precision positions, parts of samples
+    counted; None of a position on another branch, and of one that the driver does not reach."""
+    scene = view.examined.scene
+    theta = motion.links[scene.driver.link].theta
+    return [
+        _first(theta, position.driver_rad)
+        if placed is not None and placed.scene.branch == scene.branch
+        else None
+        for position, placed in zip(view.examined.positions, view.placements, strict=True)
+    ]
+
+
+def _first(theta: Array, angle: float) -> float | None:
+    """Where angles (T,) first pass one, whole turns apart."""
+    off = (theta - angle + math.pi) % math.tau - math.pi
+    if abs(off[0]) < TOUCHED:
+        return 0.0
+    before, after = off[:-1], off[1:]
+    passes = (before * after <= 0.0) & (np.abs(after - before) < math.pi)
+    if passes.any():
+        k = int(np.argmax(passes))
+        return k + float(before[k] / (before[k] - after[k]))
+    nearest = int(np.argmin(np.abs(off)))
+    return float(nearest) if abs(off[nearest]) < TOUCHED else None

@@ -8,14 +8,12 @@ from collections.abc import Mapping, Sequence
 
 from analytic.lectures.synthesis.examine import Examined
 from models.lectures.tasks.task import TaskTable
-from reports.lectures.design.constructions.precision_placements import placements_of
+from reports.lectures.design.constructions.construction_view import placements_of
+from reports.lectures.design.design_tables import proof_rows, remarks
 from reports.lectures.design.proof import Met
-from reports.lectures.design.proof_table import proof_rows
-from reports.lectures.design.solution_table import remarks
 from reports.lectures.drawing.sheets.assembly_sheet import draw_assemblies
 from reports.lectures.drawing.sheets.canvas import Canvas
-from reports.lectures.drawing.sheets.paper import Paper
-from reports.lectures.drawing.sheets.sheet_note import sheet_note
+from reports.lectures.drawing.sheets.paper import Paper, sheet_note
 from reports.output.numbers import count
 from reports.page.build import Head, assembled
 from reports.page.sections.section import Section

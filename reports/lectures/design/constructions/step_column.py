@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 
-from analytic.lectures.synthesis.construction import Dot, Look
+from analytic.lectures.synthesis.design import Dot, Look
 from reports.figures.style import INK, QUIET, SMALL, wrapped
 from reports.lectures.design.constructions.construction_looks import (
     LOOKS,

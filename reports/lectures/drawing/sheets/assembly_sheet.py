@@ -12,11 +12,10 @@ from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.figures.style import INK, QUIET, SMALL, cut, width_in
-from reports.lectures.drawing.sheets.canvas import Canvas, text
+from reports.lectures.drawing.sheets.canvas import Canvas, draw_border, inner_box, text, write_head
 from reports.lectures.drawing.sheets.letters import write_letters
 from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper
 from reports.lectures.drawing.sheets.scheme import draw_scheme, extent_of, point_letters
-from reports.lectures.drawing.sheets.sheet_frame import draw_border, inner_box, write_head
 
 PADDING, WORDS_MM = 11.0, 7.0
 LEAST_MM = 34.0

@@ -21,7 +21,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.figures.style import INK, QUIET
-from reports.lectures.drawing.sheets.canvas import Canvas
+from reports.lectures.drawing.sheets.canvas import Canvas, draw_border, inner_box, write_head
 from reports.lectures.drawing.sheets.driver_range import range_of_law, sense_of_law
 from reports.lectures.drawing.sheets.letters import NUMBER, Letter, write_letters
 from reports.lectures.drawing.sheets.paper import Box, Paper
@@ -32,7 +32,6 @@ from reports.lectures.drawing.sheets.scheme import (
     point_letters,
     symbol_radius,
 )
-from reports.lectures.drawing.sheets.sheet_frame import draw_border, inner_box, write_head
 
 PADDING = 12.0
 LEAST_APART_MM = 2.5

@@ -3,9 +3,11 @@ to."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from models.array import Array
 from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
 from reports.compare.beside import Truth
@@ -28,6 +30,8 @@ class SheetLog:
 
     log: OwnLog
     truth: Truth
+    driver_rad: Callable[[Array], Array]
+    """Where the driver is at times [rad], by its law or its free motion."""
 
     @staticmethod
     def of_file(scene: Scene, path: Path, map_: Map, drawing: str) -> SheetLog:
@@ -53,9 +57,11 @@ class SheetLog:
         """A log that was read. Raises CrankcheckError for another motion, too."""
         if log.scene.is_free:
             known, truth, _ = log_kind(log.scene).truth(log, LogRequest())
-            found = SheetLog(known, truth)
+            link = log.scene.driver.link
+            found = SheetLog(known, truth, lambda time_s: truth.at(time_s).links[link].theta)
         else:
-            found = SheetLog(log, Truth(log.scene, bound=False))
+            law = log.scene.driver.law
+            found = SheetLog(log, Truth(log.scene, bound=False), lambda time_s: law.at(time_s)[0])
         found.refuse_another()
         return found
 

@@ -28,8 +28,13 @@ from openpyxl.worksheet.properties import (  # type: ignore[import-untyped]  # a
 from openpyxl.worksheet.worksheet import Worksheet  # type: ignore[import-untyped]  # as above
 
 from models.array import Array
-from reports.lectures.drawing.workbook.evaluated import evaluated
-from reports.lectures.drawing.workbook.formula_table import ASSEMBLED, NAME, FormulaTable, Input
+from reports.lectures.drawing.workbook.formula_table import (
+    ASSEMBLED,
+    NAME,
+    FormulaTable,
+    Input,
+    evaluated,
+)
 
 INPUTS, TABLE = "inputs", "live"
 TAKEN = re.compile(r"[rc]|[a-z]{1,3}\d+", re.IGNORECASE)

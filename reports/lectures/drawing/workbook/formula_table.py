@@ -8,12 +8,20 @@ A formula is written with names: ``{AB}`` an input, ``[phi]`` the same row's val
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
 from openpyxl.utils import get_column_letter  # type: ignore[import-untyped]  # ships no stubs
+
+from models.array import Array
+from models.errors import CrankcheckError
+from models.joints import less
+from models.laws import ConstantSpeed
+from models.scene import Scene
 
 NAME = re.compile(r"\{([\w]+)\}|\[([\w]+?)(-1)?\]")
 STATE = "state"
@@ -88,3 +96,82 @@ def state_column(inside: str) -> Column:
     words = f'"cannot be assembled",IF([{inside}]>{ZERO},"{ASSEMBLED}","rates not determined")'
     formula = f'IF(ISNUMBER([{inside}]),IF([{inside}]<-{ZERO},{words}),"not determined")'
     return Column(STATE, STATE, formula)
+
+
+STEP_TOLD = "angle of the crank between two rows; with over 30 turns may be lost"
+DRIVE_COLUMNS = (
+    Column("n", "n", "[n-1]+1", first="0"),
+    Column("time", "time s", "[n]*RADIANS({step_deg})/ABS({omega})"),
+    Column("phi", "phi rad", "RADIANS({start_deg})+{omega}*[time]"),
+)
+
+
+def drive_inputs(scene: Scene, pin: str, step_deg: float) -> tuple[Input, ...]:
+    """Speed, start and step, the crank being the line from its pivot to ``pin``.
+
+    Raises CrankcheckError for a law of another kind.
+    """
+    law = scene.driver.law
+    if not isinstance(law, ConstantSpeed):
+        raise CrankcheckError(f"{scene.name}: its formulas are those of a crank at constant speed")
+    points = scene.links[scene.driver.link].points
+    x, y = less(points[pin], points[scene.driver_pivot])
+    start = math.degrees(law.start_rad + math.atan2(y, x))
+    return (
+        Input("omega", law.speed_rad_s, "rad/s", "angular velocity of the crank", "not 0"),
+        Input("start_deg", start, "deg", "angle of the crank at time 0"),
+        Input("step_deg", step_deg, "deg", STEP_TOLD, "above 0"),
+    )
+
+
+def continued(name: str, head: str, within: str) -> Column:
+    """The angle of a column ``within`` a turn, going on continuously from row to row."""
+    step = f"([{within}]-[{name}-1])"
+    on = f"[{within}]-2*PI()*ROUND({step}/(2*PI()),0)"
+    formula = f"IF(ISNUMBER([{name}-1]),{on},[{within}])"  # begins anew after a gap
+    return Column(name, head, formula, first=f"[{within}]")
+
+
+FUNCTIONS = {
+    "SIN": np.sin,
+    "COS": np.cos,
+    "ACOS": np.arccos,
+    "SQRT": np.sqrt,
+    "RADIANS": np.radians,
+    "ABS": np.abs,
+    "ATAN2": lambda x, y: np.arctan2(y, x),  # a spreadsheet has x first
+    "PI": lambda: np.pi,
+    "IF": np.where,
+    "ISNUMBER": np.isfinite,
+    "NA": lambda: np.nan,
+}
+
+
+def evaluated(table: FormulaTable) -> dict[str, Array]:
+    """Every column by name, (rows,); NaN where a mechanism can not be assembled. Columns of words
+    are arrays of text.
+
+    Columns that build on the row before are told by what they end in: numbers of rows, and angles
+    that go on continuously.
+    """
+    values: dict[str, Array] = {}
+    given = {each.name: each.value for each in table.inputs}
+    with np.errstate(invalid="ignore", divide="ignore"):
+        for column in table.columns:
+            if column.first is None:
+                value = _of(column.formula, values, given)  # one number where all rows have it
+                values[column.name] = np.broadcast_to(value, table.count)
+            elif column.first == "0":
+                values[column.name] = np.arange(table.count, dtype=float)
+            else:
+                values[column.name] = np.unwrap(_of(column.first, values, given))
+    return values
+
+
+def _of(formula: str, values: Mapping[str, Array], given: Mapping[str, float]) -> Array:
+    """A formula that stands in one row."""
+    names: dict[str, object] = {f"in_{name}": value for name, value in given.items()}
+    names |= {f"at_{name}": value for name, value in values.items()}
+    plain = NAME.sub(lambda m: f"in_{m[1]}" if m[1] else f"at_{m[2]}", formula).replace("^", "**")
+    code = compile(re.sub(r"\s+", " ", plain), "<formula>", "eval")  # of ours alone
+    return np.asarray(eval(code, {"__builtins__": {}}, names | FUNCTIONS))

@@ -17,11 +17,13 @@ from analytic.mechanism.fourbar import FourBar
 from analytic.structure.groups import Group
 from models.joints import less
 from models.scene import Scene
-from reports.lectures.drawing.workbook.drive_inputs import DRIVE_COLUMNS, continued, drive_inputs
 from reports.lectures.drawing.workbook.formula_table import (
+    DRIVE_COLUMNS,
     Column,
     FormulaTable,
     Input,
+    continued,
+    drive_inputs,
     state_column,
 )
 

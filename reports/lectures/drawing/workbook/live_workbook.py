@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 from openpyxl import Workbook  # type: ignore[import-untyped]  # ships no stubs
 
@@ -11,10 +13,11 @@ from analytic.mechanism.fourbar import FourBar
 from analytic.prepared import prepared
 from analytic.structure.groups import Group
 from analytic.structure.mobility import analyse
+from models.array import Array
 from models.errors import StructureError
 from models.laws import ConstantSpeed
 from models.scene import GROUND, Scene
-from reports.lectures.drawing.workbook.charts import Curves, add_chart
+from reports.lectures.drawing.workbook.charts import Curves, add_chart, add_value_charts, widen
 from reports.lectures.drawing.workbook.formula_cells import TABLE, write_columns, write_inputs
 from reports.lectures.drawing.workbook.formula_table import FormulaTable
 from reports.lectures.drawing.workbook.four_bar_formulas import four_bar_table
@@ -105,3 +108,42 @@ def live_workbook(table: FormulaTable, origin: Mapping[str, str]) -> bytes:
     buffer = io.BytesIO()
     book.save(buffer)
     return buffer.getvalue()
+
+
+MOST_LIVE, MOST_DRAWN = 20_000, 100_000
+"""Rows that a spreadsheet computes, and draws, while one looks on."""
+
+
+def beside_values(scene: Scene, time_s: Array, columns: Sequence[str]) -> Callable[[Any], None]:
+    """What puts formulas and charts into the workbook of a motion over ``time_s``, evenly spaced
+    from 0, whose first sheet has the ``columns``."""
+    count = time_s.size
+    table = None
+    if 1 < count <= MOST_LIVE:
+        step = math.degrees(float(time_s[1]) * scene.pace_rad_s)
+        table = formulas_of(scene, count, step)
+
+    def put(book: Any) -> None:
+        values = book.worksheets[0]
+        widen(values)
+        if table is not None:
+            add_live(book, table)
+        elif 1 < count <= MOST_DRAWN:
+            add_value_charts(book, values.title, columns, count)
+
+    return put
+
+
+def left_out(count: int) -> str:
+    """What a workbook of so many rows does not have, in words that end a sentence."""
+    if count <= MOST_LIVE:
+        return ""
+    charts = f", and charts of {MOST_DRAWN}" * (count > MOST_DRAWN)
+    return f"; values alone: formulas are of at most {MOST_LIVE} rows{charts}"
+
+
+def live_sheet(
+    scene: Scene, time_s: Array, columns: Sequence[str]
+) -> tuple[str, Callable[[Any], None]]:
+    """What a workbook does not have, in words, and what puts formulas and charts into it."""
+    return left_out(time_s.size), beside_values(scene, time_s, columns)

@@ -9,14 +9,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.kinematics import driven_chunk, repeats_after, solve
-from analytic.structure.cranked import refuse_other_than_cranked
+from analytic.structure.mobility import refuse_other_than_cranked
 from models.array import Array
 from models.errors import CrankcheckError, ReachError, suggestion
 from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import GROUND, Scene, span
-from reports.lectures.drawing.workbook.family import CLOSE_DEG, check_values
-from reports.lectures.drawing.workbook.family_curves import KINDS, FamilyChart, FamilyCurves
+from reports.lectures.drawing.workbook.family import (
+    CLOSE_DEG,
+    KINDS,
+    FamilyChart,
+    FamilyCurves,
+    check_values,
+)
 
 OMEGA = "omega"
 AXES = ("x", "y")

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from reports.describe.frame import motion_frame
-from reports.lectures.drawing.workbook.charts import Curves, add_chart
+from reports.lectures.drawing.workbook.charts import KINDS, Curves, add_chart, widen
 from reports.lectures.drawing.workbook.scene_family import SceneFamily
-from reports.lectures.drawing.workbook.value_charts import KINDS, widen
 from reports.output.frame_file import workbook
 
 SHEET, TIME = "family", "time_s"

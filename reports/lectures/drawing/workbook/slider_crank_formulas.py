@@ -21,11 +21,12 @@ import math
 from analytic.structure.groups import Group
 from models.joints import less, turned
 from models.scene import Point, Scene, Slider, span
-from reports.lectures.drawing.workbook.drive_inputs import DRIVE_COLUMNS, drive_inputs
 from reports.lectures.drawing.workbook.formula_table import (
+    DRIVE_COLUMNS,
     Column,
     FormulaTable,
     Input,
+    drive_inputs,
     state_column,
 )
 

@@ -14,11 +14,13 @@ from __future__ import annotations
 from analytic.structure.groups import Group
 from models.joints import less, turned
 from models.scene import Scene, span
-from reports.lectures.drawing.workbook.drive_inputs import DRIVE_COLUMNS, continued, drive_inputs
 from reports.lectures.drawing.workbook.formula_table import (
+    DRIVE_COLUMNS,
     Column,
     FormulaTable,
     Input,
+    continued,
+    drive_inputs,
     state_column,
 )
 

@@ -9,10 +9,8 @@ from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
 from models.scene import Scene
-from reports.lectures.drawing.workbook.beside_values import MOST_LIVE
-from reports.lectures.drawing.workbook.family import family
-from reports.lectures.drawing.workbook.family_curves import FamilyCurves, family_curves
-from reports.lectures.drawing.workbook.live_workbook import formulas_of, live_workbook
+from reports.lectures.drawing.workbook.family import FamilyCurves, family, family_curves
+from reports.lectures.drawing.workbook.live_workbook import MOST_LIVE, formulas_of, live_workbook
 from reports.lectures.drawing.workbook.scene_family import scene_curves, scene_family
 from reports.lectures.drawing.workbook.scene_family_workbook import scene_family_workbook
 from reports.output.write import write

@@ -12,17 +12,15 @@ import pytest
 
 from analytic.kinematics import solve_driven
 from models.characteristics import Constant
-from models.files import load_scene, parse_scene
+from models.files.reading import load_scene, parse_scene
 from models.loads import Load
 from models.motion import Motion
 from models.scene import Scene
 from models.tabulated import Tabulated
 from reports.compare.compare import compare, places
 from reports.compare.errors import Errors
-from reports.compare.free.energy_drift import drift, window_means, window_s
-from reports.compare.free.free_truth import FreeTruth, free_truth
-from reports.compare.free.kept_motion import kept_motion
-from reports.compare.free.momentum_drift import kept_about, momentum
+from reports.compare.free.drift import drift, kept_about, momentum, window_means, window_s
+from reports.compare.free.free_truth import FreeTruth, free_truth, kept_motion
 from reports.drawing.shape import true_motion
 from reports.store.reader import read_store
 from sim.engine import Run
@@ -64,11 +62,11 @@ def test_a_phase_that_lags_is_told_from_a_linkage_that_is_open(truth: FreeTruth,
     phase, raw = errors.worst("phase"), errors.worst("phase", kind="raw")
     speed = truth.at(np.array([DT_S * STEPS])).links["crank"].omega[0]
     assert raw.maximum == pytest.approx(2e-4 * abs(speed), rel=1e-2)
-    assert raw.maximum / errors.free.sensitivity <= phase.maximum <= raw.maximum
+    assert raw.maximum / errors.of_motion.sensitivity <= phase.maximum <= raw.maximum
     assert errors.worst("geometry").maximum < 1e-12
     assert errors.departure is None
     # Horizons are the times to which a class holds.
-    facts = errors.free
+    facts = errors.of_motion
     assert (facts.horizon_s(1.0), facts.horizon_s(0.0)) == (DT_S * STEPS, 0.0)
     held = facts.horizon_s(1e-4)
     assert 0.0 < held < DT_S * STEPS
@@ -99,7 +97,7 @@ def test_errors_at_one_time_are_over_the_growth_of_that_time(truth: FreeTruth, d
     steeper = _Changed(truth.free, sensitivity=lambda time_s: 1.0 + 1e3 * time_s)
     growing = replace(truth, free=steeper, known_rad=1.0)
     plain, over = (found(each, moved(done, late(truth, 2e-4))) for each in (truth, growing))
-    assert over.free.sensitivity == pytest.approx(1.0 + 1e3 * DT_S * STEPS)
+    assert over.of_motion.sensitivity == pytest.approx(1.0 + 1e3 * DT_S * STEPS)
     for name in ("phase", "angle", "position", "velocity"):
         assert over.worst(name).maximum < 0.1 * plain.worst(name).maximum, name
     for name, kind in (("geometry", "total"), ("gap", "total"), ("phase", "raw")):
@@ -111,8 +109,8 @@ def test_samples_that_the_truth_does_not_know_well_enough_are_left_out_and_count
 ) -> None:
     unsure = _Changed(truth.free, error_rad=lambda time_s: np.where(time_s < 0.1 - 1e-9, 0.0, 1.0))
     errors = found(replace(truth, free=unsure), done)
-    assert errors.free.until_s == pytest.approx(0.099)
-    assert errors.free.left_out == STEPS + 1 - 100
+    assert errors.of_motion.until_s == pytest.approx(0.099)
+    assert errors.of_motion.left_out == STEPS + 1 - 100
     assert any("truth ends at t = 0.099 s" in note for note in errors.notes)
     assert all(row.samples <= 100 for row in errors.rows)
     assert errors.incomplete == ""

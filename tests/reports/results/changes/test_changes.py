@@ -17,7 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from models.errors import CrankcheckError
-from models.files import shipped
+from models.files.reading import shipped
 from reports.results.changes.changes import ErrorChange, compare, floor, other_settings
 from reports.results.changes.reading import read_run, scene_digests
 from reports.results.changes.runs import COMPARED, CellName, StoredCell, StoredRun, steps_told

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.judge.cell import Cell, check
 from reports.output.numbers import short
 from reports.results.fits.floor_fit import opposed

@@ -9,13 +9,20 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 
-from analytic.lectures.synthesis.asked import AskedAngle, PrecisionPosition
 from analytic.lectures.synthesis.burmester import four_positions
-from analytic.lectures.synthesis.construction import Circle, Curve, Dot, Element, Segment, Step
-from analytic.lectures.synthesis.design import Proposal
-from analytic.lectures.synthesis.fourbar_draft import CarriedBody
-from analytic.lectures.synthesis.guided_body import Dyad
-from analytic.lectures.synthesis.pose import Pose, bisector, circle_through, pole
+from analytic.lectures.synthesis.design import (
+    AskedAngle,
+    CarriedBody,
+    Circle,
+    Curve,
+    Dot,
+    Element,
+    PrecisionPosition,
+    Proposal,
+    Segment,
+    Step,
+)
+from analytic.lectures.synthesis.pose import Dyad, Pose, bisector, circle_through, pole
 from models.lectures.draft import Draft, bar
 
 LECTURE = 'Lecture "Tong hop co cau" (synthesis)'

@@ -15,24 +15,24 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.lectures.synthesis.construction import Circle, Curve, Dot, Segment, Step
-from analytic.lectures.synthesis.design import Proposal
+from analytic.lectures.synthesis.design import Circle, Curve, Dot, Proposal, Segment, Step
 from analytic.lectures.synthesis.examine import examine
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.drawing.shape import turn_of
 from reports.figures.style import width_in
+from reports.lectures.design.constructions.construction_looks import strokes, xy
 from reports.lectures.design.constructions.construction_page import (
     INSTANTS,
     MOVES,
     construction_page,
 )
 from reports.lectures.design.constructions.construction_sheet import construction_sheet, laid_out
-from reports.lectures.design.constructions.construction_view import ConstructionView
-from reports.lectures.design.constructions.positions_on_way import positions_on_way
-from reports.lectures.design.constructions.strokes import strokes, xy
-from reports.lectures.drawing.sheets.canvas import Canvas
-from reports.lectures.drawing.sheets.cut_lines import arc_places, cut_line, near_angles
+from reports.lectures.design.constructions.construction_view import (
+    ConstructionView,
+    positions_on_way,
+)
+from reports.lectures.drawing.sheets.canvas import Canvas, arc_places, cut_line, near_angles
 from reports.lectures.drawing.sheets.paper import MM_PER_IN, Paper
 from tests.reports.sheets.constructions import constructed as made
 from tests.reports.sheets.measured import TENTH_MM, drawn_lines, overlaps

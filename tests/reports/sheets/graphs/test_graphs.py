@@ -16,18 +16,18 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from analytic.lectures.drawings.graphical import METHODS, Method
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from reports.figures.style import SMALL, styled
-from reports.lectures.drawing.sheets.graphs.graph_drawing import DrawnGraphs, drawn_graphs
-from reports.lectures.drawing.sheets.graphs.graph_log import graph_log
-from reports.lectures.drawing.sheets.graphs.graph_orders import ErrorLine, graph_errors
-from reports.lectures.drawing.sheets.graphs.graph_orders_sheet import draw_errors
+from reports.lectures.drawing.sheets.graphs.graph_drawing import (
+    DrawnGraphs,
+    drawn_graphs,
+    graph_log,
+)
+from reports.lectures.drawing.sheets.graphs.graph_orders import ErrorLine, draw_errors, graph_errors
 from reports.lectures.drawing.sheets.graphs.graph_page import caption, draw_graphs, laid_out
-from reports.lectures.drawing.sheets.graphs.graph_scales import POLES_MM, graph_scales
-from reports.lectures.drawing.sheets.graphs.graph_sheet import GraphSheet
+from reports.lectures.drawing.sheets.graphs.graph_sheet import POLES_MM, GraphSheet, graph_scales
 from reports.lectures.drawing.sheets.graphs.graph_span import Over, over_period
-from reports.lectures.drawing.sheets.graphs.graph_table import table_cells
-from reports.lectures.drawing.sheets.graphs.graph_words import told_log
+from reports.lectures.drawing.sheets.graphs.graph_words import table_cells, told_log
 from reports.lectures.drawing.sheets.paper import Paper
 from tests.reports.sheets.measured import drawn_lines
 

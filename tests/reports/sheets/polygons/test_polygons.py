@@ -23,18 +23,19 @@ from analytic.lectures.drawings.drawn_polygons import draw_polygons, polygons_of
 from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMechanism
 from models.array import Array
 from models.errors import CrankcheckError
-from models.files import load_scene
+from models.files.reading import load_scene
 from models.motion import Motion
 from reports.drawing.shape import true_motion
 from reports.lectures.drawing.sheets.paper import Paper
-from reports.lectures.drawing.sheets.polygons.logged_instant import (
+from reports.lectures.drawing.sheets.polygons.polygon_course import polygon_file, turning_file
+from reports.lectures.drawing.sheets.polygons.polygon_instant import (
     DIFFERENCED,
     REPORTED,
     LoggedInstant,
     LogInstants,
+    placed_at_angle,
+    placed_at_time,
 )
-from reports.lectures.drawing.sheets.polygons.polygon_files import polygon_file, turning_file
-from reports.lectures.drawing.sheets.polygons.polygon_instant import placed_at_angle, placed_at_time
 from reports.lectures.drawing.sheets.polygons.polygon_page import INSTANTS, polygon_page
 from reports.lectures.drawing.sheets.polygons.polygon_sheet import (
     PolygonSheet,

@@ -10,12 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
 from analytic.lectures.drawings.graphical import Plotted, ThreeGraphs
-from analytic.lectures.drawings.paper_scale import round_scale
 from reports.figures.style import INK, QUIET, SMALL, TINY, cut, width_in
 from reports.lectures.drawing.sheets.canvas import Canvas, line, text
 from reports.lectures.drawing.sheets.graphs.graph_drawing import READ
 from reports.lectures.drawing.sheets.graphs.graph_sheet import CAPTION_MM, GraphSheet, Panel
-from reports.lectures.drawing.sheets.paper import MM_PER_IN
+from reports.lectures.drawing.sheets.paper import MM_PER_IN, round_scale
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
 from reports.output.numbers import readable
 

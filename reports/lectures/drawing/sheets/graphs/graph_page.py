@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from reports.figures.style import LARGE, QUIET, TINY, cut, width_in
-from reports.lectures.drawing.sheets.canvas import Canvas, line, text
+from reports.lectures.drawing.sheets.canvas import Canvas, line, text, write_head
 from reports.lectures.drawing.sheets.graphs.graph_drawing import READ, DrawnGraphs
 from reports.lectures.drawing.sheets.graphs.graph_lines import (
     DASHED,
@@ -22,10 +22,13 @@ from reports.lectures.drawing.sheets.graphs.graph_lines import (
     draw_rays,
 )
 from reports.lectures.drawing.sheets.graphs.graph_sheet import GraphSheet, Panel, graph_sheet
-from reports.lectures.drawing.sheets.graphs.graph_table import draw_table, table_width_mm
-from reports.lectures.drawing.sheets.graphs.graph_words import own_rates_off, share
-from reports.lectures.drawing.sheets.paper import MM_PER_IN, Paper
-from reports.lectures.drawing.sheets.sheet_frame import write_head
+from reports.lectures.drawing.sheets.graphs.graph_words import (
+    draw_table,
+    own_rates_off,
+    share,
+    table_width_mm,
+)
+from reports.lectures.drawing.sheets.paper import MM_PER_IN, Paper, of_elastic
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
 from reports.output.numbers import readable
 
@@ -61,12 +64,9 @@ def draw_graphs(sheet: GraphSheet, note: str) -> Canvas:
 
 def _title(drawn: DrawnGraphs) -> str:
     of = drawn.span
-    span = "a period" if not of.scene.is_free else f"{of.end - of.start:g} s"
-    if of.analogues:
-        span = f"the angle of {of.scene.driver.joint}"
-    title = f"{of.scene.name}: {of.quantity.name} over {span}, {drawn.parts} parts, by {drawn.by}"
-    if of.scene.elastic:
-        title += ", links taken as rigid"
+    over = f"{of.words}, {drawn.parts} parts, by {drawn.by}"
+    title = f"{of.scene.name}: {of.quantity.name} over {over}"
+    title += of_elastic(of.scene, ", links taken as rigid")
     return f"{title}; log: {cut(drawn.log.name, NAME_IN, LARGE)}" if drawn.log else title
 
 

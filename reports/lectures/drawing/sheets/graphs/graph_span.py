@@ -16,19 +16,57 @@ import numpy as np
 
 from analytic.kinematics import solve_driven
 from models.array import Array
-from models.driver_shown import driver_shown
-from models.errors import CrankcheckError, few
+from models.driver import driver_shown
+from models.errors import CrankcheckError, few, suggestion
 from models.laws import ConstantSpeed, Oscillating
 from models.motion import Motion, Order
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.lectures.drawing.sheets.graphs.graph_quantity import GraphedQuantity, quantity_of
+from reports.logs.kinds import KINDS, Kind, LoggedKind
+
+AXES = ("x", "y")
+
+
+@dataclass(frozen=True)
+class GraphedQuantity:
+    """A quantity of a ``body`` with both of its rates: how a motion holds them, their symbols, and
+    what their unit is before any s."""
+
+    name: str
+    body: str
+    kinds: tuple[Kind, Kind, Kind]
+    symbols: tuple[str, str, str]
+    unit: str
+
+
+def quantity_of(motion: Motion, name: str) -> GraphedQuantity:
+    """The quantity of that name: a link, a slider, or a coordinate of a point (C.x). Raises
+    CrankcheckError for what the motion has not."""
+    point, _, axis = name.partition(".")
+    if name in motion.links:
+        kinds = _kinds("link", "angle", "angular velocity", "angular acceleration")
+        return GraphedQuantity(name, name, kinds, ("phi", "omega", "epsilon"), "rad")
+    if name in motion.sliders:
+        kinds = _kinds("slider", "displacement", "speed", "acceleration")
+        return GraphedQuantity(name, name, kinds, ("s", "v", "a"), "m")
+    if point in motion.points and axis in AXES:
+        kinds = _kinds("point", axis, f"v{axis}", f"a{axis}")
+        return GraphedQuantity(name, point, kinds, ("s", "v", "a"), "m")
+    known = [*motion.links, *motion.sliders, *(f"{p}.{a}" for p in motion.points for a in AXES)]
+    raise CrankcheckError(f"--of {name}: {suggestion(name, known, 'there are')}")
+
+
+def _kinds(of: LoggedKind, value: str, rate: str, second: str) -> tuple[Kind, Kind, Kind]:
+    return KINDS[of, value], KINDS[of, rate], KINDS[of, second]
+
 
 Over = Literal["time", "angle"]
 OVERS: tuple[Over, ...] = get_args(Over)
 DENSE = 721
 TRIFLE = 1e-3
 """What is a smaller share of what its integral asks for is none: errors are over sizes above 0."""
+ON_END = 1e-6
+"""How near a row is to an end of the period to be on it, in periods."""
 STILL = 1e-9
 """What moves by less [rad, longest links] stands still."""
 
@@ -89,14 +127,47 @@ class GraphSpan:
         """Where the driver is at places [deg or m]."""
         if self.analogues:
             return np.degrees(x)
-        if self.scene.is_free:
-            return driver_shown(self.scene, self.motion_at(x))
         place = self.scene.driver.law.at(x)[0]
         return place if self.scene.driver.slider is not None else np.degrees(place)
 
-    def moved(self, start: float) -> GraphSpan:
-        """One as long that starts elsewhere."""
+    @property
+    def words(self) -> str:
+        """How long it is."""
+        return f"the angle of {self.scene.driver.joint}" if self.analogues else "a period"
+
+    @property
+    def taken(self) -> str:
+        """Which period of a log it is."""
+        turns = self.start / (self.end - self.start)
+        if abs(turns - round(turns)) <= ON_END:
+            return f"in period {round(turns) + 1} of the driver, the first whole one in it"
+        return "from its first row on, as it has no whole period of the driver"
+
+    def within(self, first: float, last: float) -> GraphSpan:
+        """The first period of those of the driver within the rows of a log, from ``first`` to
+        ``last`` [s], or that from the first row on."""
+        if first <= self.start:
+            return self
+        lasts = self.end - self.start
+        start = math.ceil(first / lasts - ON_END) * lasts
+        start = start if start + lasts <= last + ON_END * lasts else first
         return replace(self, start=start, end=start + self.end - self.start)
+
+
+class FreeSpan(GraphSpan):
+    """The first seconds of a free motion."""
+
+    taken = "from its release on"
+
+    def driver_at(self, x: Array) -> Array:
+        return driver_shown(self.scene, self.motion_at(x))
+
+    @property
+    def words(self) -> str:
+        return f"{self.end - self.start:g} s"
+
+    def within(self, first: float, last: float) -> GraphSpan:
+        return self
 
 
 def over_period(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
@@ -173,4 +244,4 @@ def _let_go(scene: Scene, name: str, over: Over, duration_s: float | None) -> Gr
 
     truth = free_truth_until(scene, duration_s, 0.0)
     quantity = quantity_of(truth.at(np.zeros(1)), name)
-    return GraphSpan(scene, quantity, 0.0, duration_s, over, 1.0, truth.at, truth)
+    return FreeSpan(scene, quantity, 0.0, duration_s, over, 1.0, truth.at, truth)

@@ -8,14 +8,14 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from analytic.lectures.drawings.drawn_polygons import QUANTITIES
+from analytic.lectures.drawings.drawn_polygons import QUANTITIES, link_rates
 from analytic.lectures.drawings.polygon import UNITS
-from analytic.lectures.drawings.similarity import link_rates
 from models.array import Array
 from models.errors import harmless
+from reports.lectures.drawing.sheets.paper import of_elastic
 from reports.lectures.drawing.sheets.polygons.polygon_on_paper import DrawnPolygon
 from reports.lectures.drawing.sheets.polygons.polygon_sheet import PolygonSheet
-from reports.lectures.drawing.sheets.polygons.polygon_words import (
+from reports.lectures.drawing.sheets.polygons.polygon_table import (
     at_rest,
     doubts,
     drawn_links,
@@ -50,7 +50,7 @@ def _heading(sheet: PolygonSheet) -> str:
     at_time = f", t = {sheet.time_s:.9g} s" if sheet.time_s is not None else ""
     at_time += f" in {log.source}{log.taken}" if log is not None else ""
     alpha = f", {driver.alpha:g} rad/s^2" if driver.alpha else ""
-    rigid = "; its elastic links are taken as rigid" if scene.elastic else ""
+    rigid = of_elastic(scene, "; its elastic links are taken as rigid")
     return (
         f"{scene.name}: {scene.driver.link} at {round(math.degrees(driver.theta), 9) % 360.0:g} deg"
         f"{at_time}, {driver.omega:g} rad/s{alpha}{rigid}"

@@ -6,19 +6,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analytic.lectures.drawings.drawn_polygons import QUANTITIES, DrawnPolygons
+from analytic.lectures.drawings.drawn_polygons import QUANTITIES, DrawnPolygons, link_rates
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
 from analytic.lectures.drawings.polygon import UNITS, Polygon, Quantity
-from analytic.lectures.drawings.similarity import link_rates
 from models.array import Array
-from models.motion import Motion
-from models.scene import Scene
 from reports.describe.facts import describe_law
 from reports.drawing.moving import drawing
 from reports.drawing.packed import packed
 from reports.lectures.drawing.sheets.polygons.polygon_course import PolygonCourse
-from reports.lectures.drawing.sheets.polygons.polygon_letters import POLES, lower_case
-from reports.lectures.drawing.sheets.polygons.polygon_words import drawn_links
+from reports.lectures.drawing.sheets.polygons.polygon_drawing import POLES, lower_case
+from reports.lectures.drawing.sheets.polygons.polygon_table import drawn_links
 from reports.output.numbers import count
 from reports.output.provenance import crankcheck_version
 from reports.page.build import Head, assembled
@@ -40,16 +37,16 @@ def polygon_page(placement: PlacedMechanism, *, steady: bool = False) -> str:
     scene, motion, drawn = course.scene, course.motion, course.drawn
     section = Section(
         anchor="polygons",
-        title="Polygons over the motion" if scene.is_free else "Polygons over a turn",
+        title=course.title,
         template="polygons.html",
         words={
-            "along": "Time" if scene.is_free else f"Angle of the {scene.driver.link}",
+            "along": course.along,
             "steps": max(len(each.velocity.steps) for each in drawn),
             "rigid": ", ".join(scene.elastic),
             "missing": _missing(drawn),
         },
         embedded={
-            "drawing": drawing(scene, motion.time_s, motion) | _until(scene, motion),
+            "drawing": drawing(scene, motion.time_s, motion) | course.until,
             "home": course.nearest,
             "lasts_ms": LASTS_MS,
             "polygons": [_embedded(drawn, quantity) for quantity in QUANTITIES],
@@ -61,11 +58,6 @@ def polygon_page(placement: PlacedMechanism, *, steady: bool = False) -> str:
     facts = ("the closed form", describe_law(scene), f"crankcheck {crankcheck_version()}")
     head = Head(f"crankcheck: polygons of {scene.name}", facts, made="", first="polygons")
     return assembled(head, [section])
-
-
-def _until(scene: Scene, motion: Motion) -> dict[str, object]:
-    """Of what is let go the time that it is drawn for [s]: its slider is one of times."""
-    return {"until_s": float(motion.time_s[-1])} if scene.is_free else {}
 
 
 def _missing(drawn: Sequence[DrawnPolygons]) -> str:

@@ -22,31 +22,30 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from analytic.lectures.drawings.drawn_polygons import DrawnPolygons
-from analytic.lectures.drawings.paper_scale import book_scales
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.figures.style import QUIET, SMALL, TINY, cut
-from reports.lectures.drawing.sheets.canvas import Canvas, text
-from reports.lectures.drawing.sheets.ink import ink_of
-from reports.lectures.drawing.sheets.letters import Letter, write_letters
-from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper
-from reports.lectures.drawing.sheets.polygons.logged_instant import LoggedInstant
-from reports.lectures.drawing.sheets.polygons.magnified_errors import (
+from reports.lectures.drawing.sheets.canvas import Canvas, draw_border, inner_box, text, write_head
+from reports.lectures.drawing.sheets.letters import Letter, ink_of, write_letters
+from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper, book_scales, of_elastic
+from reports.lectures.drawing.sheets.polygons.polygon_drawing import draw_polygon, polygon_letters
+from reports.lectures.drawing.sheets.polygons.polygon_instant import LoggedInstant
+from reports.lectures.drawing.sheets.polygons.polygon_on_paper import (
     STAR,
+    DrawnPolygon,
     MagnifiedErrors,
     draw_errors,
+    fitted,
+    frame_of,
 )
-from reports.lectures.drawing.sheets.polygons.polygon_drawing import draw_polygon
-from reports.lectures.drawing.sheets.polygons.polygon_letters import polygon_letters
-from reports.lectures.drawing.sheets.polygons.polygon_on_paper import DrawnPolygon, fitted, frame_of
 from reports.lectures.drawing.sheets.polygons.polygon_table import (
+    at_rest,
+    doubts,
     draw_table,
     link_rows,
     vector_rows,
 )
-from reports.lectures.drawing.sheets.polygons.polygon_words import at_rest, doubts
 from reports.lectures.drawing.sheets.scheme import draw_scheme, extent_of, point_letters
-from reports.lectures.drawing.sheets.sheet_frame import draw_border, inner_box, write_head
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
 from reports.output.numbers import readable
 
@@ -192,7 +191,7 @@ def heading(sheet: PolygonSheet) -> str:
     angle = round(math.degrees(driver.theta), 9) % 360.0
     at_time = f" (t = {sheet.time_s:.6g} s)" if sheet.time_s is not None else ""
     alpha = f", alpha {readable(driver.alpha)} rad/s²" if driver.alpha else ""
-    rigid = "; its elastic links taken as rigid" if scene.elastic else ""
+    rigid = of_elastic(scene, "; its elastic links taken as rigid")
     return (
         f"{scene.name}: {scene.driver.link} at {angle:.6g}°{at_time}, omega "
         f"{readable(driver.omega)} rad/s{alpha}{rigid}"

@@ -2,25 +2,58 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 
-from analytic.lectures.drawings.drawn_polygons import QUANTITIES, DrawnPolygons
-from analytic.lectures.drawings.polygon import SYMBOLS, UNITS
-from analytic.lectures.drawings.similarity import link_rates
+from analytic.lectures.drawings.drawn_polygons import (
+    QUANTITIES,
+    DrawnPolygons,
+    link_rates,
+    similarity,
+)
+from analytic.lectures.drawings.polygon import SYMBOLS, UNITS, Quantity
 from models.errors import CrankcheckError
+from models.scene import GROUND
 from reports.figures.style import POINTS, QUIET, TINY, width_in
 from reports.lectures.drawing.sheets.canvas import text
 from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper
-from reports.lectures.drawing.sheets.polygons.magnified_errors import STAR
-from reports.lectures.drawing.sheets.polygons.polygon_letters import lower_case
-from reports.lectures.drawing.sheets.polygons.polygon_on_paper import DrawnPolygon
-from reports.lectures.drawing.sheets.polygons.polygon_words import drawn_links, image_words
+from reports.lectures.drawing.sheets.polygons.polygon_drawing import lower_case
+from reports.lectures.drawing.sheets.polygons.polygon_on_paper import STAR, DrawnPolygon
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
 from reports.output.numbers import readable
+
+RATES = {"velocity": "1/s", "acceleration": "1/s^2"}
+REASONS = {"velocity": "as omega is 0", "acceleration": "as omega and alpha are 0"}
+
+
+def image_words(drawn: DrawnPolygons, link: str, quantity: Quantity) -> str:
+    """Whether the image of a link is similar to it, how large and how turned; or one point."""
+    image = similarity(drawn, link, quantity)
+    if image.is_point:
+        return f"one point, {REASONS[quantity]}"
+    turned = f"turned by {math.degrees(image.turn_rad):.4g} deg"
+    return f"similar, {readable(image.scale)} {RATES[quantity]}, {turned}"
+
+
+def at_rest(quantity: Quantity) -> str:
+    """What is said of a polygon that is one point."""
+    return f"at rest: every {quantity} is 0"
+
+
+def doubts(drawn: DrawnPolygons) -> list[str]:
+    """What could not be drawn, and what can hardly be drawn by hand."""
+    lost = [f"not drawn: {told}" for told in drawn.undetermined]
+    return lost + [f"flat: {told}" for told in drawn.flat]
+
+
+def drawn_links(drawn: DrawnPolygons) -> list[str]:
+    """The moving links that could be drawn."""
+    return [name for name in drawn.rates if name != GROUND and name in drawn.placement.scene.links]
+
 
 ROW, GAP = 1.9, 3.0
 """The height of a row, in that of its letters; the room between columns [mm]."""

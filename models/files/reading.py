@@ -1,0 +1,282 @@
+"""Scene files: find them, read them, and say everything that is wrong with one at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from os import PathLike, fspath
+from pathlib import Path
+from typing import TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from models.driver import Controlled, Released
+from models.errors import CrankcheckError, SceneError, cut, few, nearest, shown, suggestion
+from models.files.assemble import scene_from_table
+from models.files.driver_table import DRIVERS, SLIDES, DriverTable
+from models.files.inputs import UnreadableError, names_in, regular_text, tables
+from models.files.load_table import LOADS, LawOfLoad
+from models.files.names import faults_of_names
+from models.files.schema import ElasticTable, SceneTable
+from models.scene import Scene
+
+SCENE_FOLDER = Path(__file__).parents[1] / "scenes"
+"""Of folders of scene files, one for each kind."""
+KINEMATICS = "kinematics"
+"""The kind that is meant where none is named, and all its scenes where no scene is."""
+M = TypeVar("M", bound=BaseModel)
+
+
+def shipped(kind: str = KINEMATICS) -> dict[str, Path]:
+    """The scenes of a kind that come with crankcheck: name to file, in alphabetical order."""
+    return {path.stem: path for path in sorted((SCENE_FOLDER / kind).glob("*.toml"))}
+
+
+def kinds() -> list[str]:
+    """The kinds of shipped scenes, that of kinematics first."""
+    names = sorted(path.name for path in SCENE_FOLDER.iterdir() if any(path.glob("*.toml")))
+    return sorted(names, key=lambda name: name != KINEMATICS)
+
+
+def every_shipped() -> dict[str, Path]:
+    """The shipped scenes of all kinds: name to file."""
+    return {name: path for kind in kinds() for name, path in shipped(kind).items()}
+
+
+def names_of_scenes(names: str | Iterable[str]) -> list[str]:
+    """Names and paths of scenes, each once; the name of a kind stands for all its scenes but those
+    that are run where they are named (`run_where_named`).
+
+    Raises CrankcheckError for what is neither a name nor several.
+    """
+    known = kinds()
+    written_out = (
+        [one for one in shipped(name) if one not in run_where_named(name)]
+        if name in known
+        else [name]
+        for name in names_in(names, "scenes")
+    )
+    return list(dict.fromkeys(name for each in written_out for name in each))
+
+
+def reference_alone(kind: str) -> list[str]:
+    """The shipped scenes of a kind that no engine is given: friction in them follows from the
+    reactions."""
+    return [name for name, scene in _scenes_of(kind).items() if scene.coulomb_joints]
+
+
+def run_where_named(kind: str) -> list[str]:
+    """The shipped scenes of a kind that the kind's name does not stand for: those of the reference
+    alone, and those whose elastic links are let go or have a controlled driver, whose truth takes
+    longer than all others."""
+    scenes = _scenes_of(kind)
+    return [name for name in scenes if scenes[name].coulomb_joints or _is_loose(scenes[name])]
+
+
+def _scenes_of(kind: str) -> dict[str, Scene]:
+    return {name: read_scene(path) for name, path in shipped(kind).items()}
+
+
+def _is_loose(scene: Scene) -> bool:
+    return bool(scene.elastic) and isinstance(scene.driver.law, Released | Controlled)
+
+
+def load_scene(name_or_path: str | PathLike[str]) -> Scene:
+    """Read a shipped scene by name, or a scene file by path.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        ``fourbar-lecture-1``, or anything that ends in ``.toml`` or names a file.
+
+    Raises
+    ------
+    CrankcheckError
+        Nothing there (the message suggests the near names), or neither a name nor a path.
+    SceneError
+        A file with faults, all of them in one message.
+    """
+    return read_scene(find_scene(name_or_path))
+
+
+def is_there(path: str) -> bool:
+    """Whether a path leads to something."""
+    try:
+        return bool(path) and Path(path).exists()
+    except PermissionError:
+        return True  # its folder may not be searched; reading it says so
+    except (OSError, ValueError):  # a name too long for the system, or with a null byte
+        return False
+
+
+def find_scene(name_or_path: str | PathLike[str]) -> Path:
+    """The file of a shipped scene's name, or of a path. Raises CrankcheckError as `load_scene`."""
+    known = every_shipped()
+    try:
+        name_or_path = fspath(name_or_path)
+        if not isinstance(name_or_path, str):
+            raise TypeError
+    except TypeError:
+        raise CrankcheckError(
+            f"scene: found {shown(name_or_path)}; give a shipped name or the path of a scene file"
+        ) from None
+    if name_or_path in known:
+        return known[name_or_path]
+    path = Path(name_or_path)
+    if is_there(name_or_path):
+        return path
+    if name_or_path in kinds():
+        several = few(shipped(name_or_path), 12)
+        raise CrankcheckError(f"scene {name_or_path!r}: a kind of scenes; name one: {several}")
+    near = nearest(path.stem, known, cutoff=0.5)
+    hint = f"Did you mean {' or '.join(near)}?" if near else "`crankcheck scenes` lists the names."
+    raise CrankcheckError(
+        f"scene {cut(name_or_path, 80)!r}: neither a shipped scene nor a file. {hint}"
+    )
+
+
+def find_scenes(names: str | Iterable[str]) -> list[Path]:
+    """The files of the named scenes and kinds. Raises CrankcheckError as `load_scene`."""
+    return [find_scene(name) for name in names_of_scenes(names)]
+
+
+def read_scene(path: Path) -> Scene:
+    """Read one scene file. Raises SceneError with every fault of the file."""
+    return parse_scene(read_text(path), str(path))
+
+
+def scene_texts(names: str | Iterable[str]) -> dict[str, str]:
+    """The text of each scene's file, by the scene's own name; of all of kinematics for none.
+
+    Raises CrankcheckError as `load_scene`.
+    """
+    texts: dict[str, str] = {}
+    for given in names_of_scenes(names) or shipped():
+        path = find_scene(given)
+        text = read_text(path)
+        texts[parse_scene(text, str(path)).name] = text
+    return texts
+
+
+def parse_scene(text: str, place: str) -> Scene:
+    """A scene from TOML text; ``place`` names it in messages. Raises SceneError."""
+    try:
+        raw = tables(text)
+    except UnreadableError as error:
+        raise SceneError(place, [str(error)]) from None
+    faults: list[str] = []
+    table = _validated(SceneTable, raw, "", faults)
+    driver = _driver(raw.get("driver"), faults)
+    loads = _loads(raw.get("loads"), faults)
+    faults += faults_of_names(raw)
+    if faults or table is None or driver is None:
+        raise SceneError(place, faults)
+    return scene_from_table(table, driver, loads, place)
+
+
+def read_text(path: Path) -> str:
+    """The text of a scene file. Raises SceneError that says why it could not be read."""
+    try:
+        return regular_text(path)
+    except UnreadableError as error:
+        raise SceneError(str(path), [str(error)]) from None
+
+
+def _driver(raw: object, faults: list[str]) -> DriverTable | None:
+    """The driver table under the model of its law."""
+    if isinstance(raw, list):
+        faults.append(
+            f"driver: found a list of {len(raw)}; a scene has one driver, one [driver] table"
+        )
+        return None
+    if not isinstance(raw, Mapping):
+        return None  # already a fault of SceneTable
+    law = raw.get("law", "constant")
+    known = SLIDES if "slider" in raw else DRIVERS
+    model = known.get(law) if isinstance(law, str) else None
+    if model is None:
+        faults.append(f"driver.law: found {shown(law)}; use one of {', '.join(known)}")
+        return None
+    if isinstance(raw.get("link"), list):
+        faults.append(f"driver.link: found {shown(raw['link'])}; a scene has one driver, one link")
+        return None
+    return _validated(model, raw, "driver.", faults)
+
+
+def _loads(raw: object, faults: list[str]) -> dict[str, LawOfLoad]:
+    """The tables of the loads under the models of their laws."""
+    loads: dict[str, LawOfLoad] = {}
+    for name, table in (raw if isinstance(raw, Mapping) else {}).items():
+        if not isinstance(table, Mapping):
+            continue  # already a fault of SceneTable
+        law, key = table.get("law", "constant"), f"loads.{cut(name)}"
+        model = LOADS.get(law) if isinstance(law, str) else None
+        if model is None:
+            faults.append(f"{key}.law: found {shown(law)}; use one of {', '.join(LOADS)}")
+        elif (load := _validated(model, table, f"{key}.", faults)) is not None:
+            loads[name] = load
+    return loads
+
+
+def _validated(
+    model: type[M], raw: Mapping[str, object], prefix: str, faults: list[str]
+) -> M | None:
+    """``raw`` as ``model``, or None with its faults appended."""
+    try:
+        return model.model_validate(raw)
+    except ValidationError as error:
+        for fault in error.errors():
+            if fault["loc"][:1] == ("driver",) and isinstance(raw.get("driver"), list):
+                continue  # `_driver` says it better
+            kind, message, found = fault["type"], fault["msg"], fault["input"]
+            for side, limit in fault.get("ctx", {}).items():
+                words = {"ge": "at least", "le": "at most"}
+                if side in words and isinstance(limit, float):
+                    message = f"use a number of {words[side]} {limit:g}"
+            faults.append(_line(model, prefix, fault["loc"], kind, message, found))
+        return None
+
+
+def _line(
+    model: type[BaseModel],
+    prefix: str,
+    loc: tuple[int | str, ...],
+    kind: str,
+    message: str,
+    found: object,
+) -> str:
+    """One fault in one line: key, what was found, what would work."""
+    parts = [str(part) for part in loc if part != "[key]"]
+    key = (prefix + ".".join(map(cut, parts))).removesuffix(".")
+    if kind == "missing":
+        return f"{key}: missing; add it"
+    if kind == "extra_forbidden":
+        return (
+            f"{key}: unknown key; {suggestion(parts[-1], _keys_at(model, loc), 'known:', 1, 0.6)}"
+        )
+    if kind == "string_pattern_mismatch":
+        text = parts[-1] in ("source", "note")
+        message = (
+            "text without control characters (of a terminal, of lines, of direction)"
+            if text
+            else "a name is a letter, then up to 39 letters, digits, - or _"
+        )
+    if kind == "value_error":
+        return f"{key or 'scene'}: {message.removeprefix('Value error, ')}"
+    return f"{key}: found {shown(found)}; {message[0].lower()}{message[1:]}"
+
+
+def _keys_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
+    """The keys that the table holding the unknown key ``loc`` may have."""
+    from models.files import schema
+
+    tables: dict[str, type[BaseModel]] = {
+        "ground": schema.GroundTable,
+        "links": schema.LinkTable,
+        "sliders": schema.SliderTable,
+        "friction": schema.FrictionTable,
+        "springs": schema.SpringTable,
+        "start": schema.StartTable,
+        "elastic": ElasticTable,
+    }
+    owner = tables.get(str(loc[0]), model) if len(loc) > 1 else model
+    return list(owner.model_fields)

@@ -1,0 +1,1 @@
+"""MJCF, MuJoCo's format: the text of a scene."""

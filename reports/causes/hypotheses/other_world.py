@@ -1,0 +1,283 @@
+"""A log of another assembly or driver, or that has the whole plane in another way."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields, replace
+
+import numpy as np
+
+from analytic.kinematics import choices, chosen_groups
+from analytic.structure.groups import Group, Triad
+from analytic.structure.mobility import analyse
+from models.array import Array
+from models.errors import CrankcheckError
+from models.laws import ConstantSpeed, Law
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, number
+from reports.causes.fit import fitted
+from reports.causes.inquiry import Inquiry
+from reports.causes.world import LogFrame, World
+from reports.logs.channel import Channel
+from reports.logs.units import UNITS
+from reports.output.numbers import listed
+
+MOST_CHOICES = 6
+"""Assemblies are looked at one by one up to so many choices: two to the power of it."""
+
+
+def assembly(inquiry: Inquiry) -> Iterator[Account]:
+    """Each other assembly that the log may be of."""
+    scene = inquiry.world.scene
+    groups = chosen_groups(analyse(scene))[:MOST_CHOICES]
+    for count in range(1, len(groups) + 1):
+        for chosen in itertools.combinations(groups, count):
+            for numbers in itertools.product(*(choices(scene, group)[1:] for group in chosen)):
+                keys = (group.branch_key for group in chosen)
+                branch = dict(zip(keys, numbers, strict=True))
+                other = replace(scene, branch={**scene.branch, **branch})
+                yield from _told(inquiry, replace(inquiry.world, scene=other), chosen, branch)
+
+
+def _told(
+    inquiry: Inquiry, world: World, groups: Sequence[Group | Triad], branch: Mapping[str, int]
+) -> Iterator[Account]:
+    """The accounts of an assembly: of the whole log, or of all that comes after an instant."""
+    links = inquiry.world.scene.links
+    names = listed([name for group in groups for name in group.bodies if name in links])
+    which = "another" if any(isinstance(group, Triad) for group in groups) else "the other"
+    entries = listed([f"{key} = {sign:+d}" for key, sign in branch.items()])
+    phrase = (
+        f"the log is of {which} assembly at {listed(list(branch))} ({names}): "
+        f"{entries.replace('+', '')} under [branch] of the scene"
+    )
+    cost = CAUSE + CHOICE * (len(groups) - 1)
+    told = inquiry.account_of_world("branch", cost, world, phrase)
+    if told is not None:
+        yield told
+    else:
+        yield from _later(inquiry, world, cost + NUMBER, phrase)
+
+
+def _later(inquiry: Inquiry, world: World, cost: float, phrase: str) -> Iterator[Account]:
+    """The account of a log that goes over to an assembly on the way, from its best sample on."""
+    try:
+        others = inquiry.errors(world)
+    except CrankcheckError:
+        return
+    gains = np.zeros(inquiry.rows)
+    for column, excerpt in inquiry.excerpts.items():
+        if excerpt.channel.kind.turns:
+            others[column] = np.remainder(others[column] + math.pi, math.tau) - math.pi
+        if column in inquiry.open:
+            size = excerpt.size.rms
+            gains += (excerpt.error / size) ** 2 - (others[column] / size) ** 2
+    after = np.cumsum(gains[::-1])[::-1]  # what is gained where all from a sample on is of another
+    first = int(np.argmax(after))
+    if first == 0 or after[first] <= 0.0:
+        return
+    place = np.arange(inquiry.rows)
+    errors = {
+        column: np.where(place < first, excerpt.error, others[column])
+        for column, excerpt in inquiry.excerpts.items()
+    }
+    instant = next(iter(inquiry.excerpts.values())).instants[first]
+    told = inquiry.account("branch", cost, errors, f"from t = {instant:.4g} s on {phrase}")
+    if told is not None and not inquiry.spoilt(errors):
+        yield told
+
+
+SIGNED = (
+    "speed_rad_s",
+    "acceleration_rad_s2",
+    "amplitude_rad",
+    "before_rad_s",
+    "after_rad_s",
+)
+"""What of a law changes its sign where the driver turns the other way."""
+STARTS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
+
+
+def backwards(inquiry: Inquiry) -> Iterator[Account]:
+    """The driver turning the other way from the same start, and rates that show it or, as from a
+    sensor of the speed alone, do not."""
+    if inquiry.world.drive is not None:
+        return
+    law = inquiry.world.scene.driver.law
+    names = {each.name for each in fields(law)}  # type: ignore[arg-type]
+    signs = {name: -getattr(law, name) for name in SIGNED if name in names}
+    world = _driven(inquiry.world, replace(law, **signs))  # type: ignore[type-var]
+    told = inquiry.account_of_world("reversed", CAUSE, world, "the driver turns the other way")
+    if told is not None:
+        yield told
+    elsewhere = inquiry.world.stamped(lambda stamps: -stamps)
+    phrase = "the driver turns the other way, and the rates have the signs that they have forwards"
+    told = inquiry.account_of_world("reversed", CAUSE + CHOICE, elsewhere, phrase)
+    if told is not None:
+        yield told
+
+
+def start_angle(inquiry: Inquiry) -> Iterator[Account]:
+    """The driver starting at another angle; at constant speed that is a clock that does."""
+    law = inquiry.world.scene.driver.law
+    another = isinstance(law, ConstantSpeed) or inquiry.world.drive is not None
+    if another or not inquiry.unexplained:
+        return
+    thin, columns = inquiry.thin, inquiry.unclaimed
+
+    def residual(angle: Array) -> Array:
+        errors = thin.errors(_driven(thin.world, law.turned(float(angle[0]))), columns)
+        return np.concatenate([errors[c] / thin.excerpts[c].size.rms for c in columns])
+
+    tried = (fitted(residual, [start], [1e-6]) for start in STARTS)
+    found = [each for each in tried if each is not None]
+    if not found:
+        return
+    angle = float(min(found, key=lambda each: float(np.sum(residual(each) ** 2)))[0])
+    phrase = f"the driver starts {math.degrees(angle):+.4g} deg from where it starts in the scene"
+    world = _driven(inquiry.world, law.turned(angle))
+    told = inquiry.account_of_world("start", CAUSE + NUMBER, world, phrase)
+    if told is not None:
+        yield told
+
+
+def _driven(world: World, law: Law) -> World:
+    """The world with another law of its driver."""
+    scene = world.scene
+    return replace(world, scene=replace(scene, driver=replace(scene.driver, law=law)))
+
+
+QUARTERS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
+"""Turns of the plane that a fit starts from."""
+NEAR_UNIT = 1e-3
+"""A scale that is as near to a ratio of units is one."""
+
+
+def mirrored(inquiry: Inquiry) -> Iterator[Account]:
+    """The plane seen from behind, so that one axis and all angles count the other way."""
+    for turn, axis in ((0.0, "y"), (math.pi, "x")):
+        world = inquiry.world.framed(LogFrame(mirrored=True, turn_rad=turn))
+        phrase = (
+            f"the plane is seen from behind: the {axis}-axis and all angles count the other way"
+        )
+        told = inquiry.account_of_world("mirrored", CAUSE, world, phrase)
+        if told is not None:
+            changes = {c: _turned_round(inquiry.channel(c), axis) for c in told.columns}
+            yield replace(told, corrections=changes)
+
+
+def _turned_round(channel: Channel, axis: str) -> Mapping[str, object]:
+    """What to write in the map of a channel where an axis is turned round."""
+    kind = channel.kind
+    if kind.axis is not None and "xy"[kind.axis] != axis:
+        return {}
+    found: dict[str, object] = {"sign": -channel.sign}
+    if kind.turns and axis == "x" and not channel.relative_to:
+        size = UNITS[kind.dimension][channel.unit]
+        found["offset"] = channel.offset - channel.sign * math.pi / size
+    return found
+
+
+def turned(inquiry: Inquiry) -> Iterator[Account]:
+    """The axes of the log turned against those of the scene, about its origin or another point."""
+    for count in (1, 3):
+        found = _frame(inquiry, _of(inquiry, "link", "point"), count)
+        if found is None:
+            continue
+        phrase = (
+            f"the x-axis of the log lies at {math.degrees(-found.turn_rad):.4g} deg of the scene"
+        )
+        if count == 3:
+            phrase += f", and {_origin(found)}"
+        world = inquiry.world.framed(found)
+        told = inquiry.account_of_world("turned", CAUSE + NUMBER * count, world, phrase)
+        if told is not None and len(told.columns) > 1:
+            yield told
+
+
+def _of(inquiry: Inquiry, *body_kinds: str) -> list[str]:
+    """The columns that are to be explained, and measure such bodies: those that nothing without a
+    number explains, but where these are not two, all."""
+    found = [c for c in inquiry.open if inquiry.channel(c).kind.body_kind in body_kinds]
+    needy = [column for column in found if column in inquiry.unclaimed]
+    return needy if len(needy) > 1 else found
+
+
+def _frame(inquiry: Inquiry, columns: Sequence[str], count: int) -> LogFrame | None:
+    """The frame that tells some columns best: turned, and moved where ``count`` is 3."""
+    if len(columns) < 2:
+        return None
+    thin, longest = inquiry.thin, inquiry.world.scene.longest_m
+    sizes = {column: thin.excerpts[column].size.rms for column in columns}
+
+    def frame(numbers: Array) -> LogFrame:
+        turn, x, y = (*(float(each) for each in numbers), 0.0, 0.0)[:3]
+        return LogFrame(turn_rad=turn, shift_m=(x, y))
+
+    def residual(numbers: Array) -> Array:
+        errors = thin.errors(thin.world.framed(frame(numbers)), columns)
+        return np.concatenate([errors[column] / sizes[column] for column in columns])
+
+    delta = (1e-6, 1e-6 * longest, 1e-6 * longest)[:count]
+    starts = ((turn, 0.0, 0.0)[:count] for turn in QUARTERS)
+    tried = (fitted(residual, start, delta) for start in starts)
+    found = [each for each in tried if each is not None]
+    best = min(found, key=lambda each: float(np.sum(residual(each) ** 2)), default=None)
+    return None if best is None else frame(best)
+
+
+def moved(inquiry: Inquiry) -> Iterator[Account]:
+    """The origin of the log at another point than the scene's."""
+    shifts = [_shift(inquiry, axis) for axis in (0, 1)]
+    for axes in ((0,), (1,), (0, 1)):
+        x, y = (shifts[axis] if axis in axes else 0.0 for axis in (0, 1))
+        if not all(shifts[axis] for axis in axes):
+            continue
+        frame = LogFrame(shift_m=(x, y))
+        cost = CAUSE + NUMBER * len(axes)
+        world = inquiry.world.framed(frame)
+        told = inquiry.account_of_world("moved", cost, world, _origin(frame))
+        if told is not None and len(told.columns) > 1:
+            yield told
+
+
+def _shift(inquiry: Inquiry, axis: int) -> float:
+    """The median offset [m] of the coordinates of points along an axis; 0 where there is none."""
+    coordinates = [
+        inquiry.excerpts[column].error
+        for column in _of(inquiry, "point")
+        if (inquiry.channel(column).kind.order, inquiry.channel(column).kind.axis) == (0, axis)
+    ]
+    return float(np.median([error.mean() for error in coordinates])) if coordinates else 0.0
+
+
+def _origin(frame: LogFrame) -> str:
+    """Where the origin of the log is."""
+    cos, sin = math.cos(frame.turn_rad), math.sin(frame.turn_rad)
+    x, y = frame.shift_m
+    place = ", ".join(number(each) for each in (-x * cos - y * sin, x * sin - y * cos))
+    return f"the origin of the log lies at ({place}) m of the scene"
+
+
+def sized(inquiry: Inquiry) -> Iterator[Account]:
+    """All lengths in one ratio to the scene's, while the angles are right."""
+    ratios = []
+    for column in _of(inquiry, "point", "slider"):
+        excerpt = inquiry.excerpts[column]
+        expected, values = excerpt.expected, excerpt.values
+        fine = np.isfinite(expected) & np.isfinite(values)
+        if np.any(expected[fine]):
+            ratios.append(float(values[fine] @ expected[fine] / np.sum(expected[fine] ** 2)))
+    if len(ratios) < 2:
+        return
+    size = float(np.median(ratios))
+    lengths = UNITS["length"].values()
+    units = [one / other for one in lengths for other in lengths]
+    if not size > 0.0 or any(abs(size / unit - 1.0) < NEAR_UNIT for unit in units if unit != 1.0):
+        return
+    world = inquiry.world.framed(LogFrame(size=size))
+    phrase = f"every length is {number(size, 6)} times the scene's ({change(size, 1.0)})"
+    told = inquiry.account_of_world("size", CAUSE + NUMBER, world, phrase, missing=0.0)
+    if told is not None and len(told.columns) > 1:
+        yield told

@@ -1,0 +1,271 @@
+"""How hard a scene is on an engine, as pure numbers: its curvature, change points and loads, and
+the bodies whose motion no integrator follows exactly.
+
+Driven exactly, a mechanism moves as it does whatever loads it; but a constraint that is soft gives
+way under them, and what a load over a displacement weighs hangs on where its slider is.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.array import Array, Mask
+from models.driver import driver_course
+from models.errors import CrankcheckError
+from models.joints import block_name, blocks, local_point
+from models.loads import Load
+from models.motion import Crossing, Motion
+from models.scene import Scene
+from reports.compare.tracks import length
+from reports.quantities.quantity import BodyKind
+
+
+def loading(scene: Scene, motion: Motion) -> float:
+    """The largest second difference, from sample to sample, of the acceleration that its loads
+    would give a body by itself, over those of the driver's speed on the longest link.
+
+    The springs of soft constraints give way by a share of that acceleration, and where it grows
+    evenly they do so evenly: what they make of the bodies' accelerations is its second difference.
+    A body on a guide is not turned. 0 without loads, or where a table of one ends before the
+    motion, which then has no forces either.
+    """
+    square, largest = scene.pace_rad_s**2, 0.0
+    guided = {slider.link for slider in scene.sliders.values()}
+    try:
+        for name in dict.fromkeys(load.body for load in scene.loads.values()):
+            force, moment = _push(scene, motion, name)
+            mass = _mass(scene, name) * scene.longest_m * square
+            largest = max(largest, _largest(np.abs(np.diff(force, 2))) / mass)
+            if name in scene.links and name not in guided and scene.links[name].inertia_kg_m2:
+                inertia = scene.links[name].inertia_kg_m2 * square
+                largest = max(largest, _largest(np.abs(np.diff(moment, 2))) / inertia)
+    except CrankcheckError:
+        return 0.0
+    return largest
+
+
+def inertia_share(scene: Scene, force_n: float) -> float:
+    """What all masses take at the driver's speed on the longest link, as a share of a force, 1 at
+    most."""
+    masses = [link.mass_kg for link in scene.links.values()]
+    masses += [slider.mass_kg for slider in scene.sliders.values()]
+    push = sum(masses) * scene.longest_m * scene.pace_rad_s**2
+    return min(push / force_n, 1.0)
+
+
+def _push(scene: Scene, motion: Motion, body: str) -> tuple[NDArray[np.complex128], Array]:
+    """The force of all loads on a body [N], as x + iy, and their moment about its centre of mass
+    [N m], (T,). Raises CrankcheckError as `Load.magnitude`."""
+    force = np.zeros(motion.time_s.shape, dtype=np.complex128)
+    moment = np.zeros(motion.time_s.shape)
+    turned = np.exp(1j * _angle(scene, motion, body))
+    for load in scene.loads.values():
+        if load.body != body:
+            continue
+        size = _magnitude(scene, load, motion)
+        if load.point is None:
+            moment += size
+            continue
+        turn = turned if load.frame == "body" else 1.0
+        push = size * turn * np.exp(1j * load.direction_rad)
+        force += push
+        if body in scene.links:
+            place, centre = local_point(scene, body, load.point), scene.links[body].centre_m
+            arm = turned * complex(place[0] - centre[0], place[1] - centre[1])
+            moment += (arm.conj() * push).imag
+    return force, moment
+
+
+def _angle(scene: Scene, motion: Motion, body: str) -> Array | float:
+    """The angle of a link or of a block, which is turned with its guide [rad]."""
+    for slider in scene.sliders.values():
+        if block_name(slider) == body:
+            guide = motion.links.get(slider.on)
+            return slider.direction_rad + (0.0 if guide is None else guide.theta)
+    return motion.links[body].theta
+
+
+def _magnitude(scene: Scene, load: Load, motion: Motion) -> Array:
+    """The size of a load over a motion [N or N m]."""
+    slid = None if load.slider is None else motion.sliders[load.slider]
+    x = motion.time_s
+    if load.over == "angle":
+        x = driver_course(scene, motion)[0]
+    elif load.over == "displacement" and slid is not None:
+        x = slid.displacement
+    return load.magnitude(x, None if slid is None else slid.speed)
+
+
+def _largest(series: Array) -> float:
+    return float(np.max(series, where=np.isfinite(series), initial=0.0))
+
+
+def _mass(scene: Scene, body: str) -> float:
+    """The mass of a body [kg]; of one that has none, the least there is."""
+    own = {name: link.mass_kg for name, link in scene.links.items()}
+    own |= {name: slider.mass_kg for name, slider in blocks(scene).items()}
+    heavy = [mass for mass in own.values() if mass > 0.0]
+    return own.get(body) or min(heavy, default=1.0)
+
+
+def load_slopes(
+    scene: Scene, motion: Motion, force_n: float, torque_n_m: float
+) -> dict[str, float]:
+    """How much the loads over displacements change with these, over the longest link: the
+    ``reaction``, as a share of the largest, and the ``torque``, by their power.
+
+    The slope at a sample is the steepest as far as the samples before and after it.
+    """
+    bears, turns = np.zeros_like(motion.time_s), np.zeros_like(motion.time_s)
+    for load in scene.loads.values():
+        if load.over != "displacement" or load.slider is None:
+            continue
+        slope = _slope(load, motion)
+        at_point = load.point is not None
+        bears += slope * (scene.longest_m if at_point else 1.0) / force_n
+        moved = scene.longest_m / scene.pace_rad_s / torque_n_m
+        turns += slope * _speed(scene, load, motion) * moved
+    return {"reaction": _largest(bears), "torque": _largest(turns)}
+
+
+def _slope(load: Load, motion: Motion) -> Array:
+    """The slope of a load at every sample [N/m or N], 0 where it does not act."""
+    assert load.slider is not None
+    slid = motion.sliders[load.slider]
+    apart = np.abs(np.diff(slid.displacement))
+    near = np.maximum(np.append(apart, 0.0), np.insert(apart, 0, 0.0))
+    slope = load.characteristic.steepest(slid.displacement, near) * np.ones_like(near)
+    acts = {"forward": slid.speed > 0.0, "backward": slid.speed < 0.0}
+    return np.where(acts[load.stroke], slope, 0.0) if load.stroke in acts else slope
+
+
+def _speed(scene: Scene, load: Load, motion: Motion) -> Array:
+    """How fast what is loaded moves [m/s or rad/s]."""
+    if load.point is not None:
+        return np.asarray(np.hypot(*motion.points[load.point].velocity.T))
+    guides = {block_name(slider): slider.on for slider in scene.sliders.values()}
+    turns = motion.links.get(guides.get(load.body, load.body))  # a block turns with its guide
+    return np.zeros_like(motion.time_s) if turns is None else np.abs(turns.omega)
+
+
+def curvature(scene: Scene, reference: Motion) -> float:
+    """The largest pure acceleration of the reference, at least 1, where it is a number."""
+    square = scene.pace_rad_s**2
+    turning = (link.alpha / square for link in reference.links.values())
+    moving = (
+        point.acceleration / (scene.longest_m * square) for point in reference.points.values()
+    )
+    sizes = (length(series) for series in itertools.chain(turning, moving))
+    return max(float(np.max(each, where=np.isfinite(each), initial=1.0)) for each in sizes)
+
+
+WINDOW_RAD = 0.5
+"""Of the driver, on both sides of a change point."""
+
+
+def near(crossings: Iterable[Crossing], driver_rad: Array, within_rad: float) -> Mask:
+    """Whether driver angles (T,) are nearer than this to one of some change points.
+
+    Rates are another matter. Within a step of the change point the joints do not hold the dyad in
+    one direction: a soft constraint leaves all of an acceleration open there. The error of place
+    that piled up, of second order, is made good in a step or some when they hold again: that is a
+    velocity of first order, and an acceleration that does not shrink with the step. Rates in the
+    window are rows of their own, of kind "passage", and held to limits of their own
+    (`reports.judge.tolerance.in_passage`).
+
+    Measured for profile tuned at 180 to 1440 steps a turn on a parallelogram, a kite and an
+    isosceles slider-crank: rates are those of the regular motion again 0.3 rad after the change
+    point at 180 steps, 0.2 rad at 360 and 0.1 rad at 720.
+    """
+    nearby = np.zeros(driver_rad.shape, dtype=bool)
+    for crossing in crossings:
+        away = np.remainder(driver_rad - crossing.driver_rad + math.pi, math.tau) - math.pi
+        nearby |= np.abs(away) < within_rad
+    return nearby
+
+
+def conditioning(motion: Motion, driver_rad: Array) -> float:
+    """The smallest sine of a transmission angle, 1 where there is no dyad.
+
+    Of a dyad in the window of its own change point no sine counts, unless the motion has no other:
+    then the largest does, as the one that is farthest from it.
+
+    The sine of a dyad falls to 0 in a change point, and yet the smooth branch is regular there:
+    inertia carries an engine through, with the error of place that it has in the regular motion on
+    both sides. How hard the mechanism is on an engine is therefore read off outside `WINDOW_RAD` of
+    the driver.
+    """
+    smallest = 1.0
+    for key, sine in motion.conditioning.items():
+        own = [crossing for crossing in motion.crossings if crossing.dyad == key]
+        outside = sine[~near(own, driver_rad, WINDOW_RAD)]
+        smallest = min(smallest, float(np.min(outside) if outside.size else np.max(sine)))
+    return smallest
+
+
+Series = dict[tuple[BodyKind, str], Array]
+LEAST_SAMPLES = 8
+LEAST_TURN_RAD = 0.2
+"""Over less of a turn of the driver no error comes to its size."""
+EVEN = 1e-3
+"""A departure that is none: rounding is far below it, and errors that belong to it below those of
+rounding."""
+
+
+def uneven(scene: Scene, reference: Motion, driver_rad: Array) -> dict[tuple[BodyKind, str], float]:
+    """How far each body departs from moving evenly with the driver, without those that do not:
+    links in radians, sliders and points in longest links, 1 at most.
+
+    ``driver_rad`` is the commanded angle of the driver at the samples of the reference, (T,).
+
+    What moves evenly with the driver comes out right to rounding however an engine steps: a link
+    that turns with it, a link of a parallelogram, a point on either. All else is off by what a step
+    leaves out, and the more, the further it is from moving evenly: from the driver's angle times a
+    number for links and sliders, from the ellipse that its pin could draw for points.
+    """
+    if driver_rad.size < LEAST_SAMPLES or np.ptp(driver_rad) < LEAST_TURN_RAD:
+        return {}
+    ones, turn = np.ones_like(driver_rad), np.exp(1j * driver_rad)
+    straight: Series = {("link", name): link.theta for name, link in reference.links.items()} | {
+        ("slider", name): slider.displacement / scene.longest_m
+        for name, slider in reference.sliders.items()
+    }
+    round_: Series = {
+        ("point", name): (point.position[:, 0] + 1j * point.position[:, 1]) / scene.longest_m
+        for name, point in reference.points.items()
+    }
+    far = {
+        **_departures(straight, np.stack([ones, driver_rad - np.mean(driver_rad)], axis=-1)),
+        **_departures(round_, np.stack([ones, turn, turn.conj()], axis=-1)),
+    }
+    return {body: min(size, 1.0) for body, size in far.items() if size > EVEN}
+
+
+def unevenly_turned(
+    scene: Scene, uneven: Mapping[tuple[BodyKind, str], float]
+) -> frozenset[tuple[BodyKind, str]]:
+    """Of the uneven bodies those whose rates are too: links, and what is carried by such a link or
+    slides on it. What rides on links that all turn evenly has the right speed in an engine."""
+    links = {name for kind, name in uneven if kind == "link"}
+    carried = {point for name in links for point in scene.links[name].points}
+    slides = {
+        name
+        for name, slider in scene.sliders.items()
+        if slider.on in links or slider.link in links or slider.point in carried
+    }
+    turned: dict[BodyKind, set[str]] = {"link": links, "point": carried, "slider": slides}
+    return frozenset(body for body in uneven if body[1] in turned[body[0]])
+
+
+def _departures(series: Series, even: NDArray[np.inexact]) -> dict[tuple[BodyKind, str], float]:
+    """The largest distance of each series (T,) from what the columns ``even`` (T, n) add up to."""
+    moved = np.stack(list(series.values()), axis=-1)
+    # The normal equations of two or three columns: a hundredth of the time of a decomposition.
+    across = even.conj().T
+    weights = np.linalg.solve(across @ even, across @ moved)
+    return dict(zip(series, np.max(np.abs(moved - even @ weights), axis=0).tolist(), strict=True))

@@ -1,0 +1,284 @@
+"""The figures of a motion with elastic links, over the driver's angle in a turn or over time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MultipleLocator
+
+from models.array import Array
+from models.cut_links import line_of
+from models.driver import Controlled
+from models.laws import ConstantSpeed
+from models.motion import Motion
+from reports.describe.elastic_course import Apart, ElasticCourse
+from reports.drawing.moving import Magnified, magnification
+from reports.drawing.shape import MARGIN, box_of, colours_of, guide_direction, size_of_motion
+from reports.figures.figure_set import FigureSet, note
+from reports.figures.sheet import ONE, SIDES, Panels, sheet
+from reports.figures.style import COLUMN_IN, INK, PAGE_IN, QUIET, SMALL, Look, shorten
+from reports.output.numbers import readable
+
+ELASTIC: Look = {"color": "#1f5f9e", "linewidth": 1.1}
+RIGID: Look = {"color": "#c04a1d", "linewidth": 0.9, "linestyle": (0, (4.0, 2.0))}
+WITHOUT = RIGID | {"linestyle": "-"}
+"""Without control."""
+COLOURS = ("#1f5f9e", "#c04a1d", "#2f7d4c", "#7a3e9d", "#b97f1f", "#15889a")
+"""Of elastic links, in the order of the scene."""
+DASHES = ("-", (0, (5.0, 1.5)), (0, (1.2, 1.2)), (0, (6.0, 1.5, 1.0, 1.5)))
+TURN = 1.0001
+"""Periods of a constant speed up to which an axis is that of the driver's angle."""
+SEEN = 1e-12
+"""An extension, over the longest link, below which there is none."""
+MOST = 8
+"""Links and sliders that one figure has room for: those that are furthest apart."""
+COLUMNS, ROWS = 3, 2
+GHOST: Look = {"color": "#a9b3bd", "linewidth": 1.0, "zorder": 1}
+
+
+@dataclass(frozen=True)
+class CourseAxis:
+    """Values (T,) with their label; ``step`` is between its numbers, 0 for any."""
+
+    values: Array
+    label: str
+    step: float = 0.0
+
+    @staticmethod
+    def of(course: ElasticCourse) -> CourseAxis:
+        scene, time_s = course.scene, course.time_s
+        law = scene.driver.law
+        if isinstance(law, ConstantSpeed) and time_s[-1] <= TURN * law.period_s:
+            degrees = np.degrees(course.motion.links[scene.driver.link].theta)
+            return CourseAxis(degrees, f"angle of {scene.driver.link} [deg]", 60.0)
+        if isinstance(law, ConstantSpeed):
+            return CourseAxis(time_s / law.period_s, f"turns of {scene.driver.link}")
+        return CourseAxis(time_s, "time [s]")
+
+    def mark(self, axes: Axes, *, labelled: bool = True) -> None:
+        """Limits and label of the axis, short numbers on the other, and a line at 0."""
+        axes.set_xlim(float(self.values.min()), float(self.values.max()))
+        if self.step:
+            axes.xaxis.set_major_locator(MultipleLocator(self.step))
+        low, high = axes.get_ylim()
+        if low <= 0.0 <= high:
+            axes.axhline(0.0, color=QUIET, linewidth=0.5)
+        shorten(axes)
+        if labelled:
+            axes.set_xlabel(self.label)
+        else:
+            axes.tick_params(labelbottom=False)
+
+
+def _notes(course: ElasticCourse) -> list[str]:
+    """What stands under each figure."""
+    return [note(course.scene, course.words, course.scene.driver.link)]
+
+
+def _beside_rigid() -> list[tuple[Artist, str]]:
+    return [(Line2D([], [], **ELASTIC), "elastic links"), (Line2D([], [], **RIGID), "rigid links")]
+
+
+def _deflection(course: ElasticCourse) -> Figure | None:
+    """How far the middle of each elastic link is from the line between its pins; None where no link
+    bends."""
+    curves = {}
+    for name in (name for name, own in course.scene.elastic.items() if own.bends):
+        line = line_of(course.scene, name)
+        label = f"middle of {name}, {readable(0.5 * line.length_m)} m from {line.pins[0]}"
+        curves[label] = 1e3 * course.motion.elastic[name].middle
+    return _of_links(course, curves, "Deflection", "deflection [mm]") if curves else None
+
+
+def _extension(course: ElasticCourse) -> Figure | None:
+    """By how much the pins of each elastic link are further apart than at rest: it stretches, and
+    what bends is shorter; None where no link is longer or shorter."""
+    shapes = course.motion.elastic
+    largest = max(float(abs(shape.extension).max()) for shape in shapes.values())
+    if largest <= SEEN * course.scene.longest_m:
+        return None
+    curves = {f"end of {name}, along it": 1e6 * one.extension for name, one in shapes.items()}
+    return _of_links(course, curves, "Axial displacement of the end", "extension [µm]")
+
+
+def _of_links(course: ElasticCourse, curves: Mapping[str, Array], title: str, label: str) -> Figure:
+    """One panel with a curve for each elastic link, by what the legend says of it."""
+    looks: list[Look] = [
+        {"color": COLOURS[k % len(COLOURS)], "linestyle": DASHES[k % len(DASHES)]}
+        for k in range(len(curves))
+    ]
+    entries = [(Line2D([], [], **look), each) for each, look in zip(curves, looks, strict=True)]
+    axis, title = CourseAxis.of(course), f"{title}: {course.scene.name}"
+    figure, (axes,) = sheet(COLUMN_IN, ONE, title, entries, _notes(course))
+    for series, look in zip(curves.values(), looks, strict=True):
+        axes.plot(axis.values, series, **look)
+    axes.set_ylabel(label)
+    axis.mark(axes)
+    return figure
+
+
+def _torque(course: ElasticCourse) -> Figure | None:
+    """The driving torque with elastic links and with rigid ones, and their difference; None without
+    a drive."""
+    if course.torques is None:
+        return None
+    elastic, rigid = course.torques
+    axis = CourseAxis.of(course)
+    title = f"Driving torque: {course.scene.name}"
+    panels = Panels(2, 1, 1.25, *SIDES, 0.15, between=(0.15, 0.2))
+    figure, (upper, lower) = sheet(COLUMN_IN, panels, title, _beside_rigid(), _notes(course))
+    upper.plot(axis.values, elastic, **ELASTIC)
+    upper.plot(axis.values, rigid, **RIGID)
+    upper.set_ylabel("torque [N m]")
+    lower.plot(axis.values, elastic - rigid, **ELASTIC)
+    lower.set_ylabel("elastic less rigid [N m]")
+    axis.mark(upper, labelled=False)
+    axis.mark(lower)
+    return figure
+
+
+def _angles(course: ElasticCourse) -> Figure | None:
+    """The angles of links, and displacements of sliders, with elastic links beside those with rigid
+    ones, as the thesis draws them, and by how much they are apart; None where nothing is."""
+    each = _chosen(course)
+    if not each:
+        return None
+    axis = CourseAxis.of(course)
+    height = 1.5 if len(each) == 1 else 1.15
+    panels = Panels(len(each), 2, height, *SIDES, 0.15, between=(0.65, 0.2))
+    title = f"Elastic beside rigid links: {course.scene.name}"
+    figure, panes = sheet(PAGE_IN, panels, title, _beside_rigid(), _notes(course))
+    for one, left, right in zip(each, panes[::2], panes[1::2], strict=True):
+        scale, unit = (np.degrees(1.0), "deg") if one.unit == "rad" else (1.0, "m")
+        left.plot(axis.values, scale * one.elastic, **ELASTIC)
+        left.plot(axis.values, scale * one.rigid, **RIGID)
+        left.set_ylabel(f"{one.name} [{unit}]")
+        right.plot(axis.values, one.difference, **ELASTIC)
+        right.set_ylabel(f"elastic less rigid [{one.unit}]")
+        for pane in (left, right):
+            axis.mark(pane, labelled=one is each[-1])
+    return figure
+
+
+def _chosen(course: ElasticCourse) -> list[Apart]:
+    """At most so many, in the order of the scene; links that only a told driver moves are none."""
+    every = [one for one in course.apart() if np.any(one.difference)]
+    sizes = sorted((float(np.max(np.abs(one.difference))) for one in every), reverse=True)
+    least = sizes[min(MOST, len(sizes)) - 1] if sizes else 0.0
+    return [one for one in every if float(np.max(np.abs(one.difference))) >= least][:MOST]
+
+
+def _positions(course: ElasticCourse) -> Figure | None:
+    """The mechanism at six instants, evenly spread over the motion, from its start on, its
+    deflection magnified, over the same with rigid links."""
+    scene, base = course.scene, course.base
+    size = size_of_motion(base)
+    factor = magnification(course.motion, base, course.bent, size)
+    own = Magnified(scene, course.motion, base, course.bent, factor)
+    low, high = box_of(base)
+    low, high = low + 0.5 * MARGIN * size, high - 0.5 * MARGIN * size
+    panels = Panels(ROWS, COLUMNS, 1.0, 0.06, 0.06, 0.22, 0.06, between=(0.1, 0.22))
+    wide = (PAGE_IN - 0.12 - 2 * panels.between[0]) / COLUMNS
+    height = float(np.clip(wide * (high[1] - low[1]) / (high[0] - low[0]), 0.8, 3.0))
+    colours = colours_of(scene)
+    entries: list[tuple[Artist, str]] = [
+        (Line2D([], [], color=colour, linewidth=2.0), f"{name}{' (elastic)' * (name in own.bent)}")
+        for name, colour in colours.items()
+    ]
+    ghost = "lines between pins" if scene.is_free else "rigid links"
+    entries.append((Line2D([], [], **GHOST), ghost))
+    what = "Deflections" if scene.is_free else "Displacements from rigid links"
+    title = f"{what}, magnified {factor:g} times: {scene.name}"
+    figure, panes = sheet(PAGE_IN, replace(panels, height=height), title, entries, _notes(course))
+    last = course.time_s.size - 1
+    for number, axes in enumerate(panes):
+        index = round(number * last / len(panes))
+        _position(axes, own, index, colours)
+        axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xticks=[], yticks=[])
+        axes.set_aspect("equal", adjustable="box")
+        degrees = math.degrees(base.links[scene.driver.link].theta[index]) % 360.0
+        when = f"{scene.driver.link} {degrees:.0f} deg"
+        if scene.is_free or course.turns > 1.0:
+            when += f", {course.time_s[index]:.3g} s"
+        axes.set_title(when, fontsize=SMALL, loc="left")
+    return figure
+
+
+def _position(axes: Axes, own: Magnified, index: int, colours: dict[str, str]) -> None:
+    """Links, sliders and pins at a sample, the rigid mechanism behind them."""
+    for name, link in own.scene.links.items():
+        ghost = np.array([own.rigid.points[p].position[index] for p in link.points])
+        outline = own.outline(name, index)
+        if name not in own.bent and len(outline) > 2:
+            ghost, outline = (np.vstack([each, each[:1]]) for each in (ghost, outline))
+        axes.plot(*ghost.T, **GHOST)
+        axes.plot(*outline.T, color=colours[name], linewidth=2.0, zorder=3)
+    for slider in own.scene.sliders.values():
+        place, direction = own.place(slider.point, index), guide_direction(slider, own.rigid, index)
+        reach = 0.06 * size_of_motion(own.rigid)
+        axes.plot(*np.array([place - reach * direction, place + reach * direction]).T,
+                  color=INK, linewidth=3.5, alpha=0.5, solid_capstyle="butt", zorder=2)  # fmt: skip
+    pins = np.array([own.place(name, index) for name in own.rigid.points])
+    axes.plot(*pins.T, "o", markersize=3.0, color="white", markeredgecolor=INK, zorder=5)
+    grounded = np.array(list(own.scene.ground.values())).reshape(-1, 2)
+    axes.plot(*grounded.T, "^", markersize=5.0, color=INK, alpha=0.7, zorder=2)
+
+
+def _control(course: ElasticCourse) -> Figure | None:
+    """What a controller makes of elastic links, over the same with the torque of the rigid
+    mechanism alone: deflections, the driver's speed, and how far it is ahead of what it was told;
+    None without a controller."""
+    law = course.scene.driver.law
+    if course.uncontrolled is None or not isinstance(law, Controlled):
+        return None
+    gains = f"kP = {law.kp_n_m_rad:g} N m/rad, kD = {law.kd_n_m_s:g} N m s/rad"
+    entries = [
+        (Line2D([], [], **ELASTIC), f"controlled, {gains}"),
+        (Line2D([], [], **WITHOUT), "not controlled: the torque of rigid links alone"),
+    ]
+    title = f"With and without control: {course.scene.name}"
+    panels = Panels(3, 1, 1.15, *SIDES, 0.15, between=(0.15, 0.2))
+    figure, panes = sheet(COLUMN_IN, panels, title, entries, _notes(course))
+    for motion, look in ((course.uncontrolled, WITHOUT), (course.motion, ELASTIC)):
+        _controlled(panes, course, motion, look)
+    driver = course.scene.driver.link
+    panes[1].axhline(law.speed_rad_s, color=QUIET, linewidth=0.5)
+    panes[0].set_ylabel("deflection [mm]")
+    panes[1].set_ylabel(f"speed of {driver} [rad/s]")
+    panes[2].set_ylabel(f"{driver} ahead by [deg]")
+    axis = CourseAxis(course.time_s, "time [s]")
+    for pane in panes:
+        axis.mark(pane, labelled=pane is panes[-1])
+    return figure
+
+
+def _controlled(panes: list[Axes], course: ElasticCourse, motion: Motion, look: Look) -> None:
+    """One of the two motions in all panels; several elastic links differ in their dashes."""
+    driver, time_s = course.scene.driver, course.time_s
+    bending = [name for name, own in course.scene.elastic.items() if own.bends]
+    for name, dash in zip(bending, DASHES * len(bending), strict=False):
+        panes[0].plot(time_s, 1e3 * motion.elastic[name].middle, **look | {"linestyle": dash})
+    own = motion.links[driver.link]
+    panes[1].plot(time_s, own.omega, **look)
+    panes[2].plot(time_s, np.degrees(own.theta - driver.law.at(time_s)[0]), **look)
+
+
+ELASTIC_FIGURES: FigureSet[ElasticCourse] = FigureSet(
+    "elastic links",
+    {
+        "deflection": _deflection,
+        "extension": _extension,
+        "torque": _torque,
+        "angles": _angles,
+        "positions": _positions,
+        "control": _control,
+    },
+)
+"""What is let go has no drive, few are controlled."""

@@ -1,0 +1,109 @@
+"""What the figures of forces are drawn of: a turn of a scene, and the axis that they go over."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MultipleLocator
+from numpy.typing import NDArray
+
+from analytic.forces.virtual_power import ReducedMachine, reduced_machine
+from models.array import Array
+from models.characteristics import Constant
+from models.driver import driver_axis, driver_shown
+from models.laws import ConstantSpeed
+from models.motion import Forces, Motion
+from models.scene import Scene
+from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_forces
+from reports.drawing.moving import goes_round
+from reports.drawing.shape import clear_of_locking
+from reports.figures.figure_set import loads_told, note
+from reports.figures.style import shorten
+
+
+@dataclass(frozen=True)
+class ForceTurn:
+    """The first turn of a scene: its motion with forces, and the machine reduced to its driver.
+
+    ``x`` is what curves go over, called ``label``, between ``ends``; ``order`` are the samples that
+    stand there.
+    """
+
+    scene: Scene
+    motion: Motion
+    acting: Forces
+    reduced: ReducedMachine
+    x: Array
+    label: str
+    ends: tuple[float, float]
+    order: NDArray[np.intp]
+
+    def plot(self, axes: Axes, series: Array, **look: Any) -> None:
+        """Draw a series of the turn (T,)."""
+        axes.plot(self.x, series[self.order], **look)
+
+    def mark_axis(self, axes: Axes) -> None:
+        """Limits and ticks of the horizontal axis; short numbers on the other."""
+        axes.set_xlim(*self.ends)
+        shorten(axes)
+        if self.label.endswith("[deg]"):
+            axes.xaxis.set_major_locator(MultipleLocator(60.0))
+
+    @property
+    def has_forces(self) -> bool:
+        """Whether any forces are left to draw, beside where friction locks."""
+        return bool(np.isfinite(self.acting.torque).any())
+
+    @property
+    def notes(self) -> list[str]:
+        """What stands under each figure."""
+        scene = self.scene
+        notes = [note(scene, "closed form", "driver", loads_told(scene))]
+        notes += force_notes(scene, self.motion)
+        if self.acting.has_equilibria(0).any():
+            left = "" if self.has_forces else ", which is all of the turn"
+            notes.append(f"Forces within 5 deg of it are not drawn{left}.")
+        return notes
+
+
+def force_turn(scene: Scene) -> ForceTurn:
+    """The turn of a scene. Raises CrankcheckError as `with_forces`."""
+    motion = turn_with_forces(scene)
+    assert motion.forces is not None
+    reduced = reduced_machine(scene, motion.time_s)
+    acting = clear_of_locking(cleaned_forces(motion.forces))
+    law, every = scene.driver.law, np.arange(motion.time_s.size)
+    label, x = driver_axis(scene), driver_shown(scene, motion)
+    ends = (float(x.min()), float(x.max()))
+    if not goes_round(scene):  # every place may be passed twice
+        x, label, ends = motion.time_s, "time [s]", (0.0, law.period_s)
+    elif isinstance(law, ConstantSpeed) and _is_cyclic(scene, np.radians(x)):
+        # A turn is like every other: it is drawn from 0 on, wherever it began.
+        around = np.mod(np.round(x[:-1], 9), 360.0)
+        every = np.argsort(around)
+        every = np.concatenate([every[-1:], every, every[:1]])
+        x, ends = around[every], (0.0, 360.0)
+        x[0], x[-1] = x[0] - 360.0, x[-1] + 360.0
+    return ForceTurn(scene, motion, acting, reduced, x, label, ends, every)
+
+
+def _is_cyclic(scene: Scene, theta: Array) -> bool:
+    """Whether every turn of a driver of one speed is like the others: no load follows time, and
+    none follows the angle otherwise than turn by turn (a four-stroke's does)."""
+    for load in scene.loads.values():
+        own = load.characteristic
+        if isinstance(own, Constant) or load.over == "displacement":
+            continue
+        if load.over == "time":
+            return False
+        try:
+            again, size = own.at(theta - math.tau), np.max(np.abs(own.at(theta)))
+        except ValueError:  # a table of this turn alone
+            return False
+        if np.max(np.abs(again - own.at(theta))) > 1e-9 * size:
+            return False
+    return True

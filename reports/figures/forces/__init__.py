@@ -1,1 +1,0 @@
-"""The forces of a turn, drawn for a paper."""

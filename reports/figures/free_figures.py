@@ -1,0 +1,167 @@
+"""The figures of a free motion: over time, its energy, and the phase diagram."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MultipleLocator
+
+from analytic.free.free_motion import FreeMotion
+from models.array import Array
+from models.motion import LinkMotion
+from models.scene import Scene
+from reports.figures.figure_set import FigureSet, loads_told, note
+from reports.figures.sheet import ONE, SIDES, Panels, sheet
+from reports.figures.style import COLUMN_IN, INK, QUIET, Look, mark_zero, shorten
+from reports.output.numbers import error_text
+
+LEAST, MOST, IN_A_TURN = 2401, 7201, 180
+"""Samples: of a motion that hardly turns, of one that turns very often, and in a turn at its
+largest speed, whose peaks are narrow."""
+DRIVER: Look = {"color": "#1f5f9e", "linewidth": 1.0}
+START: Look = {"color": "#c04a1d", "marker": "o", "markersize": 3.5, "linestyle": "none"}
+KINETIC: Look = {"color": "#c04a1d", "linewidth": 1.0}
+TOTAL: Look = {"color": INK, "linewidth": 0.9, "linestyle": (0, (5.0, 2.0))}
+WORK: Look = {"color": "#2f7d4c", "linewidth": 0.9, "linestyle": (0, (6.0, 1.5, 1.0, 1.5))}
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class FreeCourse:
+    """A free motion at instants, closely sampled: its driver and the energies [J], kinetic,
+    potential, and the work that is done on it from outside of both."""
+
+    free: FreeMotion
+    time_s: Array
+    driver: LinkMotion
+    kinetic: Array
+    potential: Array
+    work: Array
+
+    @property
+    def scene(self) -> Scene:
+        return self.free.scene
+
+    def mark_time(self, axes: Axes) -> None:
+        """Limits of a time axis, short numbers on the other, and the limit positions."""
+        axes.set_xlim(float(self.time_s[0]), float(self.time_s[-1]))
+        shorten(axes)
+        for one in self.free.passages:
+            axes.axvline(one.time_s, color=QUIET, linewidth=0.5, linestyle=(0, (1.0, 2.0)))
+
+    @property
+    def notes(self) -> list[str]:
+        """What stands under each figure."""
+        scene, end = self.scene, self.time_s[-1:]
+        how = f"integrated to {error_text(float(self.free.error_rad(end)[0]))} rad"
+        springs = [f"springs: {', '.join(scene.springs)}"] if scene.springs else []
+        return [note(scene, how, scene.driver.link, loads_told(scene), *springs)]
+
+    @property
+    def notes_over_time(self) -> list[str]:
+        """What stands under a figure over time."""
+        dotted = "Dotted: limit positions, in which the driver turns back."
+        return [*self.notes, *([dotted] if self.free.passages else [])]
+
+
+def free_course(free: FreeMotion) -> FreeCourse:
+    """The motion from its start to its end. Raises CrankcheckError as `FreeMotion.at`."""
+    turns = free.peak_speed_rad_s * free.until_s / math.tau
+    count = int(np.clip(IN_A_TURN * turns, LEAST, MOST))
+    time_s = np.linspace(0.0, free.until_s, count)
+    driver = free.at(time_s, bound=False).links[free.scene.driver.link]
+    energy = free.energy(time_s)
+    return FreeCourse(free, time_s, driver, energy.kinetic, energy.potential, energy.work)
+
+
+def _over_time(course: FreeCourse) -> Figure:
+    """The driver's angle and angular velocity over time, in two panels."""
+    driver, name = course.driver, course.scene.driver.link
+    panels = Panels(2, 1, 1.25, *SIDES, 0.15, between=(0.15, 0.12))
+    title = f"Free motion: {course.scene.name}"
+    figure, (upper, lower) = sheet(COLUMN_IN, panels, title, [], course.notes_over_time)
+    turns = float(np.ptp(driver.theta)) > 4 * math.tau
+    unit, per = ("turns", math.tau) if turns else ("deg", math.radians(1.0))
+    upper.plot(course.time_s, driver.theta / per, **DRIVER)
+    upper.set_ylabel(f"angle of {name} [{unit}]")
+    upper.tick_params(labelbottom=False)
+    mark_zero(lower, driver.omega)
+    lower.plot(course.time_s, driver.omega, **DRIVER)
+    lower.set_ylabel("angular velocity [rad/s]")
+    lower.set_xlabel("time [s]")
+    for axes in (upper, lower):
+        course.mark_time(axes)
+    return figure
+
+
+def _energy(course: FreeCourse) -> Figure:
+    """Kinetic and potential energy over time, which counts from its lowest on the way, their sum,
+    and the work that is done on them; what stays at 0 is left out."""
+    potential = course.potential - np.min(course.potential)
+    largest = float(max(np.max(course.kinetic), np.max(potential)))
+    lines = [("kinetic", course.kinetic, KINETIC)]
+    if np.max(potential) > ROUNDING * largest:
+        lines.append(("potential (weights, springs)", potential, DRIVER))
+        lines.append(("total", course.kinetic + potential, TOTAL))
+    if np.max(np.abs(course.work)) > ROUNDING * largest:
+        lines.append(("work of loads, dampers, friction", course.work, WORK))
+    entries = [(Line2D([], [], **look), label) for label, _, look in lines]
+    title = f"Energy: {course.scene.name}"
+    figure, (axes,) = sheet(COLUMN_IN, ONE, title, entries, course.notes_over_time)
+    mark_zero(axes, *(series for _, series, _ in lines))
+    for _, series, look in lines:
+        axes.plot(course.time_s, series, **look)
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel("energy [J]")
+    course.mark_time(axes)
+    return figure
+
+
+def _phase(course: FreeCourse) -> Figure:
+    """The phase diagram, the driver's angular velocity over its angle; where the driver turns
+    round, all turns lie over one another."""
+    degrees, omega, label = np.degrees(course.driver.theta), course.driver.omega, "angle of"
+    turning = float(np.ptp(degrees)) > 360.0
+    if turning:
+        degrees, omega = _over_one_turn(degrees, omega)
+        label = "angle within a turn of"
+    title = f"Phase diagram: {course.scene.name}"
+    figure, (axes,) = sheet(COLUMN_IN, ONE, title, [], [*course.notes, "The dot is the start."])
+    mark_zero(axes, course.driver.omega)
+    axes.plot(degrees, omega, **DRIVER | {"linewidth": 0.8})
+    axes.plot(degrees[:1], omega[:1], **START)
+    axes.set_xlabel(f"{label} {course.scene.driver.link} [deg]")
+    axes.set_ylabel("angular velocity [rad/s]")
+    shorten(axes)
+    if turning:
+        axes.set_xlim(0.0, 360.0)
+        axes.xaxis.set_major_locator(MultipleLocator(60.0))
+    return figure
+
+
+def _over_one_turn(degrees: Array, omega: Array) -> tuple[Array, Array]:
+    """Angles within a turn, the curve cut where one turn goes over into the next: there it ends at
+    one side and goes on at the other."""
+    turn = np.floor(np.round(degrees, 9) / 360.0)
+    cuts = np.flatnonzero(np.diff(turn)) + 1
+    before, after = turn[cuts - 1], turn[cuts]
+    edge = 360.0 * np.maximum(before, after)
+    share = (edge - degrees[cuts - 1]) / (degrees[cuts] - degrees[cuts - 1])
+    there = omega[cuts - 1] + share * (omega[cuts] - omega[cuts - 1])
+    none = np.full(cuts.size, math.nan)
+    sides = np.column_stack([edge - 360.0 * before, none, edge - 360.0 * after])
+    place = np.repeat(cuts, 3)
+    return (
+        np.insert(degrees - 360.0 * turn, place, sides.ravel()),
+        np.insert(omega, place, np.column_stack([there, none, there]).ravel()),
+    )
+
+
+FREE_FIGURES: FigureSet[FreeCourse] = FigureSet(
+    "a free motion", {"over-time": _over_time, "energy": _energy, "phase": _phase}
+)

@@ -1,1 +1,0 @@
-"""Figures of a store's free runs beside the truth."""

@@ -1,0 +1,128 @@
+"""CC110, CC118, CC125: the error shrinks with the step, and goes on from sample to sample."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from reports.compare.errors import Errors
+from reports.judge.rules.rule import Evidence, Finding, Level, measure
+from reports.judge.three_steps import AT_ROUNDING, Convergence
+from reports.quantities import named
+
+FINE = ("shrinks", "at rounding", "as solved", "as the truth")
+BAD = ("grows", "diverges")
+SOFT = 1e-4
+"""What MuJoCo's stiffest documented impedance (0.9999) leaves open of a force."""
+
+
+class ErrorShrinks:
+    id = "CC110"
+    title = "convergence"
+    explanation = (
+        "An error that stays when the step is halved twice is no discretisation error: "
+        "the model converges to the wrong answer. Where the cell is gated an error that grows, or "
+        "that is over the limit of the finer step, fails, as does a finer run that breaks down."
+    )
+    cure = (
+        "A shorter step does not help; change what the engine models "
+        "(MuJoCo: solref, solimp; pymunk: error_bias, iterations)."
+    )
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        return _seen(self.id, evidence.convergence, evidence)
+
+
+class ForcesShrink:
+    id = "CC125"
+    title = "convergence of forces"
+    explanation = (
+        "As CC110, of the worst reaction, normal force, moment or torque: forces go with "
+        "accelerations, of which a soft constraint leaves a share open at every step."
+    )
+    cure = (
+        "Look at which instant the forces belong to: half a step off is an error of first order. "
+        "A floor is what soft constraints leave open (MuJoCo: solref, solimp)."
+    )
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        """A floor under what a soft constraint leaves open is no news."""
+        finding = _seen(self.id, evidence.force_convergence, evidence)
+        if finding and finding.level == "advice" and (finding.number or 0.0) <= SOFT:
+            return replace(finding, level="pass")
+        return finding
+
+
+def _seen(rule: str, convergence: Convergence | None, evidence: Evidence) -> Finding | None:
+    """What is seen of three steps: a floor is worth knowing, and growing a failure."""
+    if convergence is None:
+        return None
+    steps = ", ".join(
+        f"{error:.2g} {convergence.unit} at dt {dt:.3g} s"
+        for dt, error in zip(convergence.dt_s, convergence.error, strict=True)
+    )
+    words = convergence.words + (f" {convergence.unit}" if "floor" in convergence.words else "")
+    faults = [*convergence.faults, *convergence.over]
+    level: Level = "pass" if convergence.trend in FINE and not faults else "advice"
+    if evidence.gated and (faults or convergence.trend in BAD):
+        level = "fail"
+    text = "; ".join([f"{words} ({steps})", *faults])
+    return Finding(rule, level, text, convergence.error[-1])
+
+
+DENSE_RAD = 0.04
+"""The longest step, of about 160 a turn, at which an error is followed closely enough."""
+CLEAR = 10.0 * AT_ROUNDING
+"""A pure error that is not made of rounding within the engine."""
+UNSURE = 100.0
+"""How far over what the reference may be wrong by an error has to be as well."""
+MOST = 1.0
+"""The most that the second difference of an error may be of the error itself. Of independent
+numbers it is over 2; of runs that hold, on every shipped scene and 60 random ones, under 0.05."""
+
+
+class ErrorSmooth:
+    id = "CC118"
+    title = "smooth"
+    explanation = (
+        "The error of an engine grows and falls over many steps. One that jumps to and fro between "
+        "two samples is rounding or noise in the log, whatever is below it."
+    )
+    cure = (
+        "Log every digit; look for what is added to the numbers, and for joints that the solver "
+        "does not come to an end with."
+    )
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        errors = evidence.errors
+        if errors is None or evidence.status != "ok" or errors.of_scene.step_rad > DENSE_RAD:
+            return None
+        found = _roughest(errors)
+        if found is None:
+            return None
+        rough, text = found
+        if rough <= MOST:
+            return Finding(self.id, "pass", "errors go on from sample to sample", rough, MOST)
+        text = f"{text}, and jumps by {rough:.2g} times that from sample to sample"
+        return Finding(self.id, "fail", text, rough, MOST)
+
+
+def _roughest(errors: Errors) -> tuple[float, str] | None:
+    """The largest second difference over the error that it is of, and that error in words."""
+    bent = {
+        (row.body_kind, row.body): row.pure * errors.of_scene.step_rad**2
+        for row in errors.rows
+        if (row.quantity, row.source, row.kind) == ("acceleration", "differenced", "total")
+        and row.finite
+    }
+    ratios = [
+        (bent[row.body_kind, row.body] / row.pure, row)
+        for row in errors.rows
+        if row.quantity in named("place")
+        and row.kind == "total"
+        and row.pure >= CLEAR + UNSURE * row.pure_bound
+        and (row.body_kind, row.body) in bent
+    ]
+    if not ratios:
+        return None
+    rough, row = max(ratios, key=lambda each: each[0])
+    return rough, f"{row.body_kind} {row.body}: {row.quantity} is off by {measure(row)}"

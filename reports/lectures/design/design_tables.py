@@ -1,0 +1,212 @@
+"""The solutions of a synthesis as a table: what each is, and what is wrong with it."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.table import Table
+
+from analytic.lectures.synthesis.examine import Examined
+from analytic.lectures.synthesis.sensitivity import Sensitivity, Spread
+from analytic.lectures.synthesis.solutions import Solutions
+from reports.lectures.design.proof import Met, in_words, unit_of
+from reports.output.console import plain_table
+from reports.output.numbers import count
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+DEFECT_FREE = "none"
+
+
+def remarks(one: Examined) -> list[str]:
+    """What a task wished and a mechanism does not have, and how well it does it, in words."""
+    doubt = one.proposal.doubt
+    return [*one.unfulfilled, *one.notes, *([doubt] if doubt else [])]
+
+
+def counted(solutions: Solutions, listed: int) -> str:
+    """How many solutions there are, of how many, in words."""
+    many, sound = len(solutions.examined), len(solutions.sound)
+    told = f"{count(solutions.looked, 'mechanism')} looked at, {many} examined"
+    told += f", {sound} without a defect"
+    if solutions.refused:
+        told += f"; {len(solutions.refused)} are none ({solutions.refused[0]})"
+    return told + (f"; the best {listed} listed" if listed < many else "")
+
+
+def solution_table(every: Sequence[Examined]) -> Table:
+    """A row for each, numbered from 1."""
+    table = plain_table(gap=2)
+    for head in ("", "defect", "driver", "trans. deg", "size m", "type", "chosen, remarks"):
+        table.add_column(head, overflow="fold")
+    for number, one in enumerate(every, 1):
+        table.add_row(
+            str(number),
+            ", ".join(one.defects) or DEFECT_FREE,
+            "turns" if one.turns_fully else "swings",
+            f"{math.degrees(one.least_transmission_rad):.2f}",
+            f"{one.extent_m:.4g}",
+            one.grashof,
+            "; ".join([*_chosen(one), *remarks(one)]),
+        )
+    return table
+
+
+def solution_frame(every: Sequence[Examined]) -> pd.DataFrame:
+    """The same with all digits, and the lengths: a row for each."""
+    import pandas as pd
+
+    rows = []
+    for number, one in enumerate(every, 1):
+        angles = [math.degrees(position.driver_rad) for position in one.positions]
+        row: dict[str, object] = {
+            "solution": number,
+            "defect": ", ".join(one.defects) or DEFECT_FREE,
+            "turns_fully": one.turns_fully,
+            "least_transmission_rad": one.least_transmission_rad,
+            "extent_m": one.extent_m,
+            "type": one.grashof,
+            "chosen": "; ".join(_chosen(one)),
+            "remarks": "; ".join(remarks(one)),
+            "largest_miss": max(one.off),
+            "largest_torque_n_m": one.torque_n_m,
+        }
+        row |= {f"driver_{k}_deg": angle for k, angle in enumerate(angles, 1)}
+        for name, place in one.scene.ground.items():
+            row |= {f"{name}_x_m": place[0], f"{name}_y_m": place[1]}
+        for link in one.scene.links.values():
+            points = list(link.points.items())
+            for (first, p), (second, q) in itertools.pairwise(points):
+                row[f"{link.name}_{first}{second}_m"] = math.dist(p, q)
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _chosen(one: Examined) -> list[str]:
+    torque = [] if one.torque_n_m is None else [f"torque up to {one.torque_n_m:.4g} N m"]
+    return [f"{name} {value}" for name, value in one.proposal.chosen.items()] + torque
+
+
+@dataclass(frozen=True)
+class ProofRow:
+    """What an engine missed most of what a solution was asked, in words; ``within`` is whether all
+    of it is within what is allowed."""
+
+    within: bool
+    solution: int
+    engine: str
+    position: int
+    driver_deg: str
+    what: str
+    off: str
+    allowed: str
+
+
+def proof_rows(proofs: Mapping[int, Sequence[Met]]) -> list[ProofRow]:
+    """By number of the solution, a row for each engine and profile."""
+    rows = []
+    for number, every in proofs.items():
+        for engine in dict.fromkeys((one.engine, one.profile) for one in every):
+            own = [one for one in every if (one.engine, one.profile) == engine]
+            worst = max(own, key=_share)
+            unit = unit_of(worst.asked)
+            none = worst.reason or "did not come there"
+            rows.append(
+                ProofRow(
+                    all(one.within for one in own),
+                    number,
+                    " ".join(filter(None, engine)),
+                    worst.position,
+                    f"{math.degrees(worst.driver_rad):.4f}",
+                    in_words(worst.asked),
+                    none if math.isnan(worst.off) else f"{worst.off:.1e} {unit}",
+                    f"{worst.limit:.1e} {unit}",
+                )
+            )
+    return rows
+
+
+def proof_table(proofs: Mapping[int, Sequence[Met]]) -> Table:
+    """The rows for a terminal."""
+    table = plain_table(gap=2)
+    for head in ("", "solution", "engine", "position", "driver deg", "what", "off", "allowed"):
+        table.add_column(head, overflow="fold")
+    for row in proof_rows(proofs):
+        table.add_row(
+            "ok" if row.within else "OUT",
+            str(row.solution),
+            row.engine,
+            str(row.position),
+            row.driver_deg,
+            row.what,
+            row.off,
+            row.allowed,
+        )
+    return table
+
+
+def proof_frame(proofs: Mapping[int, Sequence[Met]]) -> pd.DataFrame:
+    """A row for each thing asked at each position, with all digits."""
+    import pandas as pd
+
+    return pd.DataFrame(
+        {
+            "solution": number,
+            "engine": one.engine,
+            "profile": one.profile,
+            "position": one.position,
+            "driver_rad": one.driver_rad,
+            "asked": in_words(one.asked),
+            "off": one.off,
+            "allowed": one.limit,
+            "unit": unit_of(one.asked),
+            "within": one.within,
+            "reason": one.reason,
+        }
+        for number, every in proofs.items()
+        for one in every
+    )
+
+
+def _share(one: Met) -> float:
+    return math.inf if math.isnan(one.off) else one.off / one.limit
+
+
+def sensitivity_table(
+    found: Sensitivity, limits: Sequence[float], tolerance_m: float, spread: Spread
+) -> Table:
+    """A row for each thing asked: linear worst case and root of squares, the Monte Carlo's largest,
+    what is allowed, and the dimension that it goes with most."""
+    table = plain_table(f"Solution 1, every dimension off by up to {tolerance_m:g} m", gap=2)
+    for head in ("position", "what", "worst", "root sum sq.", "Monte Carlo", "allowed", "most by"):
+        table.add_column(head, overflow="fold")
+    worst, usual = found.worst(tolerance_m), found.usual(tolerance_m)
+    for k, (number, asked) in enumerate(found.asked):
+        unit, most = unit_of(asked), int(np.argmax(np.abs(found.slopes[k])))
+        cells = (worst[k], usual[k], spread.largest[k], limits[k])
+        table.add_row(
+            str(number),
+            in_words(asked),
+            *(f"{value:.2e} {unit}" for value in cells),
+            f"{found.dimensions[most].words} ({found.slopes[k, most]:.3g} {unit}/m)",
+        )
+    return table
+
+
+def clearance_in_words(found: Sensitivity, limits: Sequence[float], spread: Spread) -> str:
+    """The share of mechanisms that meet the task, and the largest clearance."""
+    clearance, row = found.largest_clearance(limits)
+    number, asked = found.asked[row]
+    lost = f", {spread.lost} could not be assembled" if spread.lost else ""
+    return (
+        f"{100.0 * spread.share_within:.1f} % of {spread.count} mechanisms meet the task{lost}; "
+        f"with a radial clearance of up to {clearance:.3g} m in every joint it is met, set by the "
+        f"{in_words(asked)} at position {number}"
+    )

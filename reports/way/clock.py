@@ -1,0 +1,58 @@
+"""What steps, costs and lengths of runs are counted over: turns of the driver, or seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from reports.output.numbers import duration
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The unit of time of a drive; ``per`` is what stands behind numbers of it, "" for turns,
+    ``unit`` behind lengths of runs."""
+
+    name: str
+    per: str
+    unit: str
+
+    def step(self, row: Mapping[Any, Any]) -> str:
+        """The step of a stored cell, in words: so many in a turn."""
+        return f"{row['steps_per_turn']:g}"
+
+    def lasts(self, turns: float) -> str:
+        """How long a run is, in words behind its name."""
+        return f", {turns:g} turn{'' if turns == 1.0 else 's'}"
+
+    def period_s(self, driver_s: float) -> float:
+        """The period [s], where the driver has one of ``driver_s``."""
+        return driver_s
+
+
+class Seconds(Clock):
+    """As of `Clock`: what nothing drives has no turns."""
+
+    def step(self, row: Mapping[Any, Any]) -> str:
+        return duration(row["dt_s"])
+
+    def lasts(self, turns: float) -> str:
+        return f" for {turns:g} s"
+
+    def period_s(self, driver_s: float) -> float:
+        return 1.0
+
+
+TURNS, SECONDS = Clock("turn", "", "turns"), Seconds("second", "/s", "s")
+_CLOCKS = {"free": SECONDS}
+
+
+def clock_of(drive: str) -> Clock:
+    """That of a drive."""
+    return _CLOCKS.get(drive, TURNS)
+
+
+def common_clock(drives: Iterable[str]) -> Clock:
+    """That of several drives: turns where one has them."""
+    return SECONDS if {clock_of(drive) for drive in drives} <= {SECONDS} else TURNS

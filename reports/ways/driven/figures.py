@@ -1,0 +1,13 @@
+"""Figures of driven scenes, some of which show others as well."""
+
+from reports.figures import convergence, error_parts, mechanism, profile, work_precision
+from reports.figures.drawing import Drawing
+
+BOTH = ("driven", "let go")
+FIGURES = {
+    "work-precision": Drawing(work_precision.draw, work_precision.draw_all, ("driven", "elastic")),
+    "convergence": Drawing(convergence.draw, convergence.draw_all, (*BOTH, "elastic")),
+    "split": Drawing(error_parts.draw),
+    "mechanism": Drawing(mechanism.draw, drives=BOTH),
+    "profile": Drawing(None, profile.draw_all),
+}

@@ -1,0 +1,23 @@
+"""The columns of cells whose links bend: what engines were given, and the parts of the deflection's
+error, as shares of the largest."""
+
+from __future__ import annotations
+
+from reports.compare.elastic.elastic_facts import ElasticFacts
+from reports.judge.cell import Checked
+
+
+def columns(checked: Checked) -> dict[str, object]:
+    """The columns of a cell, None where there is no number."""
+    known = ElasticFacts.of(checked.errors)
+    return {
+        "segments": float(checked.cell.segments),
+        "springs": checked.cell.springs,
+        "frequency_ratio": known.ratio if known else None,
+        "chain_pure": known.chain if known else None,
+        "doubt_pure": known.doubt if known else None,
+        "linear_pure": known.linear if known else None,
+    }
+
+
+COLUMNS = columns

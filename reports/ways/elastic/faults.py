@@ -1,0 +1,48 @@
+"""Faults of elastic links, as segments and as an engine's own beams."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+
+from models.scene import Scene
+from reports.judge.cell import Cell
+from reports.selftest import beams, elastic, elastic_released
+from reports.selftest.elastic_runs import BEAM_RUNS, BENT, ELASTIC_RUNS, ElasticRun, elastic_cell
+from reports.selftest.fault import RunKind
+from reports.selftest.fault_runs import STEPS, FaultRuns, FaultSet
+from reports.selftest.unseen import Unseen
+from reports.selftest.unseen_elastic import UNSEEN_ELASTIC
+
+GROUPS = {
+    "segments": "elastic links, as another chain",
+    "vibration": "elastic links, spoilt in the engine",
+    "deflection": "elastic links, wrong in the log",
+}
+
+
+def _runs(
+    kind: RunKind,
+    groups: Mapping[str, str],
+    own: Mapping[str, ElasticRun],
+    unseen: Sequence[Unseen],
+    *also: RunKind,
+) -> FaultRuns:
+    """The runs of a kind, by scene."""
+
+    def cell(scene: Scene, engine: str, steps: int, converge: bool) -> Cell:
+        return elastic_cell(scene.name, engine, steps / STEPS, own)
+
+    def words(scenes: Collection[str]) -> Sequence[str]:
+        return [f"{scene} in {run.words}" for scene, run in own.items() if scene in scenes]
+
+    settings = {kind: {scene: vars(run) for scene, run in own.items()}}
+    return FaultRuns(groups, cell, words, settings, BENT, unseen, also)
+
+
+FAULTS = FaultSet(
+    tuple(fault for module in (elastic, beams, elastic_released) for fault in module.FAULTS),
+    {
+        "elastic": _runs("elastic", GROUPS, ELASTIC_RUNS, UNSEEN_ELASTIC, "beam"),
+        "beam": _runs("beam", {"beam": "elastic links, as an engine's own beam"}, BEAM_RUNS, ()),
+    },
+)

@@ -1,0 +1,42 @@
+"""Faults of free motion."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+from models.scene import Scene
+from reports.judge.cell import Cell
+from reports.selftest import dynamics, record, stepping
+from reports.selftest.fault import PROFILE
+from reports.selftest.fault_runs import STEPS, FaultRuns, FaultSet
+from reports.selftest.free_runs import FREE_RUNS, SWING
+from reports.selftest.unseen_free import UNSEEN_FREE
+
+
+def run(scene: Scene, engine: str, steps: int, converge: bool) -> Cell:
+    """The run that `FREE_RUNS` says, as much finer as a turn of so many steps is."""
+    dt_s, of_run = FREE_RUNS[scene.name]
+    dt_s, steps = dt_s * STEPS / steps, of_run * steps // STEPS
+    return Cell(scene, engine, PROFILE, dt_s, steps, drive="free", converge=converge)
+
+
+def words(scenes: Collection[str]) -> Sequence[str]:
+    """How long the runs are, and at which step."""
+    own = [
+        f"{scene} {1e3 * dt_s:g} ms, {dt_s * steps:g} s"
+        for scene, (dt_s, steps) in FREE_RUNS.items()
+        if scene in scenes
+    ]
+    return [f"let go: {', '.join(own)}"]
+
+
+GROUPS = {
+    "dynamics": "let go, as another machine",
+    "stepping": "let go, and spoilt inside the engine",
+    "record": "let go, and wrong in the log",
+}
+SETTINGS = {scene: {"dt_s": dt_s, "steps": steps} for scene, (dt_s, steps) in FREE_RUNS.items()}
+FAULTS = FaultSet(
+    tuple(fault for module in (dynamics, stepping, record) for fault in module.FAULTS),
+    {"free": FaultRuns(GROUPS, run, words, {"free": SETTINGS}, SWING, UNSEEN_FREE)},
+)

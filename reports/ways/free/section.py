@@ -1,0 +1,133 @@
+"""What was let go: how far each engine still knew where it was."""
+
+from __future__ import annotations
+
+from models.scene import Scene
+from reports.output.numbers import duration
+from reports.page.sections.convergence import drawn
+from reports.page.sections.free_courses import FreeCourses, sizes_of
+from reports.page.sections.section import Section, WaySection
+from reports.page.thinning import BUDGET, steps_held
+from reports.results.lines import Line, lines
+from reports.results.overview import Report
+from reports.results.recommend import Recommendation
+from reports.results.table import short_target
+from reports.way.clock import clock_of
+
+KIND = "let go"
+SHOWN = (
+    *("phase_pure", "phase_limit_pure", "geometry_pure", "energy_pure"),
+    *("horizon_1e-1_s", "horizon_1e-3_s", "precision", "sensitivity", "dt_s", "verdict", "status"),
+)
+"""The columns of the table."""
+SCRIPTS = (
+    *("legend.js", "charts.js", "mechanism.js", "stage.js", "free_courses.js", "free.js"),
+    "copying.js",
+)
+FREE_DRIVE = ", free drive"
+"""What a variant is called by where others were driven: here all were let go."""
+ERRORS = {
+    "phase_pure": ("phase, over the sensitivity", "rad"),
+    "geometry_pure": ("geometry at the run's own angle", "rad, or of longest link"),
+    "energy_pure": ("drift of energy", "of largest kinetic energy"),
+    "place_pure": ("place at the same time, over the sensitivity", "rad, or of longest link"),
+    "gap_pure": ("gaps of pins and sliders", "of longest link"),
+}
+"""What is drawn against the step, by column of the store: its name, and its unit."""
+
+
+def build(report: Report, room: int = BUDGET) -> Section | None:
+    """The section; None where everything was driven. ``room`` is that of its drawings and curves
+    [characters]."""
+    lines = report.of_kind(KIND)
+    if not lines:
+        return None
+    names = list(dict.fromkeys(line.scene for line in lines))
+    sizes = sizes_of(report, lines)
+    held = steps_held(sizes, lines, room)
+    costs = [
+        one for one in report.recommendations if one.best.way and one.best.way.kinds == (KIND,)
+    ]
+    fits = {name: _fits(report, name) for name in ERRORS if name in report.cells}
+    return Section(
+        anchor="free",
+        title="Let go",
+        template="free.html",
+        words={
+            "rows": [row for line in lines for row in _rows(report, line)],
+            "scenes": [_words(name, report.scenes[name]) for name in names],
+            "errors": {name: ERRORS[name][0] for name in fits},
+            "costs": [cost_row(one) for one in costs],
+            "thinned": held < max(len(line.cells) for line in lines),
+            "held": held,
+        },
+        embedded={
+            "scenes": [
+                FreeCourses(report, name, report.scenes[name], sizes, held).embedded()
+                for name in names
+            ],
+            "fits": fits,
+            "units": {name: ERRORS[name][1] for name in fits},
+            "judged": sorted({report.look(x).number for x in lines if x.cells["gated"].all()}),
+        },
+        scripts=SCRIPTS,
+        plotly=True,
+    )
+
+
+def _rows(report: Report, line: Line) -> list[dict[str, object]]:
+    """The cells of a line as rows of the table."""
+    look = report.look(line)
+    return [
+        {"scene": line.scene, "look": look, "variant": line.variant}
+        | {name: cell.get(name) for name in SHOWN}
+        | {f"{name}_told": _horizon(cell[f"horizon_{name}_s"]) for name in ("1e-1", "1e-3")}
+        for cell in line.cells.to_dict("records")
+    ]
+
+
+def cost_row(one: Recommendation, period_s: float = 1.0) -> dict[str, object]:
+    """The cheapest settings of an engine that keep a target on every scene, as a row, with their
+    text to be copied for a driver of that period."""
+    best = one.best
+    return {
+        "one": one,
+        "called": best.variant,
+        "snippet": one.snippet(period_s),
+        "target": short_target(one.target),
+        "name": f"{best.engine} {best.variant}",
+        "reason": one.reason.replace(FREE_DRIVE, ""),
+        "caution": one.caution.replace(FREE_DRIVE, ""),
+        "dt_s": 1.0 / best.steps_per_turn,
+        "steps": f"{best.steps_per_turn:g} a {clock_of(best.drive).name}",
+        "us_per_step": best.us_per_step,
+        "ms": 1e3 * best.s_per_turn,
+        "error": best.worst_error,
+        "scene": best.worst_scene,
+    }
+
+
+def _horizon(time_s: float | None) -> str:
+    """The time to which something holds."""
+    return "not at all" if time_s == 0.0 else duration(time_s)
+
+
+def _words(name: str, scene: Scene | None) -> dict[str, str]:
+    """A scene with its source."""
+    return {
+        "name": name,
+        "source": scene.source if scene else "",
+        "note": scene.note if scene else "",
+    }
+
+
+def _fits(report: Report, quantity: str) -> list[dict[str, object]]:
+    """The errors of all free lines against the step, with their fits."""
+    return [
+        drawn(report, line) | {"lasts_s": line.period_s}
+        for line in lines(report.stored, quantity)
+        if KIND in line.way.kinds
+    ]
+
+
+SECTION = WaySection(build, build)

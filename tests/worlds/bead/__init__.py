@@ -1,0 +1,53 @@
+"""A kind of scene that crankcheck has not: a bead on a wire that is bent to a circle.
+
+One link is the spoke that holds the bead; the bead is let go from rest. What a kind of scene needs
+is this folder, and its name in `reports.way.way.WAYS` (see `tests/reports/way/test_new_way.py`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from models.errors import CrankcheckError
+from models.scene import Scene
+from reports.compare.beside import Truth
+from reports.way.length import Planned
+from reports.ways.free import FreeWay
+from sim.engine import Drive
+from tests.worlds.bead.limits import LIMITS
+
+
+class BeadWay(FreeWay):
+    """As of `Way`."""
+
+    name = __name__
+    placed = ("phase", "angle", "position")
+    kinds = ("bead",)
+    limits = LIMITS
+    units = "Beads: errors against the swing in elliptic functions."
+    no_case = "no bead in it"
+
+    def takes(self, scene: Scene, drive: Drive) -> bool:
+        return super().takes(scene, drive) and len(scene.links) == 1
+
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        turned = row.get("swing_rad")
+        return turned is not None and bool(turned == turned)
+
+    def refuse(self, run: Planned) -> None:
+        super().refuse(run)
+        speed = float(run.scene.driver.law.at(0.0)[1])
+        if speed:
+            raise CrankcheckError(
+                f"{run.scene.name}: the bead starts with {speed:g} rad/s; found a swing for what "
+                "is let go from rest alone: leave speed_rad_s out"
+            )
+
+    def truth(self, run: Planned) -> Truth:
+        from tests.worlds.bead.truth import BeadTruth
+
+        return BeadTruth(run.scene)
+
+
+WAY = BeadWay()
