@@ -216,6 +216,3 @@ class ReleasedElasticSolving(LetGo, ElasticSolving):
     def solution(self, scene: Scene, asked: Asked) -> ElasticSolution:
         self.refuse_forces(scene, asked)
         return super().solution(scene, asked)
-
-
-DRIVEN, LET_GO = ElasticSolving(), ReleasedElasticSolving()

@@ -188,6 +188,3 @@ class FreeSolving(LetGo):
         lasts_s = solution.time_s[-1]
         words = f"the free motion of {solution.scene.name} over {lasts_s:g} s"
         return free_page_of(solution.free), words
-
-
-SOLVING = FreeSolving()

@@ -209,7 +209,7 @@ def judged(
         scene = scene_of_run(scene, log)
         _refuse_other_targets(scene, limits)
         _refuse_few_steps(scene, log)
-        every_name = way_of(scene).tolerances
+        every_name = way_of(scene).targets
         named = limits if every is None else {name: limits.get(name, every) for name in every_name}
         return verdict_of_run(scene, log, named)
     if free:

@@ -284,6 +284,3 @@ def _along(scene: Scene, text: str) -> Along:
     if point not in points:
         raise CrankcheckError(f"--along {text}: {suggestion(point, points, 'the points are')}")
     return Along(point, math.radians(direction_deg))
-
-
-SOLVING = DrivenSolving()

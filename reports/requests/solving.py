@@ -236,7 +236,7 @@ class Solving(ABC):
 
 def solving_of(scene: Scene) -> Solving:
     """How a scene is solved."""
-    return cast(Solving, way_of(scene).solving)
+    return cast(Solving, way_of(scene).part("solving"))
 
 
 def refuse_samples(request: SolveOptions) -> None:

@@ -60,6 +60,7 @@ class Way(Protocol):
     figures    its figures of a store, by name (`reports.figures.drawing.Drawing`)
     section    its section of the page (`reports.page.sections.section.WaySection`)
     log        how its logs are judged, a `reports.own_log.log_kind.LogKind`
+    solving    how its scenes are solved, a `reports.requests.solving.Solving`
     ========== ===============================================================================
     """
 
@@ -106,11 +107,6 @@ class Way(Protocol):
         """Whether a row of a store is a cell of the kind, or of one that builds on it."""
         ...
 
-    @property
-    def solving(self) -> object:
-        """How its scenes are solved, a `reports.requests.solving.Solving`."""
-        ...
-
     def takes(self, scene: Scene, drive: Drive) -> bool:
         """Whether a run of the scene with that drive is of this kind."""
         ...
@@ -154,7 +150,7 @@ class Way(Protocol):
     """Options of a length that say something of it."""
     over: str
     """What is drawn of it, in words."""
-    tolerances: Collection[str]
+    targets: Collection[str]
     """The quantities that one target stands for."""
     least_judged: int
     """Steps of a run that was made before, and can be judged."""

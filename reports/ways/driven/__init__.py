@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence, Set
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -29,9 +29,6 @@ from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths, Way
 from sim.engine import Drive
-
-if TYPE_CHECKING:
-    from reports.requests.solving import Solving
 
 
 class DrivenWay(Way):
@@ -67,12 +64,6 @@ class DrivenWay(Way):
             refuse_forceless(run.scene, run.duration_s)
         refuse_short_tables(run.scene, run.duration_s)
 
-    @property
-    def solving(self) -> Solving:
-        from reports.requests.solve import SOLVING  # for references alone
-
-        return SOLVING
-
     def stored(self, row: Mapping[Any, Any]) -> bool:
         return True
 
@@ -88,7 +79,7 @@ class DrivenWay(Way):
     drives: tuple[Drive, ...] = ("prescribed", "servo", "free")
     lengths_by: tuple[str, ...] = ("--turns", "--steps-per-turn")
     over = "over one turn"
-    tolerances: Collection[str] = DEFAULTS
+    targets: Collection[str] = DEFAULTS
     least_judged = 0
 
     def refuse_length(self, option: str) -> NoReturn:

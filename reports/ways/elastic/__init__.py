@@ -25,7 +25,6 @@ from sim.engine import Drive
 
 if TYPE_CHECKING:
     from reports.compare.elastic.elastic_truth import ElasticTruth
-    from reports.requests.solving import Solving
 
 
 class Bending:
@@ -82,12 +81,6 @@ class ElasticWay(Bending, DrivenWay):
             return super().lengths(scene, study, given)
         held = held_steps(scene, given.segments, given.springs)
         return [Length(None, times * held, study.turns) for times in study.times_held]
-
-    @property
-    def solving(self) -> Solving:
-        from reports.requests.elastic_solution import DRIVEN  # slow to import
-
-        return DRIVEN
 
     def refuse(self, run: Planned) -> None:
         super().refuse(run)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence, Set
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -24,10 +24,6 @@ from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import LEAST_STEPS, GivenAs, Length, Planned
 from reports.way.way import StudyLengths, Way
 from sim.engine import Drive
-
-if TYPE_CHECKING:
-    from reports.requests.solving import Solving
-
 
 UNITS = (
     "Let go: errors at the same time over G, by how much a small change of the start has grown; "
@@ -67,12 +63,6 @@ class FreeWay(Way):
     def refuse(self, run: Planned) -> None:
         refuse_unreleased(run.scene, run.duration_s)
 
-    @property
-    def solving(self) -> Solving:
-        from reports.requests.free_solution import SOLVING  # for references alone
-
-        return SOLVING
-
     def stored(self, row: Mapping[Any, Any]) -> bool:
         return str(row["drive"]) == "free"
 
@@ -90,7 +80,7 @@ class FreeWay(Way):
     drives: tuple[Drive, ...] = ("free",)
     lengths_by: tuple[str, ...] = ("--duration",)
     over = "in free motion"
-    tolerances: Collection[str] = FREE
+    targets: Collection[str] = FREE
     least_judged = LEAST_STEPS
 
     def refuse_length(self, option: str) -> NoReturn:

@@ -24,7 +24,6 @@ from sim.engine import Drive
 
 if TYPE_CHECKING:
     from reports.compare.elastic.elastic_truth import ElasticTruth
-    from reports.requests.solving import Solving
 
 
 class FreeElasticWay(Bending, FreeWay):
@@ -51,12 +50,6 @@ class FreeElasticWay(Bending, FreeWay):
         held_s, count = self.counted(scene, Length(duration_s=study.duration_s), given)
         lasts_s = held_s * count
         return [Length(held_s / times, duration_s=lasts_s) for times in study.times_held]
-
-    @property
-    def solving(self) -> Solving:
-        from reports.requests.elastic_solution import LET_GO  # slow to import
-
-        return LET_GO
 
     def refuse(self, run: Planned) -> None:
         super().refuse(run)
