@@ -95,7 +95,7 @@ def _said(hypothesis: Hypothesis, inquiry: Inquiry) -> Iterator[Account]:
     """What a hypothesis says, up to where it leads to no mechanism, or to nothing that can be
     reckoned with: a log of odd numbers has its verdict without it."""
     try:
-        yield from hypothesis(inquiry)
+        yield from filter(None, hypothesis(inquiry))
     except (CrankcheckError, ArithmeticError, ValueError, IndexError):
         return
 

@@ -161,7 +161,8 @@ def near_jumps(scene: Scene, reference: Motion) -> Mask:
         slid = reference.sliders[load.slider]
         turns = _turns(slid.speed)
         if load.over == "displacement":
-            turns &= _acts(load.characteristic.at(slid.displacement))
+            acts = load.characteristic.at(slid.displacement) != 0.0
+            turns &= acts[1:] | acts[:-1]
         jumps |= turns
     near = np.zeros(reference.time_s.size, dtype=np.bool_)
     for by in range(min(NEAR, jumps.size)):
@@ -174,8 +175,3 @@ def _turns(series: Array) -> Mask:
     """Whether a series changes its sign from a sample to the next, (T - 1,)."""
     sign = np.sign(np.nan_to_num(series))
     return np.asarray(sign[1:] != sign[:-1])
-
-
-def _acts(magnitude: Array) -> Mask:
-    """Whether a load is other than 0 at a sample or the next, (T - 1,)."""
-    return np.asarray((magnitude[1:] != 0.0) | (magnitude[:-1] != 0.0))

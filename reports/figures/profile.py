@@ -22,7 +22,7 @@ from reports.results.looks import label
 from reports.results.origin import notes
 from reports.results.overview import Report
 from reports.results.pareto import performance_profile
-from reports.results.result_kind import TARGETS
+from reports.way.result_kind import TARGETS
 
 FACTOR = "time over that of the fastest [-]"
 SHARE = "share of the scenes [%]"

@@ -99,8 +99,9 @@ def followed(
     if force is None:
         return Followed(of_places)
     exact = max(rounding, force.pure_bound)
+    share = "torque" if force.quantity == "torque" else "reaction"
     of_forces = convergence(
-        steps_s, pure(force), _share_words(force), exact, over=over(FORCES, exact)
+        steps_s, pure(force), f"of the largest {share}", exact, over=over(FORCES, exact)
     )
     return Followed(of_places, of_forces)
 
@@ -116,11 +117,6 @@ def _unit_words(worst: Error) -> str:
     if worst.quantity in ELASTIC:
         return "of the largest deflection"
     return "rad" if worst.unit == "rad" else "of the longest link"
-
-
-def _share_words(force: Error) -> str:
-    """What an error of a force is a share of."""
-    return f"of the largest {'torque' if force.quantity == 'torque' else 'reaction'}"
 
 
 def _finer(

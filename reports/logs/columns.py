@@ -18,7 +18,7 @@ from models.errors import CrankcheckError, cut, suggestion
 from models.files.inputs import UnreadableError, regular_bytes
 from reports.logs.text_lines import COMMA, is_number, refuse_columns, refuse_rows, row_line
 from reports.logs.text_rows import Layout, text_columns
-from reports.logs.workbook import sheet_columns
+from reports.logs.workbook import plain, sheet_columns
 
 ENDINGS = (".csv", ".tsv", ".txt", ".parquet", ".xlsx")
 MOST_BYTES = 600_000_000
@@ -189,12 +189,7 @@ def _values(column: pa.ChunkedArray) -> Any:
             return np.array(column.to_pylist(), dtype=object)
         # In numpy's memory, which goes back to the system; arrow keeps what it has had.
         return np.concatenate([chunk.to_numpy() for chunk in column.chunks])
-    return np.array([_plain(cell) for cell in column.to_pylist()], dtype=object)
-
-
-def _plain(cell: object) -> object:
-    """A cell, nested values as the text that shows them."""
-    return cell if cell is None or isinstance(cell, str | int | float | bool) else str(cell)
+    return np.array([plain(cell) for cell in column.to_pylist()], dtype=object)
 
 
 def _refuse_twins(names: Sequence[str], source: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -68,48 +68,24 @@ class Kind:
         return series
 
 
-def _kinds() -> list[Kind]:
-    dimensions: tuple[tuple[Dimension, ...], ...] = (
-        ("angle", "angular velocity", "angular acceleration"),
-        ("length", "velocity", "acceleration"),
-    )
-    turning, moving = dimensions
-    orders: tuple[Order, ...] = (0, 1, 2)
-    found = [
-        Kind(name, "link", turning[order], quantity, field, order)
-        for order, name, quantity, field in zip(
-            orders,
-            turning,
-            ("angle", "velocity", "acceleration"),
-            ("theta", "omega", "alpha"),
-            strict=True,
-        )
-    ]
-    axes: tuple[tuple[Literal[0, 1], str], ...] = ((0, "x"), (1, "y"))
-    for order, prefix, quantity in zip(
-        orders, ("", "v", "a"), ("position", "velocity", "acceleration"), strict=True
-    ):
-        field = ("position", "velocity", "acceleration")[order]
-        found += [
-            Kind(prefix + letter, "point", moving[order], quantity, field, order, axis)
-            for axis, letter in axes
-        ]
-    return (
-        found
-        + [
-            Kind(name, "slider", moving[order], quantity, name, order)
-            for order, name, quantity in zip(
-                orders,
-                ("displacement", "speed", "acceleration"),
-                ("displacement", "velocity", "acceleration"),
-                strict=True,
-            )
-        ]
-        + [
-            Kind("deflection", "elastic", "length", "deflection", "middle", 0),
-            Kind("extension", "elastic", "length", "extension", "extension", 0),
-        ]
-    )
+def _kinds() -> Iterator[Kind]:
+    turning: Sequence[Dimension] = ("angle", "angular velocity", "angular acceleration")
+    moving: Sequence[Dimension] = ("length", "velocity", "acceleration")
+    orders: Sequence[Order] = (0, 1, 2)
+    axes: Sequence[tuple[Literal[0, 1], str]] = ((0, "x"), (1, "y"))
+    rates = ("velocity", "acceleration")
+    for order in orders:
+        name, field = turning[order], ("theta", "omega", "alpha")[order]
+        yield Kind(name, "link", name, ("angle", *rates)[order], field, order)
+    for order in orders:
+        prefix, field = ("", "v", "a")[order], ("position", *rates)[order]
+        for axis, letter in axes:
+            yield Kind(prefix + letter, "point", moving[order], field, field, order, axis)
+    for order in orders:
+        field = ("displacement", "speed", "acceleration")[order]
+        yield Kind(field, "slider", moving[order], ("displacement", *rates)[order], field, order)
+    yield Kind("deflection", "elastic", "length", "deflection", "middle", 0)
+    yield Kind("extension", "elastic", "length", "extension", "extension", 0)
 
 
 KINDS: Mapping[tuple[LoggedKind, str], Kind] = {

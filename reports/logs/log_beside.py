@@ -111,17 +111,13 @@ class LogBeside(Beside):
         return ""
 
     def tracks(self, quantities: Sequence[str], reference: Motion) -> tuple[Track, ...]:
-        judged = [name for name in quantities if not self.geometry_alone or _of_places(name)]
+        alone = named("place", "closure") if self.geometry_alone else quantities
+        judged = [name for name in quantities if name in alone]
         if self.motion.time_s.size > MANY:
             every = tuple(tracks(self.scene, self.run, reference, judged))
         else:
             every = super().tracks(judged, reference)
         return tuple(track for track in every if not np.all(np.isnan(track.error)))
-
-
-def _of_places(quantity: str) -> bool:
-    """Whether the geometry alone says it."""
-    return quantity in named("place", "closure")
 
 
 class LogSide(Protocol):

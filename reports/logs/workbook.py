@@ -113,7 +113,7 @@ def _of_rows(rows: list[Sequence[object]]) -> SheetTable:
         raise UnreadableError(": a header and no rows; a log has rows of numbers")
     refuse_rows(len(rows) - first, wide)
     cells = ([row[n] if n < len(row) else None for row in rows[first:]] for n in range(wide))
-    columns = [np.array([_plain(cell) for cell in each], dtype=object) for each in cells]
+    columns = [np.array([plain(cell) for cell in each], dtype=object) for each in cells]
     return SheetTable(names, columns, first + 1)
 
 
@@ -123,6 +123,6 @@ def _words(row: Sequence[object], wide: int) -> list[str]:
     return found + [""] * (wide - len(found))
 
 
-def _plain(cell: object) -> object:
+def plain(cell: object) -> object:
     """A cell; what is neither a number nor text as the text that shows it."""
     return cell if cell is None or isinstance(cell, str | int | float | bool) else str(cell)

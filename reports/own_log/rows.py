@@ -9,6 +9,7 @@ from typing import Literal
 
 from models.errors import cut, harmless
 from reports.compare.errors import Error
+from reports.judge.rows import AS_THEY_ARE
 from reports.judge.tolerance import Limit
 from reports.logs.channel import Reading
 from reports.logs.log_beside import readings_of
@@ -16,7 +17,6 @@ from reports.logs.units import UNITS
 from reports.output.numbers import error_text
 from reports.own_log.judged import JudgedLog
 from reports.own_log.log_limits import limit_of
-from reports.quantities import QUANTITIES
 
 LONGEST = 60
 """Characters of a column's name that are shown."""
@@ -114,26 +114,13 @@ def _what(error: Error) -> str:
     return f"{quantity} of {error.body}{driver}{differenced}{kind}"
 
 
-def share_of(error: Error) -> str:
-    """What the pure number is a multiple of."""
-    return QUANTITIES[error.quantity].of(error.body_kind).share
-
-
 def row_table(judged: JudgedLog) -> list[dict[str, object]]:
     """The rows with unit suffixes in their names, for frames, CSV and JSON."""
     return [
         {
             "scene": judged.scene.name,
             "columns": " ".join(row.columns),
-            "quantity": row.error.quantity,
-            "body_kind": row.error.body_kind,
-            "body": row.error.body,
-            "source": row.error.source,
-            "kind": row.error.kind,
-            "unit": row.error.unit,
-            "maximum": row.error.maximum,
-            "rms": row.error.rms,
-            "final": row.error.final,
+            **{name: getattr(row.error, name) for name in AS_THEY_ARE},
             "maximum_pure": row.error.pure,
             "limit_pure": row.limit.number,
             "limit_origin": row.limit.origin,

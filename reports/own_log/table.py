@@ -14,13 +14,14 @@ from rich.text import Text
 from models.errors import cut, few, harmless
 from reports.causes.cause import Cause
 from reports.judge.rules import RULES
+from reports.judge.rules.rule import share
 from reports.output.console import hanging, plain_table
 from reports.output.junit import case_of, say, suite_of
 from reports.output.markdown import folded, plain, table
 from reports.output.numbers import count, error_text, short
 from reports.own_log.judged import JudgedLog
 from reports.own_log.log_kind import log_kind
-from reports.own_log.rows import LogRow, column_text, log_rows, share_of
+from reports.own_log.rows import LogRow, column_text, log_rows
 
 WIDE = 90
 """Columns of a terminal that show when an error is largest."""
@@ -123,20 +124,18 @@ def _table(rows: Sequence[LogRow], width: int) -> Table:
     if width >= WIDE:
         table.add_column("at t\ns", justify="right", no_wrap=True)
     for row in sorted(rows, key=lambda row: row.verdict == "within"):
-        error = row.error
-        cells: list[Text | str] = [
-            Text("ok", "green") if row.verdict == "within" else Text("OUT", "bold red"),
-            Text(row.names),
-            Text(row.what),
-            row.size,
-            f"{error_text(error.pure)} {share_of(error)}",
-            short(row.limit.number),
-            taken_text(row.taken),
-        ]
-        if width >= WIDE:
-            cells.append(f"{error.time_of_maximum_s:.4g}")
-        table.add_row(*cells)
+        mark = Text("ok", "green") if row.verdict == "within" else Text("OUT", "bold red")
+        names, what, *numbers = _texts(row)
+        at = [f"{row.error.time_of_maximum_s:.4g}"] if width >= WIDE else []
+        table.add_row(mark, Text(names), Text(what), *numbers, *at)
     return table
+
+
+def _texts(row: LogRow) -> tuple[str, ...]:
+    """Columns, what they are read as, and the numbers of a row."""
+    pure = f"{error_text(row.error.pure)} {share(row.error)}"
+    limit = short(row.limit.number)
+    return row.names, row.what, row.size, pure, limit, taken_text(row.taken)
 
 
 def shown_rows(judged: JudgedLog) -> list[LogRow]:
@@ -242,8 +241,10 @@ def suite(judged: JudgedLog, facts: Mapping[str, str]) -> Element:
     for row in log_rows(judged):
         case = case_of(judged.scene.name, f"{row.what} ({', '.join(row.columns) or 'differenced'})")
         if row.verdict == "out":
-            text = f"{row.error.pure:.3g} {share_of(row.error)}, limit {row.limit.number:.3g}"
-            say(case, "failure", "\n".join(_causes(judged, row.columns)), message=text, type="out")
+            text = f"{row.error.pure:.3g} {share(row.error)}, limit {row.limit.number:.3g}"
+            own = {*row.columns}
+            why = [cause_text(each) for each in judged.causes if own & {*each.columns}]
+            say(case, "failure", "\n".join(why), message=text, type="out")
         cases.append(case)
     whole = case_of(judged.scene.name, "the log as a whole")
     if judged.failures:
@@ -252,11 +253,6 @@ def suite(judged: JudgedLog, facts: Mapping[str, str]) -> Element:
     if judged.not_judged:
         say(whole, "system-out", f"not judged: {', '.join(judged.not_judged)}")
     return suite_of("judge", [*cases, whole], facts)
-
-
-def _causes(judged: JudgedLog, columns: tuple[str, ...]) -> list[str]:
-    """What explains the errors of some columns."""
-    return [cause_text(cause) for cause in judged.causes if set(columns) & set(cause.columns)]
 
 
 COMMENT_ROOM = 20_000
@@ -276,15 +272,7 @@ def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
         "\n".join(f"- cause: {plain(cause_text(c))}" for c in judged.causes),
     ]
     cells = [
-        (
-            "ok" if row.verdict == "within" else "OUT",
-            row.names,
-            row.what,
-            row.size,
-            f"{error_text(row.error.pure)} {share_of(row.error)}",
-            short(row.limit.number),
-            taken_text(row.taken),
-        )
+        ("ok" if row.verdict == "within" else "OUT", *_texts(row))
         for row in sorted(shown_rows(judged), key=lambda row: row.verdict == "within")
     ]
     parts.append(table(HEADS, cells, COMMENT_ROOM, "errors"))
@@ -292,8 +280,7 @@ def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
     if judged.not_judged:
         told.append(f"not judged: {missing_text(judged)}, which the log has not")
     told += filter(None, [rest_text(judged)])
-    told += [f"not used: {line}" for line in unused_lines(judged)]
-    told += judged.notes
+    told += [*(f"not used: {line}" for line in unused_lines(judged)), *judged.notes]
     if told:
         parts.append(folded("more", "\n".join(f"- {plain(each)}" for each in told)))
     parts.append("\n".join(f"{plain(line)}  " for line in footer(judged, facts)))

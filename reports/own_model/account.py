@@ -238,13 +238,10 @@ def course_of(cell: Cell, run: Run) -> ErrorCourse | None:
         return None
     time_s = beside.motion.time_s
     error = np.max([length(each.error) / each.scale for each in beside.places], axis=0)
-    gap = _widest(run.gaps, time_s.size) / (cell.scene.longest_m or 1.0)
+    widest = np.max([np.zeros(time_s.size), *map(np.abs, run.gaps.values())], axis=0)
+    gap = np.asarray(widest / (cell.scene.longest_m or 1.0))
     kept = _largest_rows(np.nan_to_num(error, nan=np.inf, posinf=np.inf))
     return ErrorCourse(time_s[kept], error[kept], gap[kept])
-
-
-def _widest(gaps: Mapping[str, Array], samples: int) -> Array:
-    return np.asarray(np.max([np.zeros(samples), *map(np.abs, gaps.values())], axis=0))
 
 
 def _largest_rows(series: Array) -> list[int]:

@@ -179,12 +179,9 @@ def _advised(judged: JudgedModel, one: CheckedLine) -> CheckedLine:
     if error < HELPS * best:
         return one
     less = f"{short(error / best)} times less error" if best > 0.0 and error > 0.0 else "it runs"
-    changed = replace(one, remedy=f"The recommended settings: {less}, {_standing(last)}.")
+    now = "within tolerance" if last.verdict == "within" else "out of tolerance still"
+    changed = replace(one, remedy=f"The recommended settings: {less}, {now}.")
     return replace(changed, findings=judge(changed))
-
-
-def _standing(one: Checked) -> str:
-    return "within tolerance" if one.verdict == "within" else "out of tolerance still"
 
 
 def _part(finding: Finding) -> float:

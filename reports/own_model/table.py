@@ -32,7 +32,7 @@ from reports.own_model.sentences import (
     still_out,
     verdict_text,
 )
-from reports.verify.cell_table import MARKS
+from reports.verify.cell_table import MARKS, halved, mark
 
 WIDE, NARROW = 76, 52
 """Columns of a terminal that show the gap and the body of the largest error; below which what
@@ -61,8 +61,8 @@ def _failures(console: Console, judged: JudgedModel) -> None:
     """What is out of tolerance as written, rule by rule."""
     if not judged.failures:
         return
-    mark = MARKS[judged.verdict].plain
-    console.print(Text(harmless(f"{mark}  {judged.account.request.path}, as written"), "bold red"))
+    head = f"{MARKS[judged.verdict].plain}  {judged.account.request.path}, as written"
+    console.print(Text(harmless(head), "bold red"))
     for finding in judged.failures:
         rule = RULES[finding.rule]
         hanging(console, f"  {rule.id} ", harmless(f"{rule.title}: {finding.text}"))
@@ -99,10 +99,8 @@ def _table(judged: JudgedModel, width: int) -> Table:
 def _add(table: Table, judged: JudgedModel, one: CheckedLine, *, wide: bool) -> None:
     """A line, and below it what it gains."""
     columns = len(table.columns) - 2
-    mark = MARKS[one.verdict]
-    shown = mark if one.cell.gated or one.verdict == "within" else Text(mark.plain, "yellow")
     steps = len(step_heads(judged))
-    table.add_row(shown, one.cell.profile, *_numbers(one, steps, wide=wide)[:columns])
+    table.add_row(mark(one), one.cell.profile, *_numbers(one, steps, wide=wide)[:columns])
     if one is not judged.own and any(map(math.isfinite, judged.gains(one))):
         factors = [
             "" if math.isnan(factor) else factor_text(factor)
@@ -123,16 +121,8 @@ def _numbers(one: CheckedLine, steps: int, *, wide: bool) -> list[Text | str]:
     return [
         *("" if at and math.isnan(error) else short(error) for at, error in enumerate(errors)),
         *([short(gap.pure) if gap else "-", body] if wide else []),
-        _ended(one),
+        halved(one, one.convergence),
     ]
-
-
-def _ended(one: CheckedLine) -> str:
-    """What the error does when the step is halved, or how the run ended."""
-    if one.status != "ok":
-        early = one.status != "branch-changed"  # such a run goes on to its end
-        return one.status + (f" at t = {one.stopped_at_s:.3g} s" if early else "")
-    return one.convergence.words.replace(": ", "\n") if one.convergence else ""
 
 
 def _disturbing(console: Console, judged: JudgedModel) -> None:

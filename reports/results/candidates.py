@@ -6,14 +6,13 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import cast
 
 import pandas as pd
 
 from reports.results.cost import mean
 from reports.results.lines import Line, called, numbers
-from reports.results.result_kind import ResultKind
 from reports.way.clock import clock_of
+from reports.way.result_kind import ResultKind
 from reports.way.way import WAYS, Way, way
 from sim.engine import Drive, SettingValue
 
@@ -45,7 +44,7 @@ class Candidate:
     @property
     def kind(self) -> ResultKind:
         """What is said of such cells."""
-        return cast(ResultKind, (self.way or way(WAYS[-1])).part("results"))
+        return (self.way or way(WAYS[-1])).results
 
     @property
     def scenes(self) -> int:

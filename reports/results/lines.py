@@ -19,10 +19,10 @@ from reports.quantities import QUANTITIES
 from reports.results.fits.line import LineFit, fit_line
 from reports.results.fits.words import words
 from reports.results.one_processor import comparable
-from reports.results.result_kind import ResultKind
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
 from reports.way.clock import clock_of
+from reports.way.result_kind import ResultKind
 from reports.way.way import Way, way_of_row
 from sim.engine import Drive, SettingValue
 
@@ -59,7 +59,7 @@ class Line:
     @property
     def kind(self) -> ResultKind:
         """What is said of its cells."""
-        return cast(ResultKind, self.way.part("results"))
+        return self.way.results
 
     @property
     def lasts_s(self) -> float:
@@ -174,7 +174,7 @@ def _line(rows: pd.DataFrame, quantity: str) -> Line:
 def _unit(quantity: str, row: Mapping[Any, Any]) -> str:
     """The unit of a column of errors, of such cells."""
     if quantity == "place_pure":
-        return cast(ResultKind, way_of_row(row).part("results")).unit
+        return way_of_row(row).results.unit
     if quantity.endswith("_pure"):
         names = [n for n in QUANTITIES if quantity.startswith(f"{n.replace('-', '_')}_")]
         return QUANTITIES[names[0]].share if names else "rad"

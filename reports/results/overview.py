@@ -18,10 +18,10 @@ from reports.results.cost import Costs, costs_of, noise
 from reports.results.lines import Line, Named, lines, named
 from reports.results.looks import Look, looks
 from reports.results.recommend import Recommendation, recommendations
-from reports.results.result_kind import TARGETS
 from reports.results.settings_text import settings_told
 from reports.store.reader import Stored
 from reports.way.clock import TURNS, clock_of
+from reports.way.result_kind import TARGETS
 from reports.way.way import WAYS, way_of_row
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import cast
 
 from rich.console import Group, RenderableType
 from rich.markup import escape
@@ -16,9 +15,9 @@ from reports.results.cost import SHARE, noise, pairs
 from reports.results.lines import called
 from reports.results.one_processor import left_out, machine
 from reports.results.recommend import Recommendation
-from reports.results.result_kind import ResultKind
 from reports.store.reader import Stored
 from reports.way.clock import clock_of
+from reports.way.result_kind import ResultKind
 from reports.way.way import WAYS, way
 
 WIDE = 90
@@ -46,7 +45,7 @@ def _table(recommendations: Sequence[Recommendation], width: int) -> RenderableT
     """What was driven, or what was let go, with rigid links or elastic ones."""
     wide = width >= WIDE
     best = recommendations[0].best if recommendations else None
-    kind = best.kind if best else cast(ResultKind, way(WAYS[-1]).part("results"))
+    kind = best.kind if best else way(WAYS[-1]).results
     table = plain_table(f"cheapest settings that keep every {kind.kept}")
     turn = clock_of(best.drive if best else "").name
     table.add_column(kind.head, no_wrap=True, justify="right")

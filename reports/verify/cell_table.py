@@ -12,10 +12,11 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from reports.compare.errors import Error, Errors, largest
+from reports.compare.errors import Error, largest
 from reports.judge.cell import Checked
 from reports.judge.rules import FORCES
 from reports.judge.rules.rule import Finding
+from reports.judge.three_steps import Convergence
 from reports.output.console import plain_table
 from reports.quantities import QUANTITIES
 
@@ -105,19 +106,18 @@ def row_cells(
     errors = one.errors
     if errors is None:
         return [*["-"] * len(heads), "", Text(f"{one.status}: {one.reason}", "red")]
-    shown = [_largest(errors, numbers[head]) for head in heads]
-    convergence = one.force_convergence if forces else one.convergence
-    seen = convergence.words.replace(": ", "\n") if convergence else ""
+    worst = (filter(None, map(errors.worst, numbers[head])) for head in heads)
+    seen = halved(one, one.force_convergence if forces else one.convergence)
+    own = [finding for finding in one.findings if (finding.rule in FORCES) == forces]
+    return [*(_number(largest(each)) for each in worst), _share(own), seen]
+
+
+def halved(one: Checked, convergence: Convergence | None) -> str:
+    """What an error does when the step is halved, or how the run ended."""
     if one.status != "ok":
         early = one.status != "branch-changed"  # such a run goes on to its end
-        seen = one.status + (f" at t = {one.stopped_at_s:.3g} s" if early else "")
-    own = [finding for finding in one.findings if (finding.rule in FORCES) == forces]
-    return [*(_number(error) for error in shown), _share(own), seen]
-
-
-def _largest(errors: Errors, quantities: Sequence[str]) -> Error | None:
-    """The worst of some quantities, as reported."""
-    return largest(worst for name in quantities if (worst := errors.worst(name)))
+        return one.status + (f" at t = {one.stopped_at_s:.3g} s" if early else "")
+    return convergence.words.replace(": ", "\n") if convergence else ""
 
 
 def _number(error: Error | None) -> str:

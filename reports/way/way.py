@@ -19,6 +19,7 @@ from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned, Springs
+from reports.way.result_kind import ResultKind
 from sim.engine import Drive
 
 WAYS = ("free_elastic", "elastic", "free", "driven")
@@ -52,11 +53,10 @@ class Way(Protocol):
     ========== ===============================================================================
     columns    the columns of its cells, a `reports.judge.rows.ColumnsOf`
     table      the table of its cells, a `reports.verify.cell_table.CellTable`
-    footer     the lines under the table, `reports.verify.cell_table.Part` each
+    footer     the lines under the table, `reports.verify.cell_table.Part` each, also there
     faults     the faults that are planted in its runs, a `reports.selftest.fault_runs.FaultSet`
     cases      the hard cases of its scenes, by group (`reports.stability.case.Case`)
     series     what hard runs are compared with, by name (`reports.stability.yardstick.Yardstick`)
-    results    what is said of its stored cells, a `reports.results.result_kind.ResultKind`
     figures    its figures of a store, by name (`reports.figures.drawing.Drawing`)
     section    its section of the page (`reports.page.sections.section.WaySection`)
     log        how its logs are judged, a `reports.own_log.log_kind.LogKind`
@@ -87,6 +87,8 @@ class Way(Protocol):
     """The units of the numbers of its cells, in words."""
     no_case: str
     """The sentence on a hard case that is none of such scenes."""
+    results: ResultKind
+    """What is said of its stored cells."""
     over_g: Sequence[str]
     """What of its errors is over the sensitivity of the motion, in words."""
 

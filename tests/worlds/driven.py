@@ -41,7 +41,7 @@ from models.moved_scene import moved, scaled
 from models.scene import GROUND, Link, Point, Scene, Slider, span
 from models.tree import plan
 from reports.compare.hardness import curvature
-from reports.quantities import DEFAULTS
+from reports.quantities.limits import DEFAULTS
 from sim.pymunk.settings import TUNED
 from sim.pymunk.space import build
 from tests.worlds.strategies import (

@@ -13,7 +13,7 @@ from reports.workers.isolated import Limits
 Answer = TypeVar("Answer")
 STARTED_IN = (
     "advise.prices", "stability.running", "sweep.running", "tune.attempt", "tune.timing",
-    "workers.scheduler",
+    "workers.isolated",
 )  # fmt: skip
 """The modules that start children."""
 

@@ -24,7 +24,7 @@ from reports.causes.hypotheses.straight import straight, turns
 from reports.causes.hypotheses.two_faults import two_faults
 from reports.causes.inquiry import Inquiry
 
-Hypothesis = Callable[[Inquiry], Iterator[Account]]
+Hypothesis = Callable[[Inquiry], Iterator[Account | None]]
 OF_SAMPLES: Mapping[str, Hypothesis] = {"turns": turns, "samples": samples}
 """What may be wrong with some samples, beside whatever is wrong with all of them."""
 OF_CHANNELS: Mapping[str, Hypothesis] = {

@@ -61,7 +61,7 @@ class Clock:
         return replace(world.stamped(self), pace=pace)
 
 
-def time_unit(inquiry: Inquiry) -> Iterator[Account]:
+def time_unit(inquiry: Inquiry) -> Iterator[Account | None]:
     """Times that are in another unit than the map says."""
     column, told = inquiry.case.log.stamp
     size = UNITS["time"].get(told, 1.0)
@@ -74,9 +74,7 @@ def time_unit(inquiry: Inquiry) -> Iterator[Account]:
         phrase = (
             f'{times} are in {unit}, not in {told or "s"}: unit = "{unit}" under [time] of the map'
         )
-        account = inquiry.account_of_world("time unit", CAUSE + CHOICE, world, phrase)
-        if account is not None:
-            yield account
+        yield inquiry.account_of_world("time unit", CAUSE + CHOICE, world, phrase)
 
 
 def drift(inquiry: Inquiry) -> Iterator[Account]:
@@ -91,13 +89,9 @@ def drift(inquiry: Inquiry) -> Iterator[Account]:
                 continue
             told = list(_told(inquiry, column, clock))
             yield from told
-            if any(_tells_all(inquiry, account) for account in told):
-                return
-
-
-def _tells_all(inquiry: Inquiry, account: Account) -> bool:
-    """Whether nothing is left that needs a drift."""
-    return all(account.rests.get(column, 1.0) < WELL for column in inquiry.unexplained)
+            for account in told:
+                if all(account.rests.get(each, 1.0) < WELL for each in inquiry.unexplained):
+                    return  # nothing is left that needs a drift
 
 
 def _fitted(inquiry: Inquiry, column: str, *, paced: bool) -> Clock | None:
@@ -232,7 +226,7 @@ ON_GRID = 1e-3
 """In steps of its last decimal, how near a printed number is to it."""
 
 
-def stamps(inquiry: Inquiry) -> Iterator[Account]:
+def stamps(inquiry: Inquiry) -> Iterator[Account | None]:
     """Times that were rounded, or shaken, where the samples are as far apart as they can be."""
     time_s = inquiry.case.log.time_s
     if time_s.size < 3 or inquiry.world.drive is not None:
@@ -255,9 +249,8 @@ def stamps(inquiry: Inquiry) -> Iterator[Account]:
         f"{interval:.6g} s apart"
     )
     for each in (world, _aligned(inquiry, world, middle, shaken)):
-        told = each and inquiry.account_of_world("time stamps", CAUSE + CHOICE, each, phrase)
-        if told:
-            yield told
+        if each:
+            yield inquiry.account_of_world("time stamps", CAUSE + CHOICE, each, phrase)
 
 
 def _aligned(inquiry: Inquiry, world: World, middle: float, shaken: float) -> World | None:

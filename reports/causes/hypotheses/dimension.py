@@ -44,7 +44,7 @@ class Dimension:
     point: str = ""
 
 
-def dimension(inquiry: Inquiry) -> Iterator[Account]:
+def dimension(inquiry: Inquiry) -> Iterator[Account | None]:
     """The dimensions that explain most of what is open, alone or, of a point, both."""
     columns = list(inquiry.unclaimed)
     if not columns or (len(columns) == 1 and _told_alone(inquiry, columns[0])):
@@ -55,10 +55,7 @@ def dimension(inquiry: Inquiry) -> Iterator[Account]:
     points = {one.point: () for one in likely[: 2 * MOST_FITTED] if one.point}
     both = [tuple(one for one in likely if one.point == point) for point in points]
     pairs = [each for each in both if len(each) == 2][:2]
-    for chosen in (*singles, *pairs):
-        told = _told(inquiry, columns, chosen)
-        if told is not None:
-            yield told
+    yield from (_told(inquiry, columns, chosen) for chosen in (*singles, *pairs))
 
 
 def _told_alone(inquiry: Inquiry, column: str) -> bool:

@@ -35,7 +35,7 @@ PASSED = 0.1
 would be seen but that."""
 
 
-def filtered(inquiry: Inquiry) -> Iterator[Account]:
+def filtered(inquiry: Inquiry) -> Iterator[Account | None]:
     """Each filter that explains a channel."""
     for column in inquiry.open:
         try:
@@ -44,9 +44,7 @@ def filtered(inquiry: Inquiry) -> Iterator[Account]:
             continue
         if stretch.rows < LEAST_ROWS:
             continue
-        for told in (_low_pass(stretch, column), _mean(stretch, column)):
-            if told is not None:
-                yield told
+        yield from (_low_pass(stretch, column), _mean(stretch, column))
 
 
 def _low_pass(stretch: Inquiry, column: str) -> Account | None:
@@ -157,13 +155,11 @@ LEAST = 1.5
 """Samples that anything is smoothed over at least."""
 
 
-def smoothed(inquiry: Inquiry) -> Iterator[Account]:
+def smoothed(inquiry: Inquiry) -> Iterator[Account | None]:
     """Channels that nothing else explains well, smoothed evenly to both sides or late as well."""
     for column in inquiry.unexplained:
         for delayed in (False, True):
-            told = _told_of_smooth(inquiry, column, delayed=delayed)
-            if told is not None:
-                yield told
+            yield _told_of_smooth(inquiry, column, delayed=delayed)
 
 
 def _told_of_smooth(inquiry: Inquiry, column: str, *, delayed: bool) -> Account | None:

@@ -48,15 +48,13 @@ class Delay:
     doubt_s: float
 
 
-def late(inquiry: Inquiry) -> Iterator[Account]:
+def late(inquiry: Inquiry) -> Iterator[Account | None]:
     """Delays that explain a channel, or several at once; also, of channels that are within their
     limits, those that clearly explain what there is of an error."""
     candidates = (*inquiry.open, *_doubtful(inquiry))
     delays = [delay for delay in map(Search(inquiry).delay, candidates) if delay is not None]
     for group in _groups(delays, inquiry.step_s):
-        told = _told(inquiry, group)
-        if told is not None:
-            yield told
+        yield _told(inquiry, group)
 
 
 def _doubtful(inquiry: Inquiry) -> list[str]:

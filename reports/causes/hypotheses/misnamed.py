@@ -31,7 +31,7 @@ class OtherMeaning:
     any_zero: bool = False
 
 
-def misnamed(inquiry: Inquiry) -> Iterator[Account]:
+def misnamed(inquiry: Inquiry) -> Iterator[Account | None]:
     """What else the readings of a channel may be of."""
     motions: dict[bytes, Motion] = {}
     for column in inquiry.open:
@@ -43,9 +43,7 @@ def misnamed(inquiry: Inquiry) -> Iterator[Account]:
             except CrankcheckError:
                 return
         for other in _meanings(inquiry, excerpt.channel):
-            told = _told(inquiry, excerpt, other, motions[key])
-            if told is not None:
-                yield told
+            yield _told(inquiry, excerpt, other, motions[key])
 
 
 def _bodies(inquiry: Inquiry) -> dict[str, tuple[str, ...]]:

@@ -88,37 +88,28 @@ def _later(inquiry: Inquiry, world: World, cost: float, phrase: str) -> Iterator
         yield told
 
 
-SIGNED = (
-    "speed_rad_s",
-    "acceleration_rad_s2",
-    "amplitude_rad",
-    "before_rad_s",
-    "after_rad_s",
-)
+SIGNED = {"speed_rad_s", "acceleration_rad_s2", "amplitude_rad", "before_rad_s", "after_rad_s"}
 """What of a law changes its sign where the driver turns the other way."""
 STARTS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
+"""Angles of the driver, and turns of the plane, that a fit starts from."""
 
 
-def backwards(inquiry: Inquiry) -> Iterator[Account]:
+def backwards(inquiry: Inquiry) -> Iterator[Account | None]:
     """The driver turning the other way from the same start, and rates that show it or, as from a
     sensor of the speed alone, do not."""
     if inquiry.world.drive is not None:
         return
     law = inquiry.world.scene.driver.law
-    names = {each.name for each in fields(law)}  # type: ignore[arg-type]
-    signs = {name: -getattr(law, name) for name in SIGNED if name in names}
+    names = SIGNED & {each.name for each in fields(law)}  # type: ignore[arg-type]
+    signs = {name: -getattr(law, name) for name in names}
     world = _driven(inquiry.world, replace(law, **signs))  # type: ignore[type-var]
-    told = inquiry.account_of_world("reversed", CAUSE, world, "the driver turns the other way")
-    if told is not None:
-        yield told
+    yield inquiry.account_of_world("reversed", CAUSE, world, "the driver turns the other way")
     elsewhere = inquiry.world.stamped(lambda stamps: -stamps)
     phrase = "the driver turns the other way, and the rates have the signs that they have forwards"
-    told = inquiry.account_of_world("reversed", CAUSE + CHOICE, elsewhere, phrase)
-    if told is not None:
-        yield told
+    yield inquiry.account_of_world("reversed", CAUSE + CHOICE, elsewhere, phrase)
 
 
-def start_angle(inquiry: Inquiry) -> Iterator[Account]:
+def start_angle(inquiry: Inquiry) -> Iterator[Account | None]:
     """The driver starting at another angle; at constant speed that is a clock that does."""
     law = inquiry.world.scene.driver.law
     another = isinstance(law, ConstantSpeed) or inquiry.world.drive is not None
@@ -137,9 +128,7 @@ def start_angle(inquiry: Inquiry) -> Iterator[Account]:
     angle = float(min(found, key=lambda each: float(np.sum(residual(each) ** 2)))[0])
     phrase = f"the driver starts {math.degrees(angle):+.4g} deg from where it starts in the scene"
     world = _driven(inquiry.world, law.turned(angle))
-    told = inquiry.account_of_world("start", CAUSE + NUMBER, world, phrase)
-    if told is not None:
-        yield told
+    yield inquiry.account_of_world("start", CAUSE + NUMBER, world, phrase)
 
 
 def _driven(world: World, law: Law) -> World:
@@ -148,8 +137,6 @@ def _driven(world: World, law: Law) -> World:
     return replace(world, scene=replace(scene, driver=replace(scene.driver, law=law)))
 
 
-QUARTERS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
-"""Turns of the plane that a fit starts from."""
 NEAR_UNIT = 1e-3
 """A scale that is as near to a ratio of units is one."""
 
@@ -220,7 +207,7 @@ def _frame(inquiry: Inquiry, columns: Sequence[str], count: int) -> LogFrame | N
         return np.concatenate([errors[column] / sizes[column] for column in columns])
 
     delta = (1e-6, 1e-6 * longest, 1e-6 * longest)[:count]
-    starts = ((turn, 0.0, 0.0)[:count] for turn in QUARTERS)
+    starts = ((turn, 0.0, 0.0)[:count] for turn in STARTS)
     tried = (fitted(residual, start, delta) for start in starts)
     found = [each for each in tried if each is not None]
     best = min(found, key=lambda each: float(np.sum(residual(each) ** 2)), default=None)

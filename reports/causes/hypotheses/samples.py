@@ -34,7 +34,7 @@ LONGEST_SPIKE = 3
 """Samples in a row that are one spike."""
 
 
-def samples(inquiry: Inquiry) -> Iterator[Account]:
+def samples(inquiry: Inquiry) -> Iterator[Account | None]:
     """Channels that are off at samples which repeat the one before, or at a few single ones."""
     for column in inquiry.open:
         try:
@@ -43,9 +43,7 @@ def samples(inquiry: Inquiry) -> Iterator[Account]:
             continue
         off = np.abs(error) > inquiry.excerpts[column].limit
         for found in (_dead, _stuck, _spikes):
-            told = found(inquiry, column, values, error, off)
-            if told is not None:
-                yield told
+            yield found(inquiry, column, values, error, off)
 
 
 def runs(where: Mask) -> Rows:
@@ -151,14 +149,11 @@ class RoundingGrid:
     words: str
 
 
-def rounded(inquiry: Inquiry) -> Iterator[Account]:
+def rounded(inquiry: Inquiry) -> Iterator[Account | None]:
     """Channels whose error is no more than what is cut off behind their last digit."""
     for column in inquiry.open:
         excerpt = inquiry.excerpts[column]
-        for grid in _grids(excerpt):
-            told = _told(inquiry, excerpt, grid)
-            if told is not None:
-                yield told
+        yield from (_told(inquiry, excerpt, grid) for grid in _grids(excerpt))
 
 
 def resolution(excerpt: Excerpt) -> float:

@@ -61,10 +61,7 @@ def straight(inquiry: Inquiry) -> Iterator[Account]:
 
 def _each(inquiry: Inquiry, excerpt: Excerpt, lines: Iterable[StraightLine]) -> Iterator[Account]:
     """The accounts of those lines that explain a channel."""
-    for line in lines:
-        told = _told(inquiry, excerpt, line)
-        if told is not None:
-            yield told
+    yield from filter(None, (_told(inquiry, excerpt, line) for line in lines))
 
 
 def _known(channel: Channel) -> Iterator[StraightLine]:
@@ -195,7 +192,7 @@ MOST_JUMPS = 12
 SHOWN = 3
 
 
-def turns(inquiry: Inquiry) -> Iterator[Account]:
+def turns(inquiry: Inquiry) -> Iterator[Account | None]:
     """Angles whose error is whole turns, or half ones, or whose sign is lost."""
     for column in inquiry.open:
         excerpt = inquiry.excerpts[column]
@@ -204,13 +201,9 @@ def turns(inquiry: Inquiry) -> Iterator[Account]:
                 values, error = inquiry.whole(column)
             except CrankcheckError:
                 continue
-            for found in (_whole, _half):
-                told = found(inquiry, column, values, error)
-                if told is not None:
-                    yield told
-        told = _unsigned(inquiry, column)
-        if told is not None:
-            yield told
+            yield _whole(inquiry, column, values, error)
+            yield _half(inquiry, column, values, error)
+        yield _unsigned(inquiry, column)
 
 
 def _whole(inquiry: Inquiry, column: str, values: Array, error: Array) -> Account | None:

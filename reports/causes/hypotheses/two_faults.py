@@ -48,7 +48,7 @@ class First:
     phrase: str
     correction: Mapping[str, object]
     inquiry: Inquiry
-    others: tuple[Callable[[Inquiry], Iterator[Account]], ...]
+    others: tuple[Callable[[Inquiry], Iterator[Account | None]], ...]
 
 
 def two_faults(inquiry: Inquiry) -> Iterator[Account]:
@@ -57,7 +57,7 @@ def two_faults(inquiry: Inquiry) -> Iterator[Account]:
         for first in (*_read_otherwise(inquiry, column), *_without_samples(inquiry, column)):
             for hypothesis in first.others:
                 try:
-                    found = list(hypothesis(first.inquiry))
+                    found = [*filter(None, hypothesis(first.inquiry))]
                 except (CrankcheckError, ArithmeticError, ValueError, IndexError):
                     continue
                 yield from (_both(inquiry, column, first, each) for each in found

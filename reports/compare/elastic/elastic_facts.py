@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from reports.compare.errors import Errors, LinkFacts, MotionFacts
-from reports.quantities import BENDING, named
+from reports.quantities import named
+from reports.quantities.limits import BENDING
 from reports.quantities.quantity import Tolerance
 
 BENT = (

@@ -285,14 +285,10 @@ def folded_run(cut: CutScene, run: Run) -> Run:
     inner = {node for name in cut.scene.elastic for node in cut.nodes(name)[1:-1]}
     folded = cut.folded(motion)
     if folded.forces is not None:
-        folded = replace(folded, forces=_without(folded.forces, inner, _links(cut)))
+        links = {part: name for name in cut.scene.elastic for part in cut.bodies(name)}
+        folded = replace(folded, forces=_without(folded.forces, inner, links))
     gaps = {name: gap for name, gap in run.gaps.items() if name not in inner}
     return replace(run, motion=folded, gaps=gaps)
-
-
-def _links(cut: CutScene) -> dict[str, str]:
-    """The elastic link by segment."""
-    return {part: name for name in cut.scene.elastic for part in cut.bodies(name)}
 
 
 def _without(forces: Forces, inner: set[str], links: Mapping[str, str]) -> Forces:

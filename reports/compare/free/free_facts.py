@@ -10,7 +10,8 @@ import numpy as np
 
 from models.array import Array
 from reports.compare.errors import Errors, MotionFacts
-from reports.quantities import FREE, named
+from reports.quantities import named
+from reports.quantities.limits import FREE
 from reports.quantities.quantity import Tolerance
 
 MOST_GROWTH = 1e3

@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 from models.driver import driver_axis
 from reports.drawing.moving import goes_round
 from reports.drawing.packed import packed, singles
+from reports.judge.rules.rule import share
 from reports.output.numbers import count, readable
 from reports.own_log.judged import JudgedLog
-from reports.own_log.rows import share_of
 from reports.own_log.table import taken_text
 from reports.page.log_sections.curves import DrawnChannel, Samples
 from reports.page.log_sections.foreign_text import name_text
@@ -110,7 +110,7 @@ def _told(judged: JudgedLog, curve: DrawnChannel) -> Iterator[str]:
         error = row.error
         joined = " of both its coordinates together" if len(row.columns) > 1 else ""
         where = {"start": " at the start", "passage": " near a change point"}.get(error.kind, "")
-        of = f"{readable(error.pure)} {share_of(error)}, {taken_text(row.taken)} of the limit"
+        of = f"{readable(error.pure)} {share(error)}, {taken_text(row.taken)} of the limit"
         told = f"The {error.quantity} error{joined}{where} is {of}"
         yield f"{told}, {readable(row.limit.number)} ({row.limit.origin})."
     if curve.turns:

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from models.errors import few
 from reports.causes.cause import Cause
 from reports.judge.rules import RULES
+from reports.judge.rules.rule import share
 from reports.own_log.judged import JudgedLog
-from reports.own_log.rows import LogRow, share_of
+from reports.own_log.rows import LogRow
 from reports.own_log.table import (
     fit_text,
     missing_text,
@@ -75,7 +76,7 @@ def _row(row: LogRow, numbers: dict[str, int]) -> dict[str, object]:
         "maximum": error.maximum / row.per_unit,
         "unit": row.unit,
         "pure": error.pure,
-        "share": share_of(error),
+        "share": share(error),
         "limit": row.limit.number,
         "origin": row.limit.origin,
         "taken": row.taken,

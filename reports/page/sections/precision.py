@@ -14,7 +14,7 @@ from reports.results.cost import MEANS, Costs
 from reports.results.lines import Line
 from reports.results.overview import Report
 from reports.results.pareto import front, front_over_all
-from reports.results.result_kind import TARGETS
+from reports.way.result_kind import TARGETS
 
 ALL = "all scenes"
 

@@ -10,7 +10,7 @@ from typing import Literal
 
 from models.errors import CrankcheckError
 from reports.judge.three_steps import AT_ROUNDING
-from reports.quantities import ELASTIC, FREE
+from reports.quantities.limits import ELASTIC, FREE
 from reports.results.changes.gone import refuse_gone
 from reports.results.changes.runs import COMPARED, CellName, StoredCell, StoredRun
 

@@ -17,6 +17,7 @@ from models.motion import Forces, Motion, State
 from models.scene import Same, Scene
 from reports.compare.beside import Truth, truth_of
 from reports.compare.errors import DRIVEN
+from reports.compare.whole_errors import Parts
 from reports.plan.singular import (
     passage_note,
     refuse_forceless,
@@ -24,9 +25,11 @@ from reports.plan.singular import (
     refuse_singular,
 )
 from reports.plan.steps import TURNS, counted
-from reports.quantities import DEFAULTS, named
+from reports.quantities import named
+from reports.quantities.limits import DEFAULTS
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
+from reports.way.result_kind import ResultKind
 from reports.way.way import StudyLengths, Way
 from sim.engine import Drive
 
@@ -46,6 +49,15 @@ class DrivenWay(Way):
     no_case = "no driven case"
     units = DRIVEN.compared_with(" at the commanded time")
     over_g: Sequence[str] = ()
+    results = ResultKind(
+        error="An error is the largest of a whole run against the closed form: of a link angle in "
+        "radians, of a slider's displacement or a point's place in lengths of the longest link, "
+        "whichever is worst.",
+        stands=0,
+        leads=1,
+        axis="largest error: angle [rad], place / L [-]",
+        promise="place (rad, or of the longest link)",
+    )
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return True

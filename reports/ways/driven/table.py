@@ -1,9 +1,13 @@
-"""The table of cells whose driver follows a law."""
+"""The table of cells whose driver follows a law, and what stands under it."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from reports.compare.errors import largest
+from reports.judge.cell import Checked
 from reports.quantities import QUANTITIES
-from reports.verify.cell_table import CellTable
+from reports.verify.cell_table import STEPS, UNITS, CellTable, span
 
 ANGLE, GAP = QUANTITIES["angle"].head, QUANTITIES["gap"].head
 NUMBERS = {
@@ -16,3 +20,26 @@ TABLE = CellTable(
     "", NUMBERS, ((100, tuple(NUMBERS), ()), (76, (ANGLE, GAP), ()), (0, (ANGLE,), ())),
     apart=76, names=22,
 )  # fmt: skip
+
+
+def words(checked: Sequence[Checked]) -> Sequence[str]:
+    """What the numbers are."""
+    return [checked[0].cell.way.units]
+
+
+def steps(driven: Sequence[Checked]) -> Sequence[str]:
+    """How cells were stepped."""
+    counts = sorted({round(one.cell.steps_per_turn, 3) for one in driven})
+    turns = sorted({round(one.cell.turns, 3) for one in driven})
+    dts = sorted({one.cell.dt_s for one in driven})
+    drive = largest(e for one in driven if one.errors and (e := one.errors.worst("drive")))
+    turned = f"{span(turns)} turn" + ("" if turns == [1.0] else "s")
+    return [
+        f"dt {span(dts)} s, {span(counts)} steps a turn, {turned}; "
+        + (f"largest drive error {drive.maximum:.1e} rad; " if drive else "")
+        + "- not reported."
+    ]
+
+
+STEPPED = (STEPS, steps)
+FOOTER = ((UNITS, words), STEPPED)

@@ -11,12 +11,11 @@ from reports.compare.last_turn import Trace
 from reports.drawing.moving import first_turn
 from reports.drawing.packed import packed
 from reports.output.numbers import duration
-from reports.page.sections.convergence import drawn
 from reports.page.sections.section import Section, WaySection
-from reports.results.lines import Line, lines
+from reports.results.lines import Line
 from reports.results.overview import Report
 from reports.way.clock import SECONDS, TURNS, Clock, clock_of
-from reports.ways.free.section import cost_row
+from reports.ways.free.section import cost_row, fits_of
 
 KIND = "elastic"
 SHOWN = (
@@ -45,7 +44,7 @@ def build(report: Report) -> Section | None:
         return None
     names = list(dict.fromkeys(line.scene for line in own))
     bent = [one for one in report.recommendations if one.best.way and KIND in one.best.way.kinds]
-    fits = {name: _fits(report, name) for name in ERRORS if name in report.cells}
+    fits = fits_of(report, KIND, ERRORS)
     return Section(
         anchor="elastic",
         title="Elastic links",
@@ -72,15 +71,6 @@ def _rows(report: Report, line: Line) -> list[dict[str, object]]:
         {"scene": line.scene, "look": report.look(line), "turn": clock_of(line.drive).name}
         | {name: cell.get(name) for name in SHOWN}
         for cell in line.cells.to_dict("records")
-    ]
-
-
-def _fits(report: Report, quantity: str) -> list[dict[str, object]]:
-    """The errors of all lines against the step, with their fits."""
-    return [
-        drawn(report, line) | {"lasts_s": line.period_s}
-        for line in lines(report.stored, quantity)
-        if KIND in line.way.kinds
     ]
 
 

@@ -19,10 +19,13 @@ from reports.compare.free.free_facts import FreeFacts
 from reports.compare.free.free_truth import kept_motion, released_state
 from reports.plan.free import refuse_unreleased, under_control
 from reports.plan.steps import counted_free
-from reports.quantities import FREE, named
+from reports.quantities import named
+from reports.quantities.limits import FREE
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import LEAST_STEPS, GivenAs, Length, Planned
+from reports.way.result_kind import ResultKind
 from reports.way.way import StudyLengths, Way
+from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
 UNITS = (
@@ -48,6 +51,14 @@ class FreeWay(Way):
     no_case = "no case of free motion"
     units = UNITS
     over_g: Sequence[str] = FreeFacts.over_g
+    results = ResultKind(
+        error="What was let go is held to the integrated motion at the same time, its errors over "
+        "the sensitivity G of that motion.",
+        stands=2,
+        leads=2,
+        axis="largest error / sensitivity: angle [rad], place / L [-]",
+        promise="place over the sensitivity (rad, or of the longest link)",
+    )
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return drive == "free"

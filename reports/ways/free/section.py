@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from models.scene import Scene
+from collections.abc import Iterable
+
 from reports.output.numbers import duration
 from reports.page.sections.convergence import drawn
 from reports.page.sections.free_courses import FreeCourses, sizes_of
@@ -48,14 +49,19 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
     costs = [
         one for one in report.recommendations if one.best.way and one.best.way.kinds == (KIND,)
     ]
-    fits = {name: _fits(report, name) for name in ERRORS if name in report.cells}
+    fits = fits_of(report, KIND, ERRORS)
     return Section(
         anchor="free",
         title="Let go",
         template="free.html",
         words={
             "rows": [row for line in lines for row in _rows(report, line)],
-            "scenes": [_words(name, report.scenes[name]) for name in names],
+            "scenes": [
+                {"name": name, "source": scene.source, "note": scene.note}
+                if (scene := report.scenes[name])
+                else {"name": name, "source": "", "note": ""}
+                for name in names
+            ],
             "errors": {name: ERRORS[name][0] for name in fits},
             "costs": [cost_row(one) for one in costs],
             "thinned": held < max(len(line.cells) for line in lines),
@@ -112,22 +118,19 @@ def _horizon(time_s: float | None) -> str:
     return "not at all" if time_s == 0.0 else duration(time_s)
 
 
-def _words(name: str, scene: Scene | None) -> dict[str, str]:
-    """A scene with its source."""
+def fits_of(
+    report: Report, kind: str, quantities: Iterable[str]
+) -> dict[str, list[dict[str, object]]]:
+    """The errors of all lines of a kind against the step, with their fits, by quantity."""
     return {
-        "name": name,
-        "source": scene.source if scene else "",
-        "note": scene.note if scene else "",
+        quantity: [
+            drawn(report, line) | {"lasts_s": line.period_s}
+            for line in lines(report.stored, quantity)
+            if kind in line.way.kinds
+        ]
+        for quantity in quantities
+        if quantity in report.cells
     }
-
-
-def _fits(report: Report, quantity: str) -> list[dict[str, object]]:
-    """The errors of all free lines against the step, with their fits."""
-    return [
-        drawn(report, line) | {"lasts_s": line.period_s}
-        for line in lines(report.stored, quantity)
-        if KIND in line.way.kinds
-    ]
 
 
 SECTION = WaySection(build, build)

@@ -1,11 +1,14 @@
-"""The table of cells in free motion."""
+"""The table of cells in free motion, and what stands under it."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 from reports.compare.free.free_facts import FreeFacts
 from reports.judge.cell import Checked
 from reports.quantities import QUANTITIES, named
-from reports.verify.cell_table import CellTable
+from reports.verify.cell_table import MORE_STEPS, MORE_UNITS, CellTable, span
+from reports.ways.driven.table import words
 from reports.ways.free.columns import precision
 
 FREE_NUMBERS = {
@@ -32,3 +35,19 @@ TABLE = CellTable(
     after_heads=("class\nto 1e-3",),
     after=_precision,
 )
+
+
+def steps(free: Sequence[Checked]) -> Sequence[str]:
+    """How cells were stepped."""
+    dts = sorted({one.cell.dt_s for one in free})
+    lasts = sorted({round(one.cell.dt_s * one.cell.steps, 9) for one in free})
+    growth = sorted(facts.sensitivity for one in free if (facts := FreeFacts.of(one.errors)))
+    return [
+        f"dt {span(dts)} s over {span(lasts)} s"
+        + (f"; G up to {span(growth)}" if growth else "")
+        + "; - not reported.",
+    ]
+
+
+STEPPED = (MORE_STEPS, steps)
+FOOTER = ((MORE_UNITS, words), STEPPED)

@@ -22,7 +22,7 @@ from reports.results.recommend import Recommendation, recommendations
 from reports.results.table import recommendation_table
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store
-from reports.ways.elastic.results import RESULTS
+from reports.ways.elastic import WAY
 from tests.reports.page.conftest import Write, swept
 from tests.reports.page.hostile import Outline
 from tests.reports.page.tab import OUT, Tab
@@ -169,7 +169,7 @@ def told(found: tuple[Recommendation, ...]) -> str:
 
 def test_settings_are_recommended_by_the_deflection(small: Stored, bent: Stored) -> None:
     found = recommendations(bent)
-    assert [one.target for one in found] == list(RESULTS.targets)
+    assert [one.target for one in found] == list(WAY.results.targets)
     assert "/ D" in told(found)
     assert "rad" not in told(found)
     text = found[0].snippet()
@@ -202,5 +202,5 @@ def test_figures_of_elastic_cells_say_what_their_errors_are_of(bent: Stored) -> 
     for draw in (convergence.draw, work_precision.draw):
         with styled():
             figure = draw(report, ELASTIC)
-        assert figure.axes[0].get_ylabel() == RESULTS.axis
+        assert figure.axes[0].get_ylabel() == WAY.results.axis
     assert f"convergence-{ELASTIC}" in _planned(report, ["convergence"], [])

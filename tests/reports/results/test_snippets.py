@@ -15,8 +15,8 @@ from reports.judge.cell import Cell
 from reports.plan.study import Variant, load_study
 from reports.requests.sweep import SweepRequest
 from reports.results.recommend import Recommendation, recommendations
-from reports.results.result_kind import TARGETS
 from reports.store.reader import Stored, read_store
+from reports.way.result_kind import TARGETS
 from sim.engine import Drive
 from sim.mujoco.settings import writing
 from sim.offers import snippet

@@ -13,6 +13,7 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.way.length import Planned
+from reports.way.result_kind import ResultKind
 from reports.ways.free import FreeWay
 from sim.engine import Drive
 from tests.worlds.bead.limits import LIMITS
@@ -27,6 +28,13 @@ class BeadWay(FreeWay):
     limits = LIMITS
     units = "Beads: errors against the swing in elliptic functions."
     no_case = "no bead in it"
+    results = ResultKind(
+        error="Of beads the error is that of the angle, or of a place, against the swing.",
+        stands=3,
+        leads=3,
+        axis="largest error of a bead: angle [rad], place / L [-]",
+        promise="place of a bead (rad, or of the spoke)",
+    )
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
         return super().takes(scene, drive) and len(scene.links) == 1

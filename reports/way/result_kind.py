@@ -1,4 +1,4 @@
-"""What is said of stored cells of a way: the part ``results`` of it."""
+"""What is said of stored cells of a kind."""
 
 from __future__ import annotations
 

@@ -1,0 +1,34 @@
+"""The tolerances of each kind of motion and of links, by the names that `--tol` has for them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from reports.quantities import QUANTITIES
+from reports.quantities.quantity import Tolerance, tolerance_name
+
+_OWN = {
+    tolerance_name(name, each.source): (entry.role, each)
+    for name, entry in QUANTITIES.items()
+    for each in entry.criteria
+}
+DEFAULTS: Mapping[str, Tolerance] = {
+    name: each.tolerance for name, (role, each) in _OWN.items() if role not in ("free", "elastic")
+}
+"""Of a mechanism that is driven."""
+BENDING: Mapping[str, Tolerance] = {
+    name: each.tolerance for name, (role, each) in _OWN.items() if role == "elastic"
+}
+"""Of elastic links themselves."""
+ELASTIC = {**DEFAULTS, **BENDING}
+"""Of a mechanism whose links bend."""
+FREE: Mapping[str, Tolerance] = {
+    name: limit
+    for name, (role, each) in _OWN.items()
+    if (limit := each.tolerance if role == "free" else each.free_motion)
+}
+"""Of free motion: its errors at the same time are over the sensitivity of the motion."""
+FREE_ELASTIC = {**FREE, **BENDING}
+"""Of free motion of links that bend."""
+EVERY = tuple(dict.fromkeys((*DEFAULTS, *FREE, *ELASTIC)))
+"""All that there may be a limit of."""
