@@ -20,12 +20,13 @@ from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines
 from reports.requests.options import Jobs
-from reports.selftest.all_faults import RUNS, chosen_faults
 from reports.selftest.fault import PROFILE, RunKind
 from reports.selftest.table import place_row, show
 from reports.selftest.trial import (
+    RUNS,
     Passed,
     Verdict,
+    chosen_faults,
     healthy,
     passed_by,
     passes,

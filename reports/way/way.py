@@ -42,7 +42,7 @@ class Parts:
     columns    the columns of its cells, a `reports.judge.rows.ColumnsOf`
     table      the table of its cells, a `reports.verify.cell_table.CellTable`
     footer     the lines under the table, `reports.verify.cell_table.Part` each
-    faults     the faults that are planted in its runs, a `reports.selftest.fault_runs.FaultSet`
+    faults     the faults that are planted in its runs, a `reports.selftest.fault.FaultSet`
     cases      the hard cases of its scenes, by group (`reports.stability.case.Case`)
     series     what hard runs are compared with, by name (`reports.stability.yardstick.Yardstick`)
     results    what is said of its stored cells, a `reports.results.result_kind.ResultKind`

@@ -11,7 +11,7 @@ from reports.compare.last_turn import Trace
 from reports.drawing.moving import first_turn
 from reports.drawing.packed import packed
 from reports.output.numbers import duration
-from reports.page.sections.convergence import drawn
+from reports.page.sections.errors import drawn
 from reports.page.sections.section import Section, WaySection
 from reports.results.lines import Line, lines
 from reports.results.overview import Report

@@ -10,7 +10,7 @@ import pytest
 
 from models.array import Array
 from reports.page.build import HERE
-from reports.page.heat import SHADES
+from reports.page.sections.hard import SHADES
 from reports.results.looks import FAMILIES, FAMILY
 from reports.stability.matrix import OUTCOMES
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TypedDict
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.array import Array
 from models.driver import driver_course, driver_shown
@@ -17,7 +18,6 @@ from reports.logs.channel import Reading
 from reports.logs.units import UNITS
 from reports.own_log.judged import JudgedLog
 from reports.own_log.rows import LogRow, log_rows
-from reports.page.extremes import Rows, extreme_rows
 
 LEAST, MOST = 240, 6_000
 """Rows that are drawn of a channel, however many there are and however long the log."""
@@ -230,3 +230,30 @@ def _phase(judged: JudgedLog, truth: Motion, rows: Rows) -> Array:
         return np.asarray(100.0 * np.mod(since / scene.driver.law.period_s, 1.0))
     angle = driver_shown(scene, truth)[rows]
     return np.asarray(np.mod(angle + AT_ZERO, 360.0))
+
+
+Rows = NDArray[np.intp]
+
+
+def extreme_rows(series: Sequence[Array], most: int) -> Rows:
+    """The rows to be drawn of series that belong together, about ``most`` of them: all where there
+    are no more, else the first, the last, and those at which a series is smallest or largest in a
+    stretch. All series are of shape (T,)."""
+    number = series[0].size
+    if number <= most:
+        return np.arange(number)
+    length = math.ceil(number * 2 * len(series) / most)
+    picked = [np.array([0, number - 1])]
+    for each in series:
+        missing = np.isnan(each)
+        picked.append(_lowest(np.where(missing, np.inf, each), length))
+        picked.append(_lowest(np.where(missing, np.inf, -each), length))
+    return np.unique(np.concatenate(picked))
+
+
+def _lowest(series: Array, length: int) -> Rows:
+    """The row of the smallest number in each stretch of so many rows."""
+    spare = -series.size % length
+    stretches = np.pad(series, (0, spare), mode="edge").reshape(-1, length)
+    rows: Rows = np.argmin(stretches, axis=1) + length * np.arange(len(stretches))
+    return rows.clip(max=series.size - 1)

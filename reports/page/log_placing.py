@@ -1,11 +1,11 @@
-"""Where bodies stand of which a log holds some places and angles.
+r"""Where bodies stand of which a log holds some places and angles.
 
 A point stands where it was logged. A link lies between its points where two of these are known, or
 at its logged angle about one that is. So of a four-bar of which the three angles are logged::
 
         B ------- C     C'      crank     about A, to B
-       /           \\   /        coupler   about B, to C
-      A             \\ /         rocker    about D, to an end C' of its own
+       /           \   /        coupler   about B, to C
+      A             \ /         rocker    about D, to an end C' of its own
     -----          --D--
 
 Readings that contradict each other come apart in the picture, as they do in the log. A link between
