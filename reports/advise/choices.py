@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 from models.errors import EngineError
 from reports.plan.study import load_study
-from reports.results.settings_text import OWN, value_text
+from reports.results.variants import OWN, value_text
 from sim.engine import SettingValue
 from sim.registry import engine
 from sim.settings import profile_of, resolved

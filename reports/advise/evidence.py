@@ -17,7 +17,7 @@ from models.scene import Scene
 from reports.advise.choices import Choice, key_of
 from reports.advise.demand import Demand
 from reports.plan.key import shape_digest
-from reports.results.fits.reach import interpolate
+from reports.results.fits.curves import interpolate
 from reports.results.lines import Line
 from reports.store.reader import Stored
 from sim.registry import engine

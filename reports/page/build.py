@@ -17,8 +17,8 @@ from reports.page.sections import OF_WAYS, SECTIONS
 from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion
 from reports.page.sections.section import BUDGET, PageReport, Section
-from reports.results.looks import Look
 from reports.results.overview import Report
+from reports.results.variants import Look
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored
 

@@ -34,8 +34,7 @@ from reports.own_model.sentences import (
 from reports.page.build import Head, assembled
 from reports.page.sections.motion import scene_words
 from reports.page.sections.section import Section, name_text, sentence_text
-from reports.results.looks import DASHES, Look
-from reports.results.settings_text import value_text
+from reports.results.variants import DASHES, Look, value_text
 
 
 def model_page(judged: JudgedModel, facts: Mapping[str, str]) -> str:

@@ -20,9 +20,9 @@ from reports.output.write import check_folder, write
 from reports.plan.chosen import PROFILES, chosen_engines, chosen_profiles
 from reports.plan.forces import silent_note
 from reports.requests.options import Engines, Forces, Jobs
-from reports.stability.all_cases import CATALOGUE
 from reports.stability.case import Case
 from reports.stability.critical import command
+from reports.stability.grading import CATALOGUE
 from reports.stability.matrix import FILE, Matrix, read_matrix, run_rows, to_json
 from reports.stability.running import CaseLine, run_lines, run_one
 from reports.stability.table import show, show_run

@@ -44,7 +44,7 @@ class Parts:
     footer     the lines under the table, `reports.verify.cell_table.Part` each
     faults     the faults that are planted in its runs, a `reports.selftest.fault.FaultSet`
     cases      the hard cases of its scenes, by group (`reports.stability.case.Case`)
-    series     what hard runs are compared with, by name (`reports.stability.yardstick.Yardstick`)
+    series     what hard runs are compared with, by name (`reports.stability.case.Yardstick`)
     results    what is said of its stored cells, a `reports.results.result_kind.ResultKind`
     figures    its figures of a store, by name (`reports.figures.drawing.Drawing`)
     section    its section of the page (`reports.page.sections.section.WaySection`)

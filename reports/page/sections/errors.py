@@ -12,12 +12,11 @@ from reports.output.numbers import count, error_text
 from reports.page.sections.section import Section
 from reports.quantities import QUANTITIES
 from reports.quantities.quantity import tolerance_name
-from reports.results.candidates import Candidate
+from reports.results.candidates import Candidate, front, front_over_all
 from reports.results.cost import MEANS, Costs
 from reports.results.fits.line import LineFit
 from reports.results.lines import Line, lines
 from reports.results.overview import Report
-from reports.results.pareto import front, front_over_all
 from reports.results.result_kind import TARGETS
 
 SHARES = {

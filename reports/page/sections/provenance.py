@@ -10,11 +10,9 @@ from collections.abc import Mapping, Sequence
 
 from reports.output.provenance import crankcheck_version
 from reports.page.sections.section import Section
-from reports.results.lines import Line
-from reports.results.looks import Look
-from reports.results.one_processor import left_out
+from reports.results.lines import Line, left_out
 from reports.results.overview import Report
-from reports.results.settings_text import usual, value_text
+from reports.results.variants import Look, usual, value_text
 
 
 def provenance(report: Report) -> Section:

@@ -17,10 +17,9 @@ from reports.compare.free.some_samples import first_samples
 from reports.compare.series import length
 from reports.compare.tracks import Track, tracks
 from reports.quantities.free import GEOMETRY, PHASE
-from reports.stability.case import Trial
+from reports.stability.case import Trial, Yardstick
 from reports.stability.error_series import ErrorSeries, lacking, nearest, widest
-from reports.stability.toggle import at_toggle, thrown_motion, thrown_start
-from reports.stability.yardstick import Yardstick
+from reports.stability.other_truths import at_toggle, thrown_motion, thrown_start
 from sim.engine import Run
 
 LOOKS = 1001

@@ -27,7 +27,7 @@ from reports.compare.jumps import NEAR, near_jumps
 from reports.compare.loading import inertia_share, load_slopes, loading
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import Evidence
-from reports.stability.all_cases import CATALOGUE
+from reports.stability.grading import CATALOGUE
 from sim.engine import Run
 from sim.run import run
 from tests.worlds.facts import with_facts
