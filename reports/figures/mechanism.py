@@ -25,8 +25,7 @@ from reports.drawing.names import Name, Sheet, names
 from reports.drawing.shape import PATH_SAMPLES, box_of, clearest, turn_of
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, width_in
-from reports.results.origin import facts_of
-from reports.results.overview import Report
+from reports.results.overview import Report, facts_of
 
 FREE_SAMPLES = 2401
 """Of the paths of what was let go, which are gone along many times."""

@@ -19,12 +19,13 @@ from reports.output.provenance import provenance
 from reports.output.write import Outputs
 from reports.plan.chosen import chosen_engines
 from reports.requests.options import Jobs, option, output_option
-from reports.selftest.all_faults import RUNS, chosen_faults
 from reports.selftest.fault import PROFILE, RunKind
 from reports.selftest.table import place_row, show
 from reports.selftest.trial import (
+    RUNS,
     Passed,
     Verdict,
+    chosen_faults,
     healthy,
     passed_by,
     passes,

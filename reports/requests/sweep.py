@@ -165,7 +165,7 @@ def sweep(
         What can be told of the arguments before running; a folder that is not to be written.
     """
     from reports.output.console import terminal
-    from reports.sweep.whole import swept
+    from reports.sweep.running import swept
 
     where = path_of(folder, "folder")
     chosen = {"scenes": scenes, "engines": engines, "profiles": profiles}
@@ -239,7 +239,7 @@ class SweepRequest:
         request before running.
         """
         from reports.requests.sweep_text import show_sweep
-        from reports.sweep.whole import Manner, swept
+        from reports.sweep.running import Manner, swept
 
         limits = checked_limits(self.limit_s, self.memory_gb)
         manner = Manner(

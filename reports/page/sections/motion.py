@@ -25,8 +25,7 @@ from reports.drawing.moving import (
 )
 from reports.drawing.packed import packed, size_of
 from reports.output.numbers import error_text
-from reports.page.sections.section import Section
-from reports.page.thinning import BUDGET, chosen, steps_held
+from reports.page.sections.section import BUDGET, Section, chosen, steps_held
 from reports.results.error_parts import CurveBody, Parts, Split, split, worst_body
 from reports.results.lines import Line
 from reports.results.overview import Report

@@ -1,9 +1,5 @@
 """Hard cases of elastic links, by the group of the catalogue."""
 
-from reports.stability.catalogue import (
-    elastic_links,
-)
+from reports.stability.catalogue import elastic_links
 
-CASES = {
-    "elastic links": elastic_links.CASES,
-}
+CASES = {"elastic links": elastic_links.CASES}
