@@ -20,7 +20,7 @@ from models.motion import State
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.sweep.measured import Repeats, timed_in_turns
-from reports.tune.timing import GUESS_US
+from reports.tune.attempt import GUESS_US
 from reports.workers.isolated import Isolated, Limits
 from sim.engine import Settings
 from sim.exudyn import knobs as exudyn_knobs

@@ -10,8 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from reports.selftest.all_faults import FAULTS
-from reports.selftest.trial import sites
+from reports.selftest.trial import FAULTS, sites
 from sim.registry import engine
 from tests.test_architecture import ROOT
 from tests.worlds.command_line import flat, told

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from reports.selftest.all_faults import FAULTS
-from reports.stability.all_cases import CATALOGUE
+from reports.selftest.trial import FAULTS
+from reports.stability.grading import CATALOGUE
 from tests.worlds.command import PYTHON
 from tests.worlds.pages import blocks, commands, follows, ran, same, threads, words
 from tests.worlds.tiers import slowly

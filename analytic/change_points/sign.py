@@ -31,6 +31,7 @@ SAFETY = 2.0
 
 Index = NDArray[np.intp]
 Unknown = Turning | Sliding
+Series = tuple[Array, ...]
 Solved = Callable[[Array], tuple[Unknown, Unknown]]
 """The two unknowns of a dyad at driver angles, per unit speed of the driver, with bounds."""
 
@@ -172,11 +173,7 @@ def _levels(found: Unknown, theta: Array) -> tuple[Array, Array]:
 
 
 def put(
-    unknown: First,
-    shape: tuple[int, ...],
-    index: Index,
-    values: tuple[Array, ...],
-    bounds: tuple[Array, ...],
+    unknown: First, shape: tuple[int, ...], index: Index, values: Series, bounds: Series
 ) -> First:
     """An unknown over all samples, its values and bounds at those of ``index`` replaced."""
 

@@ -14,10 +14,9 @@ from models.files.reading import parse_scene
 from models.laws import ConstantSpeed
 from models.loads import ConstantFriction
 from models.scene import Scene
-from reports.advise.choices import Choice, key_of
-from reports.advise.demand import Demand
-from reports.plan.key import shape_digest
-from reports.results.fits.reach import interpolate
+from reports.advise.demand import Choice, Demand, key_of
+from reports.plan.grid import shape_digest
+from reports.results.fits.curves import interpolate
 from reports.results.lines import Line
 from reports.store.reader import Stored
 from sim.registry import engine

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from models.errors import harmless
+from models.errors import few, harmless
 from reports.advise.advice import Advice, Offer
-from reports.advise.look import WORDS
-from reports.advise.remarks import remarks
-from reports.advise.search import Worst
-from reports.output.columns import hanging, plain_table
-from reports.output.numbers import count, short
+from reports.advise.demand import Demand
+from reports.advise.search import WORDS, SearchResult, Worst
+from reports.output.console import hanging, plain_table, say_whole
+from reports.output.numbers import count, finite, short
 from reports.plan.steps import LEAST_STEPS_PER_TURN
+from sim.registry import engine
 
 WIDE, WIDEST = 76, 96
 """Columns of a terminal that have room for all, and for more room between."""
@@ -37,7 +38,7 @@ def show(console: Console, advice: Advice) -> None:
     console.print()
     for offer in advice.best:
         if text := advice.snippet(offer):
-            console.print(text, markup=False, highlight=False, soft_wrap=True)
+            say_whole(console, text)
     for label, text in _settings(advice):
         hanging(console, f"{label}: ", text, style="dim")
     console.print(Text(footer(advice), "dim"), highlight=False)
@@ -202,3 +203,116 @@ def _of_study(advice: Advice) -> Iterator[str]:
         yield f"Nothing of the study in {folder} serves: all was run now."
     for text in known.refusals:
         yield f"Run now: {text}."
+
+
+SHOWN = 3
+"""Numbers of sub-steps that a sentence names."""
+
+
+def remarks(advice: Advice) -> Iterator[tuple[str, str]]:
+    """The choices that something is said of, and what."""
+    groups: dict[str, list[str]] = {}
+    for offer in advice.offers:
+        for text in filter(None, _of(advice, offer)):
+            groups.setdefault(text, []).append(offer.reached.choice.label)
+    for text, labels in groups.items():
+        yield ", ".join(labels), text
+
+
+def _of(advice: Advice, offer: Offer) -> Iterator[str]:
+    """What is said of one; "" where there is nothing."""
+    reached = offer.reached
+    yield reached.ended.reason if reached.ended else ""
+    yield _unsteady(reached)
+    yield _growth(reached.promise or reached.at_frame)
+    yield advice.caution(offer)
+
+
+def _unsteady(reached: SearchResult) -> str:
+    """That it was luck that some numbers reached the target."""
+    if not reached.unsteady:
+        return ""
+    numbers = few((str(n) for n in reached.unsteady), SHOWN)
+    return f"within with {numbers} sub-steps, and not with more: that is luck, and no promise"
+
+
+def _growth(worst: Worst | None) -> str:
+    """How an error grows."""
+    if worst is None or not worst.seen.grows:
+        return ""
+    return (
+        f"the error grows: with {worst.substeps} a frame it is {worst.seen.growth:.2g} times as "
+        "large in the second half of the run"
+    )
+
+
+def document(advice: Advice) -> str:
+    """The text of the file; what is not finite is null."""
+    demand, known = advice.demand, advice.known
+    content = {
+        "provenance": dict(advice.facts),
+        "asked": {
+            "scenes": [scene.name for scene in demand.scenes],
+            "speed_rad_s": demand.speed_rad_s,
+            "frame_s": demand.frame_s,
+            "frames_per_turn": demand.frames_per_turn,
+            "turns": demand.turns,
+            "target": demand.target,
+            "most_substeps": demand.most,
+        },
+        "study": None
+        if known.folder is None
+        else {
+            "folder": str(known.folder),
+            "turns": known.turns,
+            "lines": len(known.measured),
+            "not_used": list(known.refusals),
+        },
+        "noise": advice.noise,
+        "best": [offer.reached.choice.label for offer in advice.best],
+        "settings": [_offer(advice, offer) for offer in advice.offers],
+    }
+    return json.dumps(finite(content), indent=1) + "\n"
+
+
+def _offer(advice: Advice, offer: Offer) -> Mapping[str, object]:
+    """One choice."""
+    reached, demand = offer.reached, advice.demand
+    choice, price = reached.choice, offer.price
+    return {
+        "engine": choice.engine,
+        "version": engine(choice.engine).version(),
+        "name": choice.name,
+        "profile": choice.profile,
+        "settings": dict(choice.settings),
+        "at_frame": {"word": word(reached.at_frame, demand.target)}
+        | _worst(demand, reached.at_frame),
+        "promise": reached.promise
+        and _worst(demand, reached.promise) | {"held_at": list(reached.held_at)},
+        "unsteady": list(reached.unsteady),
+        "nearest": reached.nearest and _worst(demand, reached.nearest),
+        "ended": reached.ended and {"status": reached.ended.status, "reason": reached.ended.reason},
+        "runs": reached.runs,
+        "us_per_step": price and price.us_per_step,
+        "ms_per_simulated_s": price and 1e3 * price.s_per_s,
+        "of_real_time": price and price.s_per_s,
+        "dearest_scene": price and price.scene,
+        "times_cheapest": price and offer.s_per_s / advice.promises[0].s_per_s,
+        "snippet": advice.snippet(offer),
+    }
+
+
+def _worst(demand: Demand, worst: Worst | None) -> dict[str, object]:
+    """The numbers of some sub-steps; none where they were not run."""
+    if worst is None:
+        return {}
+    return {
+        "substeps": worst.substeps,
+        "dt_s": demand.frame_s / worst.substeps,
+        "steps_per_turn": demand.steps_per_turn(worst.substeps),
+        "place_error": worst.error,
+        "scene": worst.scene,
+        "status": worst.seen.status,
+        "growth": worst.seen.growth,
+        "measured": "study" if worst.seen.studied else "now",
+    }

@@ -11,6 +11,8 @@ import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cached_property
+from pathlib import Path
+from traceback import walk_tb
 from typing import Annotated, Any, NoReturn, Protocol, cast, get_args, get_origin, get_type_hints
 
 import typer
@@ -18,7 +20,6 @@ from rich.console import Console
 from typer.core import TyperCommand, TyperGroup
 
 from models.errors import CrankcheckError, harmless
-from reports.cli.broken_package import broken_package
 from reports.cli.commands import COMMANDS
 from reports.output.console import (
     UNWRITABLE,
@@ -27,7 +28,7 @@ from reports.output.console import (
     readable_everywhere,
     terminal,
 )
-from reports.requests.named import named
+from reports.requests.options import named, note_of
 from reports.workers.signals import Stopped, broken_pipe_ends, finish, install, seen
 
 BAD_INPUT, INTERNAL, INTERRUPTED, BROKEN_PIPE = 2, 70, 130, 141
@@ -192,6 +193,7 @@ def _parameter(field: dataclasses.Field[Any], note: object) -> inspect.Parameter
     """A field as typer takes it: several texts as a list, None where none is given."""
     kind, option = get_args(note)
     default = inspect.Parameter.empty if field.default is dataclasses.MISSING else field.default
+    option = note_of(field.name, kind, option, default)
     if kind == Sequence[str]:
         kind, default = list[str], default or None
     note = Annotated[kind, option]
@@ -243,3 +245,19 @@ def _engines(
         with guarded():
             request = named(COMMANDS["engines"][0])
         _end_with(request(settings))
+
+
+HOME = Path(__file__).parents[2]
+"""The folder of our packages."""
+
+
+def broken_package(error: Exception) -> str:
+    """The package, not one of ours, in whose import an error was raised; empty where it was not in
+    one, as a fault in what we do with it."""
+    for frame, _ in walk_tb(error.__traceback__):
+        place = Path(frame.f_code.co_filename)
+        ours = place.is_relative_to(HOME) and "site-packages" not in place.relative_to(HOME).parts
+        name = str(frame.f_globals.get("__name__", "__main__"))
+        if frame.f_code.co_name == "<module>" and not ours and name != "__main__":
+            return name.partition(".")[0]
+    return ""

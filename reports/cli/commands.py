@@ -44,7 +44,7 @@ Run a scene in an engine and write its log; exit 1 when the run did not end well
 Write the scene as MJCF, assembled, with its state as the keyframe."""),
     "scenes": ("requests.scenes:ScenesRequest", """
 List the shipped scenes with their structure, driver and source."""),
-    "view": ("requests.view:ViewRequest", """
+    "view": ("requests.export:ViewRequest", """
 Open MuJoCo's viewer, or, without a screen or with -o, draw the motion into a file."""),
     "judge": ("requests.judge:JudgeRequest", """
 Hold a log of your own to the closed form; exit 1 when out of tolerance."""),
@@ -106,7 +106,7 @@ List the engines with their version, or the command that installs them, and prof
 Say what of the contract of engines one holds, and how to mend what it does not.
 
 The exit code is 0 where it holds all of it, 1 where it does not."""),
-    "recipe forces": ("requests.force_recipe:ForceRecipeRequest", """
+    "recipe forces": ("requests.export:ForceRecipeRequest", """
 Show a program that reads reactions and the driving torque right; it needs the engine alone.
 
 Run it to have them over a turn, as lines of numbers with commas."""),

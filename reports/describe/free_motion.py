@@ -48,25 +48,25 @@ def free_tables(free: FreeMotion, motion: Motion, width: int) -> list[Table]:
     return tables_over_time(free.scene, motion, bodies, width)
 
 
-def free_notes(free: FreeMotion, until_s: float) -> list[str]:
+def free_notes(motion: FreeMotion, until_s: float) -> list[str]:
     """How sure the motion is up to an instant [s], and what it goes through until then, in
     sentences."""
     last = np.array([until_s])
-    off, growth = float(free.error_rad(last)[0]), float(free.sensitivity(last)[0])
-    angle = f"the angle of {free.scene.driver.link}" if free.by_dyads else "every link's angle"
+    off, growth = float(motion.error_rad(last)[0]), float(motion.sensitivity(last)[0])
+    angle = f"the angle of {motion.scene.driver.link}" if motion.by_dyads else "every link's angle"
     notes = [
         f"Integrated with high precision, no closed form: {angle} is off by at most "
         f"{error_text(off)} rad at {until_s:g} s.",
         f"Sensitivity {growth:.3g}: what the start is changed by has grown so many times by then.",
     ]
-    passed = [one for one in free.passages if one.time_s <= until_s]
+    passed = [one for one in motion.passages if one.time_s <= until_s]
     limits = [
         f"{math.degrees(one.driver_rad):.6g} deg at {one.time_s:.6g} s ({one.dyad})"
         for one in passed
     ]
     if limits:
-        notes.append(f"Limits in which {free.scene.driver.link} turns back: {_few(limits)}.")
-    edges = [f"{time_s:.6g}" for time_s in free.edges_s if time_s <= until_s]
+        notes.append(f"Limits in which {motion.scene.driver.link} turns back: {_few(limits)}.")
+    edges = [f"{time_s:.6g}" for time_s in motion.edges_s if time_s <= until_s]
     if edges:
         instants = count(len(edges), "instant")
         notes.append(f"What acts is not smooth at {instants}: {_few(edges)} s.")
@@ -76,3 +76,14 @@ def free_notes(free: FreeMotion, until_s: float) -> list[str]:
 def _few(words: list[str]) -> str:
     left = len(words) - NAMED
     return ", ".join(words[:NAMED]) + (f", and {left} more" if left > 0 else "")
+
+
+LEAST, MOST, IN_A_TURN, IN_A_SECOND = 121, 1201, 45, 60
+"""Instants of the drawing: at least and at most, in a turn, and in a second."""
+
+
+def instants(free: FreeMotion) -> int:
+    """How many a free motion is drawn at."""
+    turns = free.peak_speed_rad_s * free.until_s / math.tau
+    wanted = max(IN_A_TURN * turns, IN_A_SECOND * free.until_s)
+    return int(np.clip(wanted, LEAST, MOST))

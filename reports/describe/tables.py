@@ -14,7 +14,7 @@ from models.driver import driver_place
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.facts import SpeedFacts
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 
 WIDE = 100
 Columns = list[tuple[str, Array]]

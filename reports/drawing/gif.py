@@ -21,7 +21,6 @@ from models.driver import driver_stands
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 from reports.drawing.force_arrows import ForceArrows, force_arrows
-from reports.drawing.plotted_arrows import INK, draw_arrows, scale_bar
 from reports.drawing.shape import (
     PATH_SAMPLES,
     box_of,
@@ -31,6 +30,47 @@ from reports.drawing.shape import (
     turn_of,
 )
 from reports.output.numbers import readable
+from reports.way.way import way_of
+
+INK = "#1f2933"
+"""Everything that has not the colour of a link."""
+
+
+def draw_arrows(axes: Axes, arrows: ForceArrows, motion: Motion, index: int) -> None:
+    """The forces at a sample, each in the colour of the body that it acts on."""
+    colours = colours_of(arrows.scene)
+    for arrow in arrows.at(motion, index):
+        colour = colours.get(arrow.body, INK)
+        end = arrow.head(arrows.size)[1:].mean(axis=0) if arrow.is_whole else arrow.tip
+        axes.plot(*np.array([arrow.tail, end]).T, color="white", linewidth=3.2, zorder=6)
+        axes.plot(*np.array([arrow.tail, end]).T, color=colour, linewidth=1.6, zorder=6)
+        if arrow.is_whole:
+            look: dict[str, Any] = {"facecolor": colour, "edgecolor": "white", "linewidth": 0.5}
+            axes.fill(*arrow.head(arrows.size).T, zorder=7, **look)
+
+
+def scale_bar(axes: Axes, arrows: ForceArrows, box: tuple[Array, Array], fontsize: float) -> None:
+    """How long a force is drawn, in the lower right corner of the box."""
+    if not arrows.bar_n:
+        return
+    long = arrows.bar_n * arrows.m_per_n
+    right, low = float(box[1][0]) - 0.03 * arrows.size, float(box[0][1]) + 0.03 * arrows.size
+    tick = 0.012 * arrows.size
+    ends = [right - long, right - long, right - long, right, right, right]
+    high = [low - tick, low + tick, low, low, low + tick, low - tick]
+    axes.plot(ends, high, color=INK, linewidth=1.2, zorder=8)
+    axes.annotate(
+        f"{arrows.bar_n:g} N",
+        (right - long / 2, low),
+        (0, 2.5),
+        textcoords="offset points",
+        ha="center",
+        va="bottom",
+        fontsize=fontsize,
+        color=INK,
+        zorder=8,
+    )
+
 
 FRAMES, FRAME_S = 60, 0.06
 STRIP = 6
@@ -44,7 +84,7 @@ def animation(scene: Scene, *, with_forces: bool = False) -> bytes:
     figure = _figure(turn.box, columns=1, rows=1, width=6.4)
     canvas = FigureCanvasAgg(figure)
     axes = figure.add_subplot()
-    _legend(figure, scene, with_forces=with_forces)
+    _legend(figure, turn)
     frames = []
     for index in range(FRAMES):
         axes.clear()
@@ -73,7 +113,7 @@ def strip(scene: Scene, *, with_forces: bool = False) -> bytes:
     figure = _figure(turn.box, columns, rows, width=4.0)
     for index in range(STRIP):
         _draw(figure.add_subplot(rows, columns, index + 1), turn, index)
-    _legend(figure, scene, with_forces=with_forces)
+    _legend(figure, turn)
     buffer = io.BytesIO()
     FigureCanvasAgg(figure).print_png(buffer)  # type: ignore[no-untyped-call]  # as above
     return buffer.getvalue()
@@ -92,13 +132,12 @@ class _Turn:
 
     @staticmethod
     def of(scene: Scene, positions: int, *, with_forces: bool) -> _Turn:
-        most_s = FRAMES * FRAME_S if scene.is_free else math.inf
+        most_s = way_of(scene).drawn_s(FRAMES * FRAME_S)
         path = turn_of(scene, PATH_SAMPLES, most_s, with_forces=with_forces)
         motion = turn_of(scene, positions + 1, most_s, with_forces=with_forces)
-        if not with_forces:
-            return _Turn(scene, motion, path, box_of(path))
-        arrows = force_arrows(scene, path)
-        return _Turn(scene, motion, path, arrows.box(path), arrows)
+        arrows = None if path.forces is None else force_arrows(scene, path)
+        box = box_of(path) if arrows is None else arrows.box(path)
+        return _Turn(scene, motion, path, box, arrows)
 
 
 def _figure(box: tuple[Array, Array], columns: int, rows: int, width: float) -> Figure:
@@ -120,11 +159,11 @@ def _figure(box: tuple[Array, Array], columns: int, rows: int, width: float) -> 
     return figure
 
 
-def _legend(figure: Figure, scene: Scene, *, with_forces: bool) -> None:
+def _legend(figure: Figure, turn: _Turn) -> None:
     """The links by colour, below everything that moves."""
-    colours = colours_of(scene)
+    colours = colours_of(turn.scene)
     handles = [Line2D([], [], color=colours[name], linewidth=4, label=name) for name in colours]
-    if with_forces:
+    if turn.arrows is not None:
         words = "force on the body of that colour, black: on a block"
         look: dict[str, Any] = {"color": INK, "linewidth": 1.6, "marker": ">", "markersize": 5}
         handles.append(Line2D([], [], label=words, **look))

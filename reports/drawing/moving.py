@@ -4,16 +4,21 @@ off it.
 The page draws ``reference + factor * displacement``; so the two are kept apart, each with its own
 scale, and an error of 1e-9 can be magnified a millionfold. Nothing here knows of cells or sections:
 any motion of a scene can be drawn with it. The drawing itself is ``assets/mechanism.js``.
+
+A point is drawn at ``rigid + factor * (elastic - rigid)``, an elastic link bent by ``factor`` times
+its deflection from the line between its pins.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from models.array import Array
+from models.cut_links import line_of
 from models.driver import driver_axis, driver_course, driver_unit
 from models.laws import Oscillating
 from models.motion import Motion
@@ -21,7 +26,7 @@ from models.scene import GROUND, Scene
 from reports.compare.last_turn import Trace
 from reports.compare.tracks import angle_error
 from reports.drawing.packed import packed
-from reports.drawing.true_motion import true_motion
+from reports.drawing.shape import true_motion
 
 INSTANTS = 91
 """Over one period, both ends included, where no trace says which."""
@@ -150,3 +155,52 @@ def _at(time_s: Array, own_s: Array, row: Array, period_s: float) -> Array:
     if len(own_s) == len(time_s) and np.allclose(own_s, time_s, rtol=0.0, atol=1e-9 * period_s):
         return row
     return np.interp(time_s, own_s, row, left=math.nan, right=math.nan)
+
+
+SHOWN = 0.06
+"""Of the size of what moves: about how far the largest displacement is drawn."""
+
+
+def magnification(
+    elastic: Motion, rigid: Motion, bent: Mapping[str, Array], size_m: float
+) -> float:
+    """The factor, 1, 2 or 5 times a power of ten and at least 1, that makes displacements seen."""
+    moved = [
+        np.hypot(*(point.position - rigid.points[name].position).T).max()
+        for name, point in elastic.points.items()
+    ]
+    largest = float(max([*moved, *(np.abs(each).max() for each in bent.values())]))
+    if not largest > 0.0:
+        return 1.0
+    wanted = SHOWN * size_m / largest
+    power = 10.0 ** math.floor(math.log10(wanted))
+    return max(1.0, power * max(x for x in (1.0, 2.0, 5.0) if x * power <= wanted * (1.0 + 1e-9)))
+
+
+@dataclass(frozen=True)
+class Magnified:
+    """Both motions at the same instants; ``bent`` are deflections (T, K) at equal parts of each
+    elastic link [m]."""
+
+    scene: Scene
+    elastic: Motion
+    rigid: Motion
+    bent: Mapping[str, Array]
+    factor: float
+
+    def place(self, point: str, index: int) -> Array:
+        """A point at a sample [m], (2,)."""
+        exact = self.rigid.points[point].position[index]
+        moved = self.elastic.points[point].position[index] - exact
+        return np.asarray(exact + self.factor * moved)
+
+    def outline(self, link: str, index: int) -> Array:
+        """The line or the corners of a link at a sample [m], (K, 2)."""
+        if link not in self.bent:
+            return np.array([self.place(p, index) for p in self.scene.links[link].points])
+        start, end = (self.place(pin, index) for pin in line_of(self.scene, link).pins)
+        along = end - start
+        across = np.array([-along[1], along[0]]) / math.hypot(*along)
+        off = self.factor * self.bent[link][index]
+        shares = np.linspace(0.0, 1.0, off.size)
+        return np.asarray(start + np.outer(shares, along) + np.outer(off, across))

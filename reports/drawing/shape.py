@@ -7,15 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.forces.kinetostatics import forces
-from analytic.kinematics import solve
 from models.array import Array
-from models.errors import CrankcheckError
 from models.laws import Oscillating
-from models.motion import Motion
+from models.motion import Forces, Motion
 from models.scene import GROUND, Scene, Slider
-from reports.compare.free.free_truth import kept_motion
-from reports.drawing.beside_locking import clear_of_locking
+from reports.way.way import way_of
 
 PATH_SAMPLES = 361
 MARGIN = 0.14
@@ -25,6 +21,9 @@ COLOURS = ("#d1495b", "#2e6f9e", "#3a7d44", "#b7791f", "#6b4e9b", "#00798c")
 TRIED = 24
 """Positions of a turn of which the clearest is drawn."""
 
+BESIDE = 5.0 / 360.0
+"""The part of a turn on either side of a locked range that is not drawn."""
+
 
 def turn_of(
     scene: Scene, samples: int, most_s: float = math.inf, *, with_forces: bool = False
@@ -33,26 +32,12 @@ def turn_of(
     free motion. A driver that swings begins at an end of its swing, so that an even number of equal
     parts of its period shows the other end as well. Its forces are those outside of dead points,
     and clear of where friction locks."""
-    law = scene.driver.law
+    law, way = scene.driver.law, way_of(scene)
     time_s = np.linspace(0.0, min(law.period_s, most_s), samples)
-    if scene.is_free:
-        return _free(scene, time_s, with_forces=with_forces)
     if isinstance(law, Oscillating):
         time_s += (math.pi / 2 - law.phase_rad) / law.frequency_rad_s % law.period_s
-    motion = solve(scene, time_s, bound=False)
-    if not with_forces:
-        return motion
-    acting = forces(scene, time_s, bound=False, skip_dead_points=True)
-    return replace(motion, forces=clear_of_locking(acting))
-
-
-def _free(scene: Scene, time_s: Array, *, with_forces: bool) -> Motion:
-    """The free motion of a scene. Raises CrankcheckError for forces, which it is not drawn with."""
-    if with_forces:
-        raise CrankcheckError(
-            f"{scene.name}: let go, it is drawn without its forces; leave them out"
-        )
-    return kept_motion(scene, float(time_s[-1])).at(time_s, bound=False)
+    acting = way.drawn_forces(scene, time_s) if with_forces else None
+    return replace(way.motion(scene, time_s), forces=acting)
 
 
 def clearest(path: Motion) -> int:
@@ -92,3 +77,24 @@ def colours_of(scene: Scene) -> dict[str, str]:
     """A colour for every link, the driver's first."""
     names = sorted(scene.links, key=lambda name: name != scene.driver.link)
     return {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
+
+
+def clear_of_locking(acting: Forces) -> Forces:
+    """The forces of a turn to be drawn: those beside where friction locks grow past all bounds, and
+    would leave the others too small to see."""
+    locked = acting.has_equilibria(0)
+    if not locked.any():
+        return acting
+    reach = math.ceil(BESIDE * locked.size)
+    near = np.any([np.roll(locked, k) for k in range(-reach, reach + 1)], axis=0)
+
+    def drawn(series: Array) -> Array:
+        return np.asarray(np.where(near if series.ndim == 1 else near[:, None], np.nan, series))
+
+    return replace(acting.each_series(drawn), friction_solution=acting.friction_solution)
+
+
+def true_motion(scene: Scene, time_s: Array) -> Motion:
+    """How a scene moves in truth at times [s], driven or let go, without bounds. Raises
+    CrankcheckError where it does not."""
+    return way_of(scene).motion(scene, time_s)

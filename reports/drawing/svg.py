@@ -61,7 +61,7 @@ def svg(
     CrankcheckError where the mechanism can not go through all of that, or there are no forces.
     """
     path = turn_of(scene, SAMPLES, most_s, with_forces=with_forces)
-    arrows = force_arrows(scene, path) if with_forces else None
+    arrows = None if path.forces is None else force_arrows(scene, path)
     low, high = box_of(path) if arrows is None else arrows.box(path)
     at = clearest(path) if arrows is None else arrows.largest_at(path)
     per_m = float(min(WIDTH / (high[0] - low[0]), HEIGHT / (high[1] - low[1])))

@@ -19,7 +19,7 @@ from models.driver import Controlled
 from models.laws import ConstantSpeed
 from models.motion import Motion
 from reports.describe.elastic_course import Apart, ElasticCourse
-from reports.drawing.magnified import Magnified, magnification
+from reports.drawing.moving import Magnified, magnification
 from reports.drawing.shape import MARGIN, box_of, colours_of, guide_direction, size_of_motion
 from reports.figures.figure_set import FigureSet, note
 from reports.figures.sheet import ONE, SIDES, Panels, sheet

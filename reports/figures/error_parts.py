@@ -19,15 +19,14 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 from models.driver import driver_axis
 from models.scene import Scene
 from reports.drawing.moving import told_places
+from reports.figures.drawing import ends
 from reports.figures.grids import corner_words, grid, tenfold
 from reports.figures.style import INK, Look, power_of_ten
 from reports.output.numbers import short
-from reports.results.drawable import ends
 from reports.results.error_parts import Parts, Split, split, worst_body
 from reports.results.lines import Line, named
-from reports.results.looks import label
-from reports.results.origin import notes
-from reports.results.overview import Report
+from reports.results.overview import Report, notes
+from reports.results.variants import label
 
 STEPS = 720
 """Steps per turn of the cells that are shown, or the nearest that ended well: those of verify."""

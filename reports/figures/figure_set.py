@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from models.scene import Scene
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law
 from reports.figures.saving import FORMATS, saved
 from reports.figures.style import styled
 from reports.output.numbers import count

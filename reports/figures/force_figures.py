@@ -14,8 +14,8 @@ from matplotlib.patches import Patch
 
 from models.array import Array
 from models.driver import driver_course
-from reports.describe.force_frame import acted_on
-from reports.describe.friction import cycle_of, cycle_words, flow_of
+from reports.describe.force_tables import cycle_of, cycle_words, flow_of
+from reports.describe.frame import acted_on
 from reports.drawing.shape import colours_of
 from reports.figures.figure_set import FigureSet
 from reports.figures.force_turn import ForceTurn

@@ -19,8 +19,8 @@ from models.laws import ConstantSpeed
 from models.motion import Forces, Motion
 from models.scene import Scene
 from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_forces
-from reports.drawing.beside_locking import clear_of_locking
 from reports.drawing.moving import goes_round
+from reports.drawing.shape import clear_of_locking
 from reports.figures.figure_set import loads_told, note
 from reports.figures.style import shorten
 

@@ -14,10 +14,10 @@ from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
 from models.driver import driver_shown, driver_stands
-from reports.describe.force_frame import acted_on
+from reports.describe.frame import acted_on
 from reports.drawing.force_arrows import force_arrows
-from reports.drawing.lettering import Label, place
 from reports.drawing.moving import goes_round
+from reports.drawing.names import Label, place
 from reports.drawing.shape import PATH_SAMPLES, colours_of, turn_of
 from reports.figures.force_turn import ForceTurn
 from reports.figures.mechanism import mechanism_at

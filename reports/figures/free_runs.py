@@ -14,17 +14,16 @@ from models.array import Array
 from models.scene import Scene
 from reports.compare.free.drift import window_means
 from reports.compare.last_turn import Trace
-from reports.describe.law import describe_law
-from reports.drawing.true_motion import true_motion
+from reports.describe.facts import describe_law
+from reports.drawing.shape import true_motion
+from reports.figures.drawing import around
 from reports.figures.grids import corner_words, grid, tenfold
 from reports.figures.marks import Mark, marks
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import INK, PAGE_IN, Look, logarithmic, mark_zero, power_of_ten, shorten
 from reports.output.numbers import duration, short
-from reports.results.drawable import around
 from reports.results.lines import named
-from reports.results.origin import notes
-from reports.results.overview import Report
+from reports.results.overview import Report, notes
 
 INSTANTS = 2401
 """At which the truth is drawn."""

@@ -18,16 +18,14 @@ from models.array import Array
 from models.driver import driver_stands
 from models.motion import Motion
 from models.scene import Scene
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law
 from reports.drawing.force_arrows import ForceArrows
-from reports.drawing.gif import draw_bodies
+from reports.drawing.gif import draw_arrows, draw_bodies, scale_bar
 from reports.drawing.names import Name, Sheet, names
-from reports.drawing.plotted_arrows import draw_arrows, scale_bar
 from reports.drawing.shape import PATH_SAMPLES, box_of, clearest, turn_of
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, width_in
-from reports.results.origin import facts_of
-from reports.results.overview import Report
+from reports.results.overview import Report, facts_of
 
 FREE_SAMPLES = 2401
 """Of the paths of what was let go, which are gone along many times."""

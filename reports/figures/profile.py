@@ -17,11 +17,10 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from reports.figures.grids import grid
 from reports.figures.marks import Mark, marks
 from reports.figures.style import power_of_ten
+from reports.results.candidates import performance_profile
 from reports.results.lines import named
-from reports.results.looks import label
-from reports.results.origin import notes
-from reports.results.overview import Report
-from reports.results.pareto import performance_profile
+from reports.results.overview import Report, notes
+from reports.results.variants import label
 from reports.way.result_kind import TARGETS
 
 FACTOR = "time over that of the fastest [-]"

@@ -15,16 +15,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from reports.figures.drawing import around, ends, timed
 from reports.figures.grids import grid
 from reports.figures.marks import Mark, marks
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, FRONT, logarithmic
-from reports.results.drawable import around, ends, timed
+from reports.results.candidates import front, front_over_all
 from reports.results.lines import Line, Named, named
-from reports.results.looks import label
-from reports.results.origin import notes
-from reports.results.overview import Report
-from reports.results.pareto import front, front_over_all
+from reports.results.overview import Report, notes
+from reports.results.variants import label
 
 COST = "time per simulated turn [s]"
 ALL = "all scenes: worst error, mean time"

@@ -7,18 +7,23 @@ import os
 import platform
 import shutil
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
+from filelock import FileLock, Timeout
+
+from models.errors import CrankcheckError
 from reports.history.environments import (
     EngineVersion,
     NotMeasuredError,
     clean_variables,
     held_numpy,
+    shortened,
 )
-from reports.history.install_errors import shortened
 from reports.output.provenance import crankcheck_version, processor
+from reports.output.write import check_folder
 from reports.workers.signals import Ended, Runner, leave_to_parent, run_child
 from sim.registry import declaration
 
@@ -123,3 +128,52 @@ def _not_run(ended: Ended) -> str:
         return f"not run: the process was ended by signal {-ended.code}"
     why = lines[-1].removeprefix("crankcheck: ") if lines else f"exit code {ended.code}"
     return shortened(f"not run: {why}")
+
+
+def user_cache(
+    platform: str = sys.platform, variables: Mapping[str, str] = os.environ
+) -> Path | None:
+    """The folder of crankcheck among the user's caches, as the system has it; None without a home.
+
+    A variable that names no absolute path counts for nothing, as the XDG specification has it.
+    """
+    named = variables.get("LOCALAPPDATA" if platform == "win32" else "XDG_CACHE_HOME", "")
+    if named and Path(named).is_absolute():
+        return Path(named) / "crankcheck"
+    try:
+        home = Path.home()
+    except RuntimeError:
+        return None
+    usual = {"win32": "AppData/Local", "darwin": "Library/Caches"}
+    return home / usual.get(platform, ".cache") / "crankcheck"
+
+
+def cache_folder(named: Path | None) -> Path:
+    """The folder that a user named, or the usual one, absolute and known to be writable.
+
+    Raises
+    ------
+    CrankcheckError
+        No usual place, or no right to write there.
+    """
+    folder = named or user_cache()
+    if folder is None:
+        raise CrankcheckError(
+            "history: there is no home folder to keep environments in; name one with --cache DIR"
+        )
+    check_folder(folder, "--cache")
+    return folder.resolve() / "history"
+
+
+@contextmanager
+def alone(path: Path, waiting: Callable[[], None]) -> Iterator[None]:
+    """The block is done by one process at a time; ``waiting`` is told when another is in it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    lock = FileLock(path)
+    try:
+        taken = lock.acquire(timeout=0)
+    except Timeout:
+        waiting()
+        taken = lock.acquire()
+    with taken:
+        yield

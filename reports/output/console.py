@@ -1,4 +1,4 @@
-"""Where output goes: a terminal as wide as it is, or a file or pipe that may be full or closed."""
+"""The terminal as wide as it is, or a file or pipe that may be full or closed; what is printed."""
 
 from __future__ import annotations
 
@@ -8,9 +8,15 @@ import os
 import re
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
 import typer
 from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from models.errors import harmless
+from reports.output.write import write
 
 TABLE_WIDTH = 100
 UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
@@ -60,3 +66,40 @@ def give_up_output() -> None:
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())
         os.close(nowhere)
+
+
+def say(console: Console, text: str, style: str = "") -> None:
+    """Print a text in which nothing is markup, and no number is coloured."""
+    console.print(text, style=style, highlight=False, markup=False)
+
+
+def say_whole(console: Console, *texts: str) -> None:
+    """Print each text that is not empty as `say`, its lines as long as they are, and nothing in it
+    that acts on a terminal."""
+    for text in filter(None, texts):
+        console.print(harmless(text), highlight=False, markup=False, soft_wrap=True)
+
+
+def put(console: Console, path: Path | None, text: str, what: str) -> None:
+    """Write a text into a file and say what it is, or to the terminal for None. Raises
+    CrankcheckError where the system refuses."""
+    if path is None:
+        console.file.write(text)
+        return
+    write(path, text)
+    say(console, harmless(f"{path}: {what}"))
+
+
+def plain_table(title: str | None = None, style: str = "bold", gap: int = 1) -> Table:
+    """A table without lines, ``gap`` spaces after every column; its title stands on the left."""
+    padding = (0, gap, 0, 0)
+    return Table(title=title, title_justify="left", title_style=style, box=None, padding=padding)
+
+
+def hanging(console: Console, head: str, text: str, style: str = "") -> None:
+    """Print a paragraph whose later lines stand below its text."""
+    grid = Table.grid(padding=0)
+    grid.add_column(no_wrap=True)
+    grid.add_column(overflow="fold")
+    grid.add_row(Text(head, style), Text(text, style))
+    console.print(grid)

@@ -80,3 +80,15 @@ def finite(value: object, digits: int | None = None) -> object:
         return number if math.isfinite(number) else None
     near = number if number.is_integer() else float(f"{number:.{digits}g}")
     return int(near) if near.is_integer() and abs(near) < 1e15 else near
+
+
+VALUES = ((10, "X"), (9, "IX"), (5, "V"), (4, "IV"), (1, "I"))
+
+
+def roman(number: int) -> str:
+    """IV for 4; of numbers from 1 to 39."""
+    letters = ""
+    for value, own in VALUES:
+        letters += own * (number // value)
+        number %= value
+    return letters

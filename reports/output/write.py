@@ -13,7 +13,8 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from models.errors import CrankcheckError
@@ -162,6 +163,38 @@ def check_outputs(
                 f"{taken[real]} and {option}: both name {path}; give each a file of its own"
             )
         taken[real] = option
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """The files that a request names, each None where it names none, by their options, and a folder
+    for all of them; ``names`` are those of the folder, with the option of the same content."""
+
+    files: Mapping[str, Path | None]
+    folder: Path | None = None
+    names: Mapping[str, str] = field(default_factory=dict)
+
+    def check(self, inputs: Iterable[Path | None] = ()) -> None:
+        """Refuse as `check_outputs`. Raises CrankcheckError."""
+        check_outputs(self.files, self.folder, tuple(self.names), inputs=inputs)
+
+    def write(self, contents: Mapping[str, Callable[[], bytes | str]]) -> None:
+        """Write what was asked for of contents by name, or by option; each whole or not at all.
+        Raises CrankcheckError."""
+        for name, content in contents.items():
+            inside = self.folder / name if self.folder and name in self.names else None
+            places = [*filter(None, (self.files.get(self.names.get(name, name)), inside))]
+            made = content() if places else ""
+            for place in places:
+                write(place, made)
+
+    @contextlib.contextmanager
+    def written(self, contents: Mapping[str, Callable[[], bytes | str]]) -> Iterator[None]:
+        """Write, and show in the block; a full disk costs the file, and not what is shown."""
+        try:
+            self.write(contents)
+        finally:
+            yield
 
 
 def _refuse_input(path: Path, option: str, inputs: Iterable[Path | None]) -> None:

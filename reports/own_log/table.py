@@ -15,7 +15,7 @@ from models.errors import cut, few, harmless
 from reports.causes.cause import Cause
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import share
-from reports.output.columns import hanging, plain_table
+from reports.output.console import hanging, plain_table
 from reports.output.junit import case_of, say, suite_of
 from reports.output.markdown import folded, plain, table
 from reports.output.numbers import count, error_text, short

@@ -16,7 +16,7 @@ from models.files.assemble import scene_text
 from reports.judge.halving import worst_place
 from reports.judge.rows import cell_row, error_row
 from reports.judge.rules import RULES
-from reports.output.columns import hanging, plain_table
+from reports.output.console import hanging, plain_table
 from reports.output.numbers import finite, short
 from reports.own_model.account import CheckedLine
 from reports.own_model.judged import JudgedModel, errors_of

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -16,10 +16,9 @@ from reports.output.numbers import NONE, count, duration, error_text, readable
 from reports.page.sections import OF_WAYS, SECTIONS
 from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion
-from reports.page.sections.section import PageReport, Section
-from reports.page.thinning import BUDGET
-from reports.results.looks import Look
+from reports.page.sections.section import BUDGET, PageReport, Section
 from reports.results.overview import Report
+from reports.results.variants import Look
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored
 
@@ -56,20 +55,20 @@ def page(stored: Stored, matrix: Matrix | None = None) -> str:
     """
     report = PageReport(stored, matrix)
     sections = {name: build(report) for name, build in SECTIONS.items()}
-    text = _rendered(report, sections)
+    text = render(report, sections.values())
     over = len(text.encode()) - MOST_BYTES
     for name, own in OF_WAYS.items():
         if over > 0 and sections[name] is not None and own.lighter is not None:
             sections[name] = own.lighter(report, max(BUDGET - over, 0))
-            text = _rendered(report, sections)
+            text = render(report, sections.values())
             over = len(text.encode()) - MOST_BYTES
     if over > 0 and report.driven is not None and sections["motion"] is not None:
         sections["motion"] = motion(report.driven, BUDGET - over)
-        text = _rendered(report, sections)
+        text = render(report, sections.values())
     over = len(text.encode()) - MOST_BYTES
     if over > 0 and matrix is not None and sections["hard"] is not None:
         sections["hard"] = lighter(matrix, sections["hard"], over)
-        text = _rendered(report, sections)
+        text = render(report, sections.values())
     return text
 
 
@@ -95,12 +94,7 @@ def _stability_head(matrix: Matrix) -> Head:
     )
 
 
-def _rendered(report: PageReport, sections: Mapping[str, Section | None]) -> str:
-    """The page of the sections that have something to show."""
-    return render(report, [section for section in sections.values() if section is not None])
-
-
-def render(report: Report, sections: Sequence[Section]) -> str:
+def render(report: Report, sections: Iterable[Section | None]) -> str:
     """A page of some sections of a report."""
     head = Head(
         title="crankcheck report",
@@ -117,8 +111,9 @@ def render(report: Report, sections: Sequence[Section]) -> str:
     return assembled(head, sections)
 
 
-def assembled(head: Head, sections: Sequence[Section]) -> str:
-    """A page of some sections under a head."""
+def assembled(head: Head, shown: Iterable[Section | None]) -> str:
+    """A page of some sections under a head, without those that have nothing to show."""
+    sections = [each for each in shown if each is not None]
     environment = _environment()
     bodies = [Markup(_template(environment, one.template).render(one.words)) for one in sections]
     names = dict.fromkeys([*FIRST, *(script for one in sections for script in one.scripts)])

@@ -12,11 +12,10 @@ from reports.output.numbers import count, listed, short
 from reports.page.sections.verdict import level, verdict
 from reports.results.cost import MEANS, Costs
 from reports.results.lines import Line, called, named
-from reports.results.looks import label
-from reports.results.origin import made, settings_of, study, versions
-from reports.results.overview import Report
+from reports.results.overview import Report, made, settings_of, study, versions
 from reports.results.recommend import Recommendation
 from reports.results.table import noise_line, short_target
+from reports.results.variants import label
 from reports.store.reader import Stored
 from reports.way.clock import clock_of
 from sim.engine import Drive

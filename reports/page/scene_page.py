@@ -3,17 +3,46 @@ with its free motion, or with its elastic links."""
 
 from __future__ import annotations
 
+import base64
+import math
 from collections.abc import Mapping
+
+import numpy as np
 
 from analytic.elastic.elastic_motion import ElasticHistory
 from analytic.free.free_motion import FreeMotion
+from models.array import Array
+from models.cut_links import line_of
+from models.driver import driver_unit
+from models.laws import ConstantSpeed
+from models.motion import Motion
 from models.scene import Scene
-from reports.describe.elastic_course import ElasticCourse
+from reports.describe.elastic_course import (
+    ElasticCourse,
+    elastic_course,
+    extremes,
+    largest_deflections,
+    start_of,
+)
+from reports.describe.elastic_words import certainty, elastic_facts, elastic_warnings, start_words
+from reports.describe.force_tables import friction_words, largest_of
+from reports.describe.free_motion import free_notes, instants
+from reports.describe.with_forces import (
+    cleaned_forces,
+    force_certainty,
+    force_notes,
+    turn_with_forces,
+)
+from reports.drawing.force_arrows import force_arrows
+from reports.drawing.moving import INSTANTS, drawing, magnification, moving_points
+from reports.drawing.packed import packed
+from reports.drawing.shape import size_of_motion, turn_of
 from reports.output.numbers import count
 from reports.output.provenance import crankcheck_version
 from reports.page.build import Head, assembled
-from reports.page.scene_sections import elastic, forces, motion
-from reports.page.scene_sections import free as free_motion
+from reports.page.sections.motion import scene_words
+from reports.page.sections.section import Section
+from reports.plan.singular import continued_note
 
 
 def scene_page(scene: Scene, figures: Mapping[str, bytes] | None = None) -> str:
@@ -22,23 +51,23 @@ def scene_page(scene: Scene, figures: Mapping[str, bytes] | None = None) -> str:
 
     Raises CrankcheckError where the driver goes through no turn, or there are no forces.
     """
-    sections = [motion.build(scene, with_forces=figures is not None)]
+    sections = [_motion(scene, with_forces=figures is not None)]
     if figures is not None:
-        sections.append(forces.build(scene, figures))
+        sections.append(_forces(scene, figures))
     return assembled(_head(scene, "the closed form"), sections)
 
 
 def free_page(free: FreeMotion, figures: Mapping[str, bytes]) -> str:
     """The page of a free motion; ``figures`` are SVG files by name."""
     words = f"free motion over {free.until_s:g} s"
-    return assembled(_head(free.scene, words), [free_motion.build(free, figures)])
+    return assembled(_head(free.scene, words), [_free(free, figures)])
 
 
 def elastic_page(motion: ElasticHistory, fine: ElasticCourse, figures: Mapping[str, bytes]) -> str:
     """The page of a motion with elastic links; ``fine`` is the same closely sampled, ``figures``
     are SVG files by name. Raises CrankcheckError where there is no motion."""
     links = count(len(motion.scene.elastic), "elastic link")
-    return assembled(_head(motion.scene, links), [elastic.build(motion, fine, figures)])
+    return assembled(_head(motion.scene, links), [_elastic(motion, fine, figures)])
 
 
 def _head(scene: Scene, what: str) -> Head:
@@ -53,3 +82,197 @@ def _head(scene: Scene, what: str) -> Head:
         made="",
         first="motion",
     )
+
+
+def _pictures(
+    figures: Mapping[str, bytes], captions: Mapping[str, str]
+) -> list[tuple[str, str, str]]:
+    """SVG files with what stands under each; one that has no caption has its name."""
+    return [
+        (name, captions.get(name, name), base64.b64encode(svg).decode("ascii"))
+        for name, svg in figures.items()
+    ]
+
+
+def _motion(scene: Scene, *, with_forces: bool) -> Section:
+    """A scene in motion as the closed form has it, with its forces where asked for. Raises
+    CrankcheckError where the driver goes through no turn."""
+    turn = turn_of(scene, INSTANTS, with_forces=with_forces)
+    drawn = drawing(scene, turn.time_s, turn)
+    if turn.forces is not None:
+        arrows = force_arrows(scene, turn)
+        low, high = arrows.box(turn)
+        drawn |= {"forces": arrows.embedded(turn), "box": [*low, *high]}
+    return Section(
+        anchor="motion",
+        title="In motion",
+        template="scene_motion.html",
+        words={
+            "scene": scene_words(scene),
+            "has_arrows": "forces" in drawn and bool(drawn["forces"]["arrows"]),  # type: ignore[index]  # as embedded
+            "with_forces": with_forces,
+        },
+        embedded={"drawing": drawn, "effort": _effort(scene, turn)},
+        scripts=("arrows.js", "mechanism.js", "stage.js", "scene_motion.js"),
+        styles=("forces.css",),
+    )
+
+
+def _effort(scene: Scene, turn: Motion) -> dict[str, object] | None:
+    """What drives at the instants of the drawing: a torque, or a force."""
+    if turn.forces is None:
+        return None
+    series = packed(np.atleast_2d(turn.forces.torque))
+    return {"name": scene.driver.effort, "unit": scene.driver.effort_unit, "series": series}
+
+
+FORCE_CAPTIONS: Mapping[str, str] = {
+    "torque": "What drives, and its mean over the turn.",
+    "reactions": "How large the reactions are; normal forces of guides with their sign.",
+    "reactions-polar": "The tip of each reaction over a turn, drawn from the cross.",
+    "efficiency": "What of the drive's power goes on to loads and masses.",
+    "reduced": "The machine as one mass that moves with the driver.",
+    "forces": "The mechanism where its reactions are largest.",
+}
+
+
+def _forces(scene: Scene, figures: Mapping[str, bytes]) -> Section:
+    """Reactions and driving torque: the largest of a turn in a table, and the figures."""
+    turn = turn_with_forces(scene)
+    assert turn.forces is not None
+    return Section(
+        anchor="forces",
+        title="Forces",
+        template="scene_forces.html",
+        words={
+            "driver": scene.driver.joint,
+            "effort": scene.driver.effort,
+            "degrees": "\N{DEGREE SIGN}" if driver_unit(scene) == "deg" else " m",
+            "rows": largest_of(scene, turn, cleaned_forces(turn.forces)),
+            "notes": [
+                *friction_words(scene),
+                *force_notes(scene, turn),
+                force_certainty(scene, turn.forces),
+            ],
+            "figures": _pictures(figures, FORCE_CAPTIONS),
+        },
+        styles=("forces.css",),
+    )
+
+
+FREE_CAPTIONS: Mapping[str, str] = {
+    "over-time": "The driver's angle and angular velocity.",
+    "energy": "What the motion keeps of its energy, and what is done on it.",
+    "phase": "The driver's angular velocity over its angle.",
+}
+SHORTEST_MS, LONGEST_MS = 4000, 12000
+"""What a round may take."""
+
+
+def _free(free: FreeMotion, figures: Mapping[str, bytes]) -> Section:
+    """A scene that is let go, in motion, and the figures of its free motion."""
+    time_s = np.linspace(0.0, free.until_s, instants(free))
+    motion = free.at(time_s, bound=False)
+    drawn = drawing(free.scene, time_s, motion)
+    lasts_ms = float(np.clip(1000.0 * free.until_s, SHORTEST_MS, LONGEST_MS))
+    return Section(
+        anchor="motion",
+        title="In motion",
+        template="scene_free.html",
+        words={
+            "scene": scene_words(free.scene),
+            "notes": [
+                *filter(None, (*free_notes(free, free.until_s), continued_note(free.scene, motion)))
+            ],
+            "figures": _pictures(figures, FREE_CAPTIONS),
+        },
+        embedded={"drawing": drawn | {"until_s": free.until_s}, "lasts_ms": lasts_ms},
+        scripts=("arrows.js", "mechanism.js", "stage.js", "scene_free.js"),
+        styles=("forces.css",),
+    )
+
+
+ELASTIC_CAPTIONS: Mapping[str, str] = {
+    "deflection": "How far the middle of each elastic link is from the line between its pins.",
+    "angles": "What links do with elastic links and with rigid ones, and what is between them.",
+    "extension": "By how much the pins of each elastic link are further apart than at rest.",
+    "torque": "The driving torque with elastic links and with rigid ones.",
+    "positions": "The mechanism at six instants, magnified as it says.",
+}
+MOST = 1201
+"""Instants of the drawing."""
+EVERY = 2
+"""Of the places of a link at which it is looked at, so many make one of the drawing."""
+STEPS = (1.0, 2.0, 5.0)
+"""Of the factors that are offered, within a power of ten."""
+
+
+def _elastic(motion: ElasticHistory, fine: ElasticCourse, figures: Mapping[str, bytes]) -> Section:
+    """A scene with elastic links in motion, its deflections magnified, over the same with rigid
+    links; what they come to, and the figures."""
+    scene = motion.scene
+    turns = motion.until_s / scene.driver.law.period_s
+    count = int(np.clip(round((INSTANTS - 1) * turns), INSTANTS - 1, MOST - 1)) + 1
+    course = elastic_course(motion, np.linspace(0.0, motion.until_s, count))
+    factor = magnification(course.motion, course.base, course.bent, size_of_motion(course.base))
+    drawn = drawing(scene, course.time_s, course.base)
+    if not isinstance(scene.driver.law, ConstantSpeed) or turns > 1.0 + 1e-9:
+        drawn |= {"until_s": motion.until_s}
+    notes = [start_words(scene, start_of(motion)), *certainty(motion)]
+    return Section(
+        anchor="motion",
+        title="In motion",
+        template="scene_elastic.html",
+        words={
+            "scene": scene_words(scene),
+            "elastic": elastic_facts(scene, motion.by, stiffened=motion.stiffened),
+            "along": "Time" if "until_s" in drawn else "Crank angle",
+            "factors": factors(factor),
+            "factor": f"{factor:g}",
+            "rows": extremes(fine),
+            "driver": scene.driver.link,
+            "free": scene.is_free,
+            "notes": [*notes, *elastic_warnings(scene, largest_deflections(fine))],
+            "figures": _pictures(figures, ELASTIC_CAPTIONS),
+        },
+        embedded={
+            "drawing": drawn,
+            "moved": packed(_moved(course)),
+            "bent": _bent(course),
+            "lasts_ms": 5000 * min(max(1.0, turns), 6.0),
+        },
+        scripts=("arrows.js", "mechanism.js", "stage.js", "scene_elastic.js"),
+        styles=("forces.css",),
+    )
+
+
+def factors(chosen: float) -> list[tuple[str, str]]:
+    """Magnifications that a reader may choose, by value and name, ``chosen`` among them, from 1 to
+    ten times as much."""
+    last = math.ceil(math.log10(chosen)) + 1
+    every = [step * 10.0**power for power in range(last) for step in STEPS]
+    each = [one for one in every if one == 1.0 or chosen / 50.0 <= one <= 10.0 * chosen * 1.001]
+    return [(f"{one:g}", "true scale" if one == 1.0 else f"{one:g} times") for one in each]
+
+
+def _moved(course: ElasticCourse) -> Array:
+    """How far points and guides are off those of the drawing: x and y by point [m], then angles
+    of the links that carry guides [rad], (R, T), as the rows of the drawing."""
+    elastic, rigid = course.motion, course.base
+    rows = [
+        row
+        for name in moving_points(course.scene)
+        for row in (elastic.points[name].position - rigid.points[name].position).T
+    ]
+    guides = dict.fromkeys(s.on for s in course.scene.sliders.values() if s.on in elastic.links)
+    rows += [elastic.links[name].theta - rigid.links[name].theta for name in guides]
+    return np.array(rows)
+
+
+def _bent(course: ElasticCourse) -> dict[str, object]:
+    """Links that bend by name: their pins, and deflections at equal parts between them."""
+    return {
+        name: {"pins": list(line_of(course.scene, name).pins), "rows": packed(each[:, ::EVERY].T)}
+        for name, each in course.bent.items()
+        if course.scene.elastic[name].bends
+    }

@@ -7,10 +7,9 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from models.errors import CrankcheckError, EngineError, shown
-from models.motion import State
 from models.scene import Scene
 from reports.plan.chosen import refuse_unfollowed
-from reports.plan.free import LOOK, gives_way
+from reports.plan.free import gives_way
 from reports.plan.steps import (
     FREE_STEP_S,
     STEPS_PER_TURN,
@@ -18,10 +17,10 @@ from reports.plan.steps import (
     positive,
 )
 from reports.way.length import LEAST_STEPS, SEGMENTS, GivenAs, Springs
+from reports.way.way import StudyLinks
 
 if TYPE_CHECKING:
     from reports.compare.elastic.elastic_truth import ElasticTruth
-    from reports.plan.study import Study
 
 SPRINGS: tuple[Springs, ...] = ("plain", "corrected", "beam")
 MOST_SEGMENTS = 64
@@ -56,11 +55,9 @@ def chosen_segments(count: int | None, option: str = "--segments") -> int:
     return count
 
 
-def given_as(scene: Scene, study: Study) -> list[GivenAs]:
-    """All that a study gives a scene's elastic links as; one of a rigid scene. Raises
-    CrankcheckError for a number of segments out of range."""
-    if not scene.elastic:
-        return [GivenAs()]
+def given_as(study: StudyLinks) -> list[GivenAs]:
+    """All that a study gives elastic links as. Raises CrankcheckError for a number of segments out
+    of range."""
     counts = [chosen_segments(count, "segments") for count in study.segments or [SEGMENTS]]
     return [
         GivenAs(count, springs, _words(count, springs))
@@ -98,13 +95,6 @@ def rigid_alone(what: str) -> Callable[[Scene], None]:
     return check
 
 
-def segmented(scene: Scene) -> tuple[Scene, State]:
-    """What an engine is given of a scene with elastic links, and the state that it starts from.
-    Raises CrankcheckError as the truth of such a scene."""
-    truth = _truth_of_start(scene, SEGMENTS, SPRINGS[0])
-    return truth.given, truth.start
-
-
 def cut_scene(scene: Scene, given: GivenAs) -> Scene:
     """What an engine is given of a scene with elastic links. Raises CrankcheckError."""
     from reports.compare.elastic.elastic_truth import cut  # where links bend alone
@@ -128,8 +118,10 @@ def refuse_rigid(scenes: Iterable[Scene], count: object, springs: object) -> Non
             )
 
 
-def refuse_unelastic(scene: Scene, segments: int, springs: Springs) -> None:
-    """Refuse elastic links whose motion is not known.
+def refuse_unelastic(
+    truth_of: Callable[[Scene, GivenAs], ElasticTruth], scene: Scene, given: GivenAs
+) -> None:
+    """Refuse elastic links whose motion is not known, by what they start from.
 
     Raises
     ------
@@ -137,23 +129,11 @@ def refuse_unelastic(scene: Scene, segments: int, springs: Springs) -> None:
         A link that stretches, which segments do not; a resonance, next to which no periodic motion
         is found.
     """
-    if not scene.elastic:
-        return
     try:
-        truth = _truth_of_start(scene, segments, springs)
+        truth = truth_of(scene, given)
     except EngineError:
         return  # a row with its reason
     truth.look()
-
-
-def _truth_of_start(scene: Scene, segments: int, springs: Springs) -> ElasticTruth:
-    from reports.compare.elastic.elastic_truth import elastic_truth  # for elastic links alone
-    from reports.compare.elastic.released_truth import released_elastic_truth
-
-    lasts_s = scene.driver.law.period_s
-    if scene.is_free:
-        return released_elastic_truth(scene, segments, springs, 1, LOOK * lasts_s)
-    return elastic_truth(scene, segments, springs, lasts_s)
 
 
 def held_steps(scene: Scene, segments: int, springs: Springs) -> float:
@@ -172,7 +152,8 @@ def _held_steps_s(scene: Scene, segments: int, springs: Springs) -> float:
     from analytic.elastic.elastic_motion import fastest_rad_s
     from reports.compare.elastic.elastic_truth import STEADY
 
-    if not all(link.bends for link in scene.elastic.values()):
+    links = scene.elastic.values()
+    if not all(link.bends for link in links):
         return 0.0
     return fastest_rad_s(scene, Segments(segments, springs == "corrected")) / STEADY
 
@@ -212,8 +193,6 @@ def few_swings_s(scene: Scene) -> float:
 def shortened_note(scene: Scene, lasts_s: float) -> str:
     """What is said of a run of elastic links that ends before the scene does, as nothing else was
     asked for; "" where it does not."""
-    if not (scene.elastic and scene.is_free):
-        return ""
     whole_s = scene.driver.law.period_s
     if few_swings_s(scene) >= whole_s or not math.isclose(lasts_s, few_swings_s(scene)):
         return ""

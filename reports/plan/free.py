@@ -14,6 +14,7 @@ from models.files.reading import kinds, shipped
 from models.scene import Scene
 from reports.judge.tolerance import check_names
 from reports.plan.chosen import chosen_scenes
+from reports.way.way import way_of
 
 FREE = "free"
 """The kind of shipped scenes that are let go."""
@@ -91,19 +92,10 @@ def refuse_unreleased(scene: Scene, duration_s: float) -> None:
     release(with_rigid_links(scene), LOOK * duration_s)
 
 
-def refuse_other_options(
-    scenes: Iterable[Scene], of_free: Mapping[str, object], of_driven: Mapping[str, object]
-) -> None:
-    """Refuse what was asked for, by option, where no scene has any use for it: steps in a turn of
-    what is let go, a duration of what is driven. Raises CrankcheckError."""
-    free = {scene.is_free for scene in scenes}
-    if True not in free:
-        for option in (name for name, value in of_free.items() if value is not None):
-            raise CrankcheckError(
-                f"{option}: it is of scenes that are let go; add --free, or leave {option} out"
-            )
-    if False not in free:
-        for option in (name for name, value in of_driven.items() if value is not None):
-            raise CrankcheckError(
-                f"{option}: what is let go has no turns; give --dt and --duration, in seconds"
-            )
+def refuse_other_options(scenes: Iterable[Scene], options: Mapping[str, object]) -> None:
+    """Refuse a length that was asked for, by option, where it says nothing of any scene: steps in a
+    turn of what is let go, a duration of what is driven. Raises CrankcheckError."""
+    ways = [way_of(scene) for scene in scenes]
+    for option, value in options.items():
+        if value is not None and not any(option in each.lengths_by for each in ways):
+            ways[0].refuse_length(option)

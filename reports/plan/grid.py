@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import itertools
+import json
 import math
+import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -13,16 +16,12 @@ from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.output.numbers import count as told
 from reports.plan.chosen import chosen_engines
-from reports.plan.elastic import (
-    given_as,
-    refuse_rigid,
-)
-from reports.plan.forces import gives_forces
+from reports.plan.elastic import refuse_rigid
 from reports.plan.free import scenes_of
-from reports.plan.key import cell_key, digest, line_key
-from reports.plan.study import Study, Variant
+from reports.plan.singular import gives_forces
+from reports.plan.study import UNITS, Study, Variant
 from reports.way.length import GivenAs, Planned
-from reports.way.way import way_of
+from reports.way.way import driven_by, way_of
 from sim.engine import SettingValue
 from sim.registry import engine
 from sim.settings import profile_of, resolved
@@ -51,7 +50,7 @@ class Task:
     @property
     def label(self) -> str:
         cell = self.cell
-        step = f"dt {cell.dt_s:g} s" if cell.drive == "free" else f"{cell.steps_per_turn:g} a turn"
+        step = cell.way.step(cell.scene, cell.dt_s)
         return f"{cell.scene.name}, {cell.engine} {self.variant}, {step}"
 
 
@@ -79,7 +78,7 @@ def grid(study: Study) -> Grid:
     tasks: dict[str, Task] = {}
     for scene in scenes:
         name = digest(texts[scene.name])
-        given = [(bent, _steps(study, scene, bent)) for bent in given_as(scene, study)]
+        given = [(bent, _steps(study, scene, bent)) for bent in way_of(scene).given_by(study)]
         for (variant, settings), (bent, steps) in itertools.product(complete, given):
             for dt_s, count in steps:
                 cell = Cell(
@@ -89,7 +88,7 @@ def grid(study: Study) -> Grid:
                     dt_s=dt_s,
                     steps=count,
                     gated=variant.profile == "tuned" and not variant.settings,
-                    drive="free" if study.free else study.drive,
+                    drive=driven_by(scene, study.drive),
                     converge=False,
                     settings=variant.chosen,
                     with_forces=study.forces and gives_forces(variant.engine),
@@ -135,7 +134,7 @@ def refuse_endless(study: Study) -> None:
             f"{sum(numbers):.6g} variants"
             + f" (one has {several}, each with each)"
             * bool(several)
-            + f" x {steps} steps{'' if study.free else ' in a turn'}; a sweep has at most "
+            + f" x {steps} steps{UNITS[study.lists[0]]}; a sweep has at most "
             f"{MOST_CELLS}: take fewer of them"
         )
 
@@ -176,3 +175,63 @@ def _refuse_twins(complete: Iterable[tuple[Variant, Mapping[str, SettingValue]]]
                 f"variant {variant.name!r}: two of {variant.engine} have that name, and other "
                 "settings; give each a name of its own"
             )
+
+
+MEASURE = 2
+"""Raised whenever the same run would be measured differently: older rows are then not reused."""
+
+
+def digest(text: str) -> str:
+    """The hash of a scene's text, in which comments and layout do not count.
+
+    The order of its tables does: engines solve joints in that order, and err otherwise in another.
+    """
+    return _hash(tomllib.loads(text))
+
+
+def shape_digest(text: str) -> str:
+    """The hash of a scene's text, in which the size and direction of the driver's speed do not
+    count either: without a time scale of their own, scenes alike in this have the same angles at
+    the same steps in a turn."""
+    table = tomllib.loads(text)
+    driver = table.get("driver")
+    if isinstance(driver, dict):
+        driver.pop("speed_rad_s", None)
+    return _hash(table)
+
+
+def line_key(
+    cell: Cell, turns: float, scene_digest: str, version: str, settings: Mapping[str, SettingValue]
+) -> str:
+    """What all cells share that differ in step only.
+
+    ``turns`` is what was asked for, which the steps of a cell may not divide; ``settings`` is the
+    complete set. Engines did not always take loads and friction: rows of that time, which say
+    "unsupported", have another name than those of today.
+    """
+    return _hash(
+        [
+            MEASURE,
+            scene_digest,
+            cell.engine,
+            version,
+            sorted(settings.items()),
+            cell.drive,
+            turns,
+            *(["forces"] if cell.with_forces else ()),
+            *(["loads"] if cell.scene.loads else ()),
+            *(["friction"] if cell.scene.friction else ()),
+            *cell.way.key(cell.given_as),
+        ]
+    )
+
+
+def cell_key(line: str, cell: Cell) -> str:
+    """The key of a cell on its line."""
+    return _hash([line, cell.dt_s.hex(), cell.steps])
+
+
+def _hash(value: object) -> str:
+    """160 bits are enough for any store, and short enough for a file name."""
+    text = json.dumps(value, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:40]

@@ -10,6 +10,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from analytic.forces.kinetostatics import forces
 from analytic.kinematics import repeats_after, solve, solve_driven
 from models.array import Array, Mask
 from models.driver import driver_course, driver_unit, place_in_words
@@ -17,6 +18,7 @@ from models.errors import CrankcheckError, few
 from models.motion import Crossing, Motion
 from models.scene import Scene
 from reports.compare.hardness import near
+from sim.registry import engine
 
 SINGULAR = 1e-6
 """A sine of a transmission angle below which velocities are lost: rounding is over its square."""
@@ -135,3 +137,47 @@ def _valleys(sine: Array) -> Mask:
     before = np.concatenate([[np.inf], sine[:-1]])
     after = np.concatenate([sine[1:], [np.inf]])
     return np.asarray((sine <= before) & (sine <= after) & ((sine < before) | (sine < after)))
+
+
+LOOKS = 721
+"""Positions looked at in a period."""
+
+
+def refuse_short_tables(scene: Scene, duration_s: float) -> None:
+    """Refuse a run in which a load has no magnitude, over the displacements of a whole period and
+    the times of the run. Raises CrankcheckError that names the load and how far it has to go."""
+    loads = [load for load in scene.loads.values() if load.over != "angle"]
+    if not loads:
+        return
+    turn = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
+    sliders = [load.slider for load in loads if load.slider is not None]
+    motion = solve(scene, turn, links=(), points=(), sliders=sliders, bound=False)
+    for load in loads:
+        if load.over == "time":
+            load.magnitude(np.array([0.0, duration_s]))
+        elif load.slider is not None:
+            load.magnitude(motion.sliders[load.slider].displacement)
+
+
+def refuse_forceless(scene: Scene, duration_s: float) -> None:
+    """Refuse a scene whose forces are not known at the start and the end of a run.
+
+    Raises
+    ------
+    CrankcheckError
+        Nothing has a mass and nothing loads it; a table of a load does not reach so far.
+    """
+    forces(scene, np.array([0.0, duration_s]), bound=False, skip_dead_points=True)
+
+
+def gives_forces(name: str) -> bool:
+    """Whether an engine reports forces."""
+    return engine(name).forces_of != "nothing"
+
+
+def silent_note(engines: Iterable[str]) -> str:
+    """What is said of engines that report no forces and are run without; "" where all do."""
+    silent = [name for name in dict.fromkeys(engines) if not gives_forces(name)]
+    if not silent:
+        return ""
+    return f"forces: {' and '.join(silent)} reports none, and is run without"

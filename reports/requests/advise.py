@@ -7,27 +7,23 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError, listed
 from models.files.reading import find_scenes, parse_scene, scene_texts
 from models.scene import Scene
-from reports.advise.advice import Advice, offers
-from reports.advise.choices import choices
-from reports.advise.demand import demanded
-from reports.advise.document import document
+from reports.advise.advice import Advice, offers, prices, timings
+from reports.advise.demand import choices, demanded
 from reports.advise.evidence import MeasuredStudy, evidence, stored_choices, stored_scenes
-from reports.advise.prices import prices, timings
 from reports.advise.search import SearchResult, search_all
-from reports.advise.table import show
-from reports.output.console import tell
+from reports.advise.table import document, show
+from reports.output.console import say_whole, tell
 from reports.output.provenance import provenance
-from reports.output.write import check_outputs, write
+from reports.output.write import Outputs
 from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
 from reports.plan.elastic import rigid_alone
-from reports.requests.options import Engines, Jobs, seconds
-from reports.requests.stored_files import stored_files
+from reports.requests.diff import stored_files
+from reports.requests.options import Engines, Jobs, argument, option, seconds
 from reports.results.lines import lines
 from reports.store.reader import Stored, read_store
 from reports.workers.progress import progress_bar
@@ -42,43 +38,33 @@ class AdviseRequest:
     """What `advise` was asked for, as given."""
 
     dt_s: Annotated[
-        float,
-        typer.Option(
-            "--dt", metavar="SECONDS", parser=seconds, help="Frame time of your program, as 1/60."
-        ),
+        float, option("Frame time of your program, as 1/60.", "--dt SECONDS", parser=seconds)
     ]
-    speed: Annotated[
-        float, typer.Option(metavar="RAD_S", help="Speed of the driver; clockwise is negative.")
-    ]
-    target: Annotated[
-        float, typer.Option(help="Error to reach, as a pure number: rad, lengths over L.")
-    ]
+    speed: Annotated[float, option("Speed of the driver; clockwise is negative.", "RAD_S")]
+    target: Annotated[float, "Error to reach, as a pure number: rad, lengths over L."]
     scenes: Annotated[
-        Sequence[str],
-        typer.Argument(
-            metavar="SCENE", help="Shipped names or scene files; two usual ones if none."
-        ),
+        Sequence[str], argument("SCENE", "Shipped names or scene files; two usual ones if none.")
     ] = ()
     engines: Engines = ()
     study: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Folder of sweep -o: what it covers is read from it."),
+        Path | None, option("Folder of sweep -o: what it covers is read from it.", "DIR")
     ] = None
-    turns: Annotated[float, typer.Option(help="Turns of the driver in a run.")] = 10.0
+    turns: Annotated[float, "Turns of the driver in a run."] = 10.0
     jobs: Jobs = 0
-    json: Annotated[Path | None, typer.Option(help="Write all of it as JSON.")] = None
+    json: Annotated[Path | None, "Write all of it as JSON."] = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Do it; returns the exit code: 0 where some settings reach the target, 1 where none do, 2
         where none could be run. Raises CrankcheckError for what can be told of the request before
         anything runs."""
         read = [*find_scenes(self.scenes), *stored_files(self.study)]
-        check_outputs({"--json": self.json}, inputs=read)
+        outputs = Outputs({"--json": self.json})
+        outputs.check(read)
         stored = _study(self)
         scenes, texts = _scenes(self, stored)
         demand = demanded(scenes, self.speed, self.dt_s, self.target, self.turns)
         if note := left_out_note(self.scenes):
-            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+            say_whole(progress, note)
         engines = chosen_engines(self.engines)
         every = lines(stored) if stored else ()
         wanted = choices(engines, stored_choices(every))
@@ -91,10 +77,7 @@ class AdviseRequest:
         facts = provenance({name: engine(name).version() for name in engines})
         named = bool(self.scenes or stored)
         advice = Advice(demand, offers(found, priced), priced.noise, known, facts, named)
-        try:
-            if self.json is not None:
-                write(self.json, document(advice))
-        finally:  # a full disk costs the file, and not the advice with it
+        with outputs.written({"--json": lambda: document(advice)}):
             show(console, advice)
         return 0 if advice.promises else 1
 

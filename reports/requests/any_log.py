@@ -6,16 +6,15 @@ from collections.abc import Collection, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from analytic.free.free_motion import loosened
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
 from reports.logs.channel import OwnLog
 from reports.logs.map_file import Map, map_of, read_map
-from reports.plan.free import under_control
 from reports.requests.arguments import kind_of, path_of
 from reports.requests.run import Simulation
 from reports.requests.solution import Solution
+from reports.way.way import way_of
 from sim.engine import Run
 
 if TYPE_CHECKING:
@@ -55,9 +54,9 @@ def log_of(scene: Scene, log: object, map_: MapLike = None, *, forces: bool = Fa
     from reports.logs.meanings import understood, wanted
 
     if isinstance(log, str | PathLike):
-        worth = wanted(scene, told, forces=forces)
-        columns = read_columns(path_of(log, "log"), told.layout, worth)
-        return understood(columns, scene, told, forces=forces)
+        path, worth = path_of(log, "log"), wanted(scene, told, forces=forces)
+        # No name for the columns, which take as much memory as all readings.
+        return understood(read_columns(path, told.layout, worth), scene, told, forces=forces)
     frame, source = _frame_of(log)
     return understood(columns_of(frame, source), scene, told, forces=forces)
 
@@ -68,7 +67,7 @@ def refuse_other_scene(scene: Scene, run: Run) -> None:
     if run.scene != scene.name or mechanism not in (None, scene_of_run(scene, run)):
         other = f"another {run.scene}" if run.scene == scene.name else run.scene
         raise CrankcheckError(f"the run is of {other}, not of {scene.name}; give the scene of both")
-    if scene.is_free and run.drive != "free":
+    if run.drive not in way_of(scene).drives:
         raise CrankcheckError(
             f"the run of {run.scene} is of drive {run.drive}, and the scene is let go; run it with "
             "drive free"
@@ -78,7 +77,7 @@ def refuse_other_scene(scene: Scene, run: Run) -> None:
 def scene_of_run(scene: Scene, run: Run) -> Scene:
     """The scene as the run has it: let go where that was, with the torque of its controller if it
     has elastic links and one."""
-    return loosened(under_control(scene)) if run.drive == "free" else scene
+    return way_of(scene, run.drive).released(scene)
 
 
 def _refuse_other(scene: Scene, motion: Motion) -> None:

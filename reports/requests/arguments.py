@@ -1,13 +1,17 @@
-"""The arguments of a call, each checked before anything is done with it."""
+"""The arguments of a call, checked before anything is done; and what is said of mistakes there."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import functools
+import inspect
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from functools import lru_cache
 from numbers import Integral, Real
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 
 import numpy as np
 
@@ -20,6 +24,11 @@ from reports.quantities.limits import EVERY
 from sim.engine import SettingValue
 from sim.registry import FIRST, engine
 from sim.settings import profile_of, resolved
+
+if TYPE_CHECKING:
+    from reports.judge.cell import Checked
+    from reports.own_log.judged import JudgedLog
+
 
 SceneLike = Scene | str | PathLike[str]
 """A shipped name, the path of a scene file, or a scene."""
@@ -165,3 +174,79 @@ def each_of(values: object) -> list[Any]:
         values = values.tolist()
     several = isinstance(values, Iterable) and not isinstance(values, str | bytes | Mapping)
     return list(cast(Iterable[Any], values)) if several else [values]
+
+
+Parameters = ParamSpec("Parameters")
+Result = TypeVar("Result")
+RENAMED = {
+    "--dt": "dt_s",
+    "--duration": "duration_s",
+    "--tol": "tolerance",
+    "--target angle=1e-3": "target={'angle': 1e-3}",
+    "--step": "step_s",
+    "--write-map": "crankcheck judge --write-map",
+    "--set": "settings",
+    "sweep --set": "settings",
+    "--speed": "speed_rad_s",
+    "--start": "start_rad",
+    "-o": "output",
+}
+SAME = (
+    "steps-per-turn turns every drive target map modes axial-modes elements shape linear require "
+    "jobs limit-s memory-gb delta key branch engine profile"
+)
+ARGUMENTS = RENAMED | {f"--{name}": name.replace("-", "_") for name in SAME.split()}
+"""Options of the commands, and what they are called in a call."""
+OTHERS: Mapping[str, str] = {"engine": "engines", "profile": "profiles", "output": "folder"}
+"""What functions call them that have no argument of that name."""
+OPTION = re.compile(rf"(?<![\w./-])({'|'.join(sorted(ARGUMENTS, key=len, reverse=True))})(?![\w-])")
+
+
+def told_at_the_call(
+    function: Callable[Parameters, Result],
+) -> Callable[Parameters, Result]:
+    """The function, whose CrankcheckErrors name arguments in place of options, and come from here:
+    what lies deeper is none of the caller's business."""
+    arguments = _arguments_of(function)
+
+    @functools.wraps(function)
+    def called(*args: Parameters.args, **options: Parameters.kwargs) -> Result:
+        __tracebackhide__ = True  # of pytest and IPython: they show the caller's line
+        try:
+            return function(*args, **options)
+        except CrankcheckError as error:
+            error.args = tuple(
+                in_python(each, arguments) if isinstance(each, str) else each for each in error.args
+            )
+            raise error.with_traceback(None) from None
+
+    return called
+
+
+def _arguments_of(function: Callable[..., object]) -> Mapping[str, str]:
+    """Options, and what this function calls them."""
+    own = inspect.signature(function).parameters
+    return {
+        option: OTHERS[name] if name not in own and OTHERS.get(name) in own else name
+        for option, name in ARGUMENTS.items()
+    }
+
+
+def in_python(text: str, arguments: Mapping[str, str] = ARGUMENTS) -> str:
+    """A text of the command that names arguments in place of options."""
+    return OPTION.sub(lambda hit: arguments[hit[1]], text)
+
+
+def parts_in_python(judged: Checked | JudgedLog, tolerance: str = "tolerance") -> dict[str, Any]:
+    """The fields of what was judged, whose words name arguments in place of options; ``tolerance``
+    is the one by which tolerances were given."""
+
+    def told(text: str) -> str:
+        return in_python(text, {**ARGUMENTS, "--tol": tolerance})
+
+    findings = (
+        replace(each, text=told(each.text), cure=told(each.cure)) for each in judged.findings
+    )
+    limits = {name: replace(each, origin=told(each.origin)) for name, each in judged.limits.items()}
+    changed = {"findings": tuple(findings), "limits": limits, "remedy": told(judged.remedy)}
+    return vars(judged) | changed

@@ -12,22 +12,23 @@ from reports.judge.tolerance import check_names
 from reports.output.provenance import provenance
 from reports.plan.chosen import refuse_unfollowed
 from reports.plan.elastic import given_of
-from reports.plan.free import refuse_giving_way, refuse_unreleased
+from reports.plan.free import refuse_giving_way
 from reports.requests.arguments import (
     SceneLike,
     engine_of,
     is_true,
     one_of,
+    parts_in_python,
     scene_of,
     settings_of,
+    told_at_the_call,
     tolerances_of,
 )
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
-from reports.requests.told import parts_in_python, told_at_the_call
 from reports.verify.advised import advised
-from reports.way.length import SEGMENTS, Length
-from reports.way.way import laid_out
+from reports.way.length import SEGMENTS, Length, Planned
+from reports.way.way import laid_out, way_of
 from sim.engine import Drive, Run, SettingValue
 from sim.registry import FIRST
 
@@ -135,8 +136,7 @@ def check(
 def verdict_of_run(scene: Scene, run: Run, tolerance: Mapping[str, float]) -> CellVerdict:
     """The verdict on a run that was made before; it is run at no other step."""
     check_names(scene)
-    if run.drive == "free":
-        refuse_unreleased(scene, run.dt_s * run.steps)
+    way_of(scene, run.drive).refuse_made(Planned(scene, run.dt_s, run.steps))
     cell = Cell(
         scene=scene,
         engine=run.engine,

@@ -2,31 +2,36 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rich.console import Console
+
+from models.driver import driver_unit
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.compare import compare as comparing
 from reports.compare.beside import Truth
-from reports.compare.errors import Error, Errors
+from reports.compare.errors import Error, ErrorKind, Errors, largest
 from reports.judge.tolerance import check_names
+from reports.output.console import plain_table, say
+from reports.output.numbers import short
 from reports.plan.elastic import given_of
-from reports.plan.free import refuse_unreleased
 from reports.plan.steps import positive
 from reports.quantities import QUANTITIES
 from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
-from reports.requests.arguments import SceneLike, is_true, one_of, scene_of
+from reports.requests.arguments import SceneLike, is_true, one_of, scene_of, told_at_the_call
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
-from reports.requests.told import told_at_the_call
 from reports.way.length import SEGMENTS, GivenAs, Planned
 from reports.way.way import way_of
 from sim.engine import Run
 
 if TYPE_CHECKING:
     import pandas as pd
-    from rich.console import Console
+
 
 LOG_DRIVES = ("scene", "fitted", "logged")
 
@@ -59,7 +64,6 @@ class Comparison(Shown):
         return pd.DataFrame([error_row(error) for error in self.errors.rows])
 
     def show(self, console: Console) -> None:
-        from reports.requests.error_table import show_errors
 
         show_errors(console, self.scene, self.source, self.errors)
 
@@ -136,11 +140,11 @@ def compare(
 
 def _truth_of_run(scene: Scene, run: Run) -> Truth:
     """The truth of a scene as a run has it. Raises CrankcheckError."""
-    scene, free = scene_of_run(scene, run), run.drive == "free"
-    if free and not scene.elastic:
-        refuse_unreleased(scene, run.dt_s * run.steps)
+    scene = scene_of_run(scene, run)
     given = GivenAs(getattr(run, "segments", SEGMENTS), getattr(run, "springs", "plain"))
-    return way_of(scene, run.drive).truth(Planned(scene, run.dt_s, run.steps, given))
+    way, planned = way_of(scene, run.drive), Planned(scene, run.dt_s, run.steps, given)
+    way.refuse_made(planned)
+    return way.truth(planned)
 
 
 def refuse_without_forces(run: Run, *, forces: bool) -> None:
@@ -181,3 +185,50 @@ def refuse_options(
                 f"{option}: it is of logs, and this is a run in {run.engine}, which says itself "
                 "what it is; leave it out, or give frame() of the run"
             )
+
+
+PARTS: Mapping[ErrorKind, str] = {
+    "geometric": "geometry",
+    "start": "at the start",
+    "passage": "change points",
+}
+"""What sets a row apart: at the logged angle of the crank, first samples, near change points."""
+
+
+def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> None:
+    """Print the worst body of each quantity, source and kind."""
+    table = plain_table(f"{scene.name}: {source}")
+    for head in ("quantity", "", "worst body"):
+        table.add_column(head, no_wrap=True)
+    for head in ("largest\nerror", "of its\nscale", "at t\ns", f"driver\n{driver_unit(scene)}"):
+        table.add_column(head, justify="right", no_wrap=True)
+    for worst in worst_rows(errors):
+        table.add_row(
+            worst.tolerance,
+            PARTS.get(worst.kind, ""),
+            f"{worst.body_kind} {worst.body}",
+            f"{short(worst.maximum)} {worst.unit}",
+            f"{short(worst.pure)} {QUANTITIES[worst.quantity].of(worst.body_kind).share}",
+            f"{worst.time_of_maximum_s:.4g}",
+            _driver(worst),
+        )
+    console.print(table, "")
+    say(console, errors.compared_with(), "dim")
+    for note in errors.notes:
+        say(console, note, "yellow")
+
+
+def _driver(error: Error) -> str:
+    place = error.driver_at_maximum_rad
+    return f"{place:.4g}" if error.driver_unit == "m" else f"{math.degrees(place):.1f}"
+
+
+def worst_rows(errors: Errors) -> list[Error]:
+    """The largest error of each quantity, source and kind, in the order of the quantities."""
+    keys = dict.fromkeys((row.quantity, row.source, row.kind) for row in errors.rows)
+    found = (
+        largest(row for row in errors.rows if (row.quantity, row.source, row.kind) == key)
+        for key in keys
+    )
+    order = list(QUANTITIES)
+    return sorted((row for row in found if row), key=lambda row: order.index(row.quantity))

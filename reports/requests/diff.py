@@ -6,19 +6,33 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError
 from reports.diff.junit import suite
-from reports.diff.markdown import markdown
-from reports.diff.terminal import show
+from reports.diff.terminal import markdown, show
 from reports.output.console import tell
 from reports.output.junit import junit
-from reports.output.write import check_outputs, write
-from reports.requests.stored_files import stored_files
+from reports.output.write import Outputs
+from reports.requests.options import argument, option, output_option
 from reports.results.changes.changes import compare
-from reports.results.changes.reading import read_run
+from reports.results.changes.reading import CELLS, FACTS, read_run
+from reports.store.folder import paths_of
+from reports.store.manifest import MANIFEST
+from reports.store.schema import TABLES
+
+
+def stored_files(*folders: Path | None) -> list[Path]:
+    """What is read of the folders of sweeps and verifications; some of it may not be there."""
+    return [
+        path
+        for folder in filter(None, folders)
+        for path in (
+            *(folder / name for name in (MANIFEST, CELLS, FACTS)),
+            *(part for table in TABLES for part in paths_of(folder, table)),
+        )
+    ]
+
 
 FORMATS = ("text", "md")
 
@@ -32,21 +46,17 @@ class DiffRequest:
     is Markdown in any case.
     """
 
-    old: Annotated[Path, typer.Argument(metavar="OLD", help="Folder of sweep -o or verify -o.")]
-    new: Annotated[Path, typer.Argument(metavar="NEW", help="Folder to compare with it.")]
-    factor: Annotated[float, typer.Option(help="Growth of an error that is no fault yet.")] = 1.1
-    strict: Annotated[
-        bool, typer.Option("--strict", help="Exit 1 for missing cells and changed scenes too.")
-    ] = False
-    old_version: Annotated[
-        str | None, typer.Option(help="Engine version to take of OLD, where it holds several.")
-    ] = None
-    new_version: Annotated[str | None, typer.Option(help="The same of NEW.")] = None
-    format: Annotated[str, typer.Option(metavar="text|md", help="What is printed.")] = "text"
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Write Markdown, for a pull request.")
-    ] = None
-    junit: Annotated[Path | None, typer.Option(help="Write JUnit XML, a case per cell.")] = None
+    old: Annotated[Path, argument("OLD", "Folder of sweep -o or verify -o.")]
+    new: Annotated[Path, argument("NEW", "Folder to compare with it.")]
+    factor: Annotated[float, "Growth of an error that is no fault yet."] = 1.1
+    strict: Annotated[bool, "Exit 1 for missing cells and changed scenes too."] = False
+    old_version: Annotated[str | None, "Engine version to take of OLD, where it holds several."] = (
+        None
+    )
+    new_version: Annotated[str | None, "The same of NEW."] = None
+    format: Annotated[str, option("What is printed.", "text|md")] = "text"
+    output: Annotated[Path | None, output_option("Write Markdown, for a pull request.")] = None
+    junit: Annotated[Path | None, "Write JUnit XML, a case per cell."] = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Do it; returns the exit code.
@@ -65,19 +75,16 @@ class DiffRequest:
         if self.format not in FORMATS:
             raise CrankcheckError(f"--format {self.format!r}: unknown; use {' or '.join(FORMATS)}")
         read = stored_files(self.old, self.new)
-        check_outputs({"-o": self.output, "--junit": self.junit}, inputs=read)
+        outputs = Outputs({"-o": self.output, "--junit": self.junit})
+        outputs.check(read)
         old = read_run(self.old, self.old_version, "--old-version")
         new = read_run(self.new, self.new_version, "--new-version")
         for run in (old, new) if self.old != self.new else (old,):
             tell(run.notice)
         diff = compare(old, new, self.factor)
         page = markdown(diff, self.strict)
-        try:
-            if self.output:
-                write(self.output, page)
-            if self.junit:
-                write(self.junit, junit(suite(diff, self.strict)))
-        finally:  # a full disk costs the file, and not the verdict with it
+        contents = {"-o": lambda: page, "--junit": lambda: junit(suite(diff, self.strict))}
+        with outputs.written(contents):
             if self.format == "md" and not self.output:
                 console.print(page, end="", markup=False, highlight=False, soft_wrap=True)
             else:

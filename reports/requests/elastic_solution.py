@@ -3,26 +3,49 @@ ones."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from rich.console import Console
 
 from analytic.elastic.elastic_motion import ElasticHistory, sampled
 from analytic.result import Selection
-from models.array import Array
-from models.errors import CrankcheckError
+from analytic.structure.mobility import analyse
+from models.array import Array, samples
+from models.errors import CrankcheckError, StructureError
 from models.motion import Motion
 from models.scene import Scene
-from reports.describe.elastic_certainty import certainty
-from reports.describe.elastic_course import ElasticCourse, closely_sampled, elastic_course, start_of
-from reports.requests.elastic_choice import ElasticChoice
-from reports.requests.solution import ROWS, Solution, drawn, thinned
+from reports.describe.elastic_course import (
+    ElasticCourse,
+    closely_sampled,
+    drawn_course,
+    elastic_course,
+    elastic_tables,
+    energy_columns,
+    extremes,
+    extremes_table,
+    largest_deflections,
+    rigid_columns,
+    start_of,
+)
+from reports.describe.elastic_words import certainty, elastic_facts, elastic_warnings, start_words
+from reports.describe.facts import describe_law
+from reports.describe.force_tables import motion_force_tables
+from reports.describe.frame import cleaned
+from reports.output.console import say
+from reports.requests.arguments import is_true
+from reports.requests.free_solution import LetGo
+from reports.requests.options import given
+from reports.requests.solution import ROWS, Solution, drawn, heading, thinned
+from reports.requests.solve_options import SolveOptions
+from reports.requests.solving import Asked, ElasticChoice, Solving, refuse_samples, refuse_times
 
 if TYPE_CHECKING:
     import pandas as pd
-    from rich.console import Console
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -50,25 +73,26 @@ class ElasticSolution(Solution):
         """As of `Solution`, with ``coupler_deflection_m`` and ``coupler_extension_m`` of elastic
         links, what rigid ones would have, ``rocker_theta_rigid_rad``, and the energies of what is
         let go."""
-        from reports.describe.elastic_motion import energy_columns, rigid_columns
 
         rigid = self.rigid if self.forces is not None else replace(self.rigid, forces=None)
         energy = energy_columns(self.vibration, self.time_s)
         return super().frame().assign(**rigid_columns(rigid), **energy)
 
     def show(self, console: Console) -> None:
-        from reports.requests.elastic_text import show_elastic
-
         few = np.sort(thinned(self, ROWS).time_s)
-        shown, fine = (
-            self._course(each)
-            for each in (few, closely_sampled(self.scene, self.vibration.until_s))
-        )
-        forces = self.forces is not None
-        show_elastic(console, self.vibration, shown, fine, self.certainty, forces=forces)
+        self.show_at(console, few)
         if few.size < self.time_s.size:
             left = f"{few.size} of {self.time_s.size} samples; all of them: frame()"
-            console.print(left, style="dim", highlight=False)
+            say(console, left, "dim")
+
+    def show_at(self, console: Console, time_s: Array) -> None:
+        """Print it at times [s], in ascending order."""
+        shown, fine = (
+            self._course(each)
+            for each in (time_s, closely_sampled(self.scene, self.vibration.until_s))
+        )
+        forces = self.forces is not None
+        _show(console, self.vibration, shown, fine, self.certainty, forces=forces)
 
     def _course(self, time_s: Array) -> ElasticCourse:
         return elastic_course(self.vibration, time_s)
@@ -104,3 +128,91 @@ def elastic_solution(
         forces=whole.forces if forces else None,
     )
     return ElasticSolution(**vars(motion), scene=scene, vibration=vibration)
+
+
+def _show(
+    console: Console,
+    motion: ElasticHistory,
+    shown: ElasticCourse,
+    fine: ElasticCourse,
+    certainty: Sequence[str],
+    *,
+    forces: bool,
+) -> None:
+    """Print the mechanism, the samples that are ``shown``, and the largest of a motion closely
+    sampled, ``fine``."""
+    scene = motion.scene
+    facts = elastic_facts(scene, motion.by, stiffened=motion.stiffened)
+    say(console, _heading(scene) + "\n".join(facts) + "\n")
+    for table in elastic_tables(shown, console.width):
+        console.print(table, "")
+    if forces and shown.motion.forces is not None:
+        acting = shown.motion.forces
+        for table in motion_force_tables(scene, cleaned(shown.motion), acting, console.width):
+            console.print(table, "")
+    console.print(extremes_table(scene, extremes(fine)), "")
+    for line in (start_words(scene, start_of(motion)), *certainty):
+        say(console, line)
+    for line in elastic_warnings(scene, largest_deflections(fine)):
+        say(console, line, "yellow")
+
+
+def _heading(scene: Scene) -> str:
+    """What the mechanism is; of one of more freedoms, or of no dyads, its start."""
+    try:
+        return heading(scene, analyse(scene))
+    except StructureError:
+        return f"{scene.name}: {scene.source}\ndriver {scene.driver.link}, {describe_law(scene)}\n"
+
+
+class ElasticSolving(Solving):
+    """Of scenes whose driver follows a law, with links that bend."""
+
+    of_links = " with elastic links"
+
+    def solution(self, scene: Scene, asked: Asked) -> ElasticSolution:
+        forces, wanted = is_true(asked.forces, "forces"), Selection.of(scene, *asked.wanted)
+        time_s = samples(asked.time_s, "time_s")
+        return elastic_solution(scene, time_s, wanted, asked.choice, forces=forces)
+
+    def refuse(self, scene: Scene, request: SolveOptions) -> None:
+        refuse_times(scene, request)
+        for option in given(request, "at_deg", "at_m", "clockwise", "along"):
+            raise CrankcheckError(
+                f"{option}: {scene.name} has elastic links ({', '.join(scene.elastic)}), whose "
+                f"places depend on how they came there; leave {option} out, and give --turns and "
+                "--steps-per-turn"
+            )
+        refuse_samples(request)
+
+    def show(self, console: Console, solution: ElasticSolution, request: SolveOptions) -> None:
+        solution.show_at(console, solution.time_s)
+        more = "Points, and more digits: -o out.csv, .parquet or .xlsx; moving: -o out.html"
+        say(console, more, "dim")
+
+    def figure_files(self) -> Sequence[str]:
+        from reports.figures.elastic_figures import ELASTIC_FIGURES
+
+        return ELASTIC_FIGURES.files
+
+    def drawn(self, solution: ElasticSolution, folder: Path) -> str:
+        from reports.figures.elastic_figures import ELASTIC_FIGURES
+
+        motion = solution.vibration
+        course = drawn_course(motion, closely_sampled(motion.scene, motion.until_s))
+        return ELASTIC_FIGURES.written(course, folder)
+
+    def page(self, solution: ElasticSolution) -> tuple[str, str]:
+        from reports.requests.scene_report import elastic_page_of
+
+        motion = solution.vibration
+        words = f"{motion.scene.name}{self.of_links} over {motion.until_s:.6g} s"
+        return elastic_page_of(motion), words
+
+
+class ReleasedElasticSolving(LetGo, ElasticSolving):
+    """Of scenes that are let go, with links that bend."""
+
+    def solution(self, scene: Scene, asked: Asked) -> ElasticSolution:
+        self.refuse_forces(scene, asked)
+        return super().solution(scene, asked)

@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
-import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError, suggestion
 from reports.contract.clauses import CLAUSES
 from reports.contract.ruling import SCENES, named, put_to_all, refuses_all, show
-from reports.requests.options import Jobs
+from reports.requests.options import Jobs, argument, option
 from reports.workers.isolated import checked_limits
 from reports.workers.progress import progress_bar
 
@@ -24,15 +23,11 @@ MEMORY_GB = 4.0
 class EngineCheckRequest:
     """What `engines check` was asked for, as given."""
 
-    name: Annotated[
-        str,
-        typer.Argument(metavar="ENGINE", help="A name, or one of your own, package.module:ENGINE."),
-    ]
+    name: Annotated[str, argument("ENGINE", "A name, or one of your own, package.module:ENGINE.")]
     clauses: Annotated[
-        Sequence[str],
-        typer.Option("--clause", metavar="ID", help="Clause; may be repeated; all if none."),
+        Sequence[str], option("Clause; may be repeated; all if none.", "--clause ID")
     ] = ()
-    limit_s: Annotated[float, typer.Option(help="Longest time for a clause, in seconds.")] = 60.0
+    limit_s: Annotated[float, "Longest time for a clause, in seconds."] = 60.0
     jobs: Jobs = 0
 
     def run(self, console: Console, progress: Console) -> int:

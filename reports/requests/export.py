@@ -1,29 +1,31 @@
-"""`crankcheck export`: a scene as MJCF."""
+"""Commands that show a scene as an engine has it: `export`, `recipe forces`, `view`."""
 
 from __future__ import annotations
 
+import math
+import os
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
-import typer
 from rich.console import Console
 
-from analytic.kinematics import solve
 from models.errors import CrankcheckError, harmless
 from models.files.reading import find_scene, load_scene
 from models.mjcf.document import build
 from models.mjcf.options import exact
-from models.motion import State
-from models.scene import Scene
-from reports.compare.free.free_truth import released_state
+from reports.output.console import put, say
 from reports.output.write import check_file, write
-from reports.plan.elastic import SPRINGS, held_steps, segmented
 from reports.plan.free import under_control
-from reports.requests.options import SceneName
-from reports.way.length import SEGMENTS
+from reports.plan.steps import MOST_STEPS
+from reports.requests.options import SceneName, option, output_option
+from reports.way.way import way_of
+from sim.offers import force_recipe, viewer
+from sim.registry import engine
+from sim.run import check_steps
+from sim.settings import profile_of, resolved
 
 
 @dataclass(frozen=True)
@@ -31,12 +33,9 @@ class ExportRequest:
     """What `export` was asked for, as given."""
 
     scene: SceneName
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="Write an .xml file.")] = (
-        None
-    )
+    output: Annotated[Path | None, output_option("Write an .xml file.")] = None
     close: Annotated[
-        Sequence[str],
-        typer.Option(metavar="PIN", help="Close a loop at this pin; may be repeated."),
+        Sequence[str], option("Close a loop at this pin; may be repeated.", "PIN")
     ] = ()
 
     def run(self, console: Console, progress: Console) -> int:
@@ -48,33 +47,91 @@ class ExportRequest:
         if self.output is not None:
             check_file(self.output, "-o", (".xml",), inputs=[find_scene(self.scene)])
         own = under_control(load_scene(self.scene))
-        scene, start = opened(own)
+        way = way_of(own)
+        scene, start = way.opened(own)
         # Of segments the step is one that holds their fastest vibration.
-        steps = (held_steps(own, SEGMENTS, SPRINGS[0]),) if own.elastic else ()
+        steps = way.held_steps(own)
         text = build(scene, start, replace(exact(scene, *steps), close=tuple(self.close)))
-        if self.output is None:
-            console.file.write(text)
-            return 0
-        write(self.output, text)
-        console.print(
-            harmless(f"{self.output}: MJCF of {scene.name}"), highlight=False, markup=False
-        )
+        put(console, self.output, text, f"MJCF of {scene.name}")
         return 0
 
 
-def opened(scene: Scene) -> tuple[Scene, State]:
-    """What an engine is given of a scene, which of elastic links are segments, and where it begins.
-    Raises CrankcheckError where it can not."""
-    if scene.elastic:
-        return segmented(scene)
-    return scene, start_of(scene)
+@dataclass(frozen=True)
+class ForceRecipeRequest:
+    """What `recipe forces` was asked for, as given."""
+
+    engine: Annotated[str, "Engine."]
+    scene: Annotated[str, option("A shipped name, or a scene file.", "SCENE")] = "fourbar-lecture-1"
+    profile: Annotated[str, "Profile of the engine."] = "tuned"
+    steps_per_turn: Annotated[float, "Steps in a turn."] = 720.0
+    output: Annotated[Path | None, output_option("Write a .py file.")] = None
+
+    def run(self, console: Console, progress: Console) -> int:
+        """The program, into a file or to the terminal."""
+        if self.output is not None:
+            check_file(self.output, "-o", (".py",), inputs=[find_scene(self.scene)])
+        if not (math.isfinite(self.steps_per_turn) and self.steps_per_turn > 0.0):
+            raise CrankcheckError(
+                f"--steps-per-turn: found {self.steps_per_turn:g}; give a number above 0"
+            )
+        if self.steps_per_turn > MOST_STEPS:
+            raise CrankcheckError(
+                f"--steps-per-turn: found {self.steps_per_turn:g}; the program keeps a line for "
+                f"each step, so give {MOST_STEPS} at most"
+            )
+        scene = load_scene(self.scene)
+        settings = resolved(profile_of(engine(self.engine), self.profile), None)
+        period = scene.driver.law.period_s
+        check_steps(scene, period, period / self.steps_per_turn, 1, 1)
+        scene, start = way_of(scene).opened(scene)
+        text = force_recipe(self.engine, scene, start, settings, self.steps_per_turn)
+        put(console, self.output, text, f"forces of {scene.name} in {self.engine}")
+        return 0
 
 
-def start_of(scene: Scene) -> State:
-    """Where a scene begins. Raises CrankcheckError where it can not."""
-    try:
-        return solve(scene, np.zeros(1)).state()
-    except CrankcheckError:
-        if not scene.is_free:
-            raise
-        return released_state(scene)  # of several freedoms there is no closed form
+PICTURES = (".gif", ".png")
+
+
+@dataclass(frozen=True)
+class ViewRequest:
+    """What `view` was asked for, as given."""
+
+    scene: SceneName
+    output: Annotated[
+        Path | None, output_option("Draw into a .gif or .png in place of the viewer.")
+    ] = None
+    forces: Annotated[bool, "Draw the forces as arrows, into a file."] = False
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Show a scene; the viewer draws no forces of ours, so that these go into a file.
+
+        Raises CrankcheckError for a scene or a file that can not be used, or forces that there are
+        none of.
+        """
+        output = self.output
+        read = [find_scene(self.scene)]
+        if output is not None:
+            check_file(output, "-o", PICTURES, inputs=read)
+        scene = load_scene(self.scene)
+        if output is None and has_screen() and not self.forces:
+            viewer()(*way_of(scene).opened(scene))
+            return 0
+        if output is None:
+            output = Path(f"{scene.name}.gif")
+            check_file(output, "view", PICTURES, inputs=read)
+            why = "forces are drawn" if self.forces else "no screen here, so"
+            console.print(f"{why} into a file:", style="dim")
+        from reports.drawing import gif as picture
+
+        draw = picture.strip if output.suffix.lower() == ".png" else picture.animation
+        content = draw(scene, with_forces=self.forces)
+        write(output, content)
+        say(console, harmless(f"{output}: {scene.name} {way_of(scene).over}"))
+        return 0
+
+
+def has_screen() -> bool:
+    """Whether a window can be opened here."""
+    if sys.platform in ("darwin", "win32"):
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -9,7 +9,6 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from matplotlib.figure import Figure
 from rich.console import Console
 from rich.progress import track
@@ -20,9 +19,10 @@ from reports.figures.all_figures import FIGURES
 from reports.figures.drawing import Drawing
 from reports.figures.saving import FORMATS, saved
 from reports.figures.style import styled
-from reports.output.console import tell
+from reports.output.console import say_whole, tell
 from reports.output.numbers import count
 from reports.output.write import check_folder, write
+from reports.requests.options import argument, option, output_option
 from reports.results.overview import Report
 from reports.store.reader import read_store
 
@@ -33,14 +33,10 @@ Drawn = Callable[[], Figure | None]
 class FiguresRequest:
     """What `figures` was asked for, as given."""
 
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a sweep.")]
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the figures.")]
-    scene: Annotated[
-        Sequence[str], typer.Option(help="Scene to draw; may be repeated; all if none.")
-    ] = ()
-    only: Annotated[
-        Sequence[str], typer.Option(metavar="FIGURE", help="Figure to draw; may be repeated.")
-    ] = ()
+    folder: Annotated[Path, argument("DIR", "Folder of a sweep.")]
+    output: Annotated[Path, output_option("Folder for the figures.")]
+    scene: Annotated[Sequence[str], "Scene to draw; may be repeated; all if none."] = ()
+    only: Annotated[Sequence[str], option("Figure to draw; may be repeated.", "FIGURE")] = ()
 
     def run(self, console: Console, progress: Console) -> int:
         """Draw the store in ``folder`` into ``output``; returns the exit code, 0.
@@ -76,7 +72,7 @@ class FiguresRequest:
             f"{self.output}: {drawn}, each as {kinds}",
             *(f"  {x}: nothing to draw" for x in empty),
         ]
-        console.print("\n".join(lines), markup=False, highlight=False, soft_wrap=True)
+        say_whole(console, "\n".join(lines))
         return 0
 
 

@@ -2,23 +2,40 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
+from rich.console import Console
 
+from analytic.free.free_motion import FreeMotion
+from analytic.free.release import release
 from analytic.result import Selection
-from models.array import Array
+from analytic.structure.mobility import analyse
+from models.array import Array, samples
+from models.errors import CrankcheckError
 from models.motion import Bound, Motion
 from models.scene import Scene
-from reports.requests.solution import ROWS, Solution, drawn, thinned
+from reports.describe.facts import describe_law
+from reports.describe.frame import cleaned
+from reports.describe.free_motion import free_columns, free_notes, free_tables
+from reports.describe.tables import motion_tables
+from reports.output.console import say
+from reports.plan.singular import continued_note
+from reports.requests.arguments import is_true
+from reports.requests.options import given
+from reports.requests.solution import ROWS, Solution, drawn, heading, thinned
+from reports.requests.solve_options import SolveOptions
+from reports.requests.solving import ON_SCREEN, Asked, Solving, most_samples, refuse_samples
 
 if TYPE_CHECKING:
     import pandas as pd
-    from rich.console import Console
 
-    from analytic.free.free_motion import FreeMotion
-
+LONG_FILE = 1000
+"""Samples in a file."""
 Bodies = TypeVar("Bodies", Motion, Bound)
 
 
@@ -43,18 +60,14 @@ class FreeSolution(Solution):
 
     def frame(self) -> pd.DataFrame:
         """As of `Solution`, with the energies, the sensitivity and the error beside."""
-        from reports.describe.free_motion import free_columns
-
         return super().frame().assign(**free_columns(self.free, self.time_s))
 
     def show(self, console: Console) -> None:
-        from reports.requests.free_text import show_free
-
         few = thinned(self, ROWS)
         show_free(console, self.free, few)
         if few.time_s.size < self.time_s.size:
             left = f"{few.time_s.size} of {self.time_s.size} samples; all of them: frame()"
-            console.print(left, style="dim", highlight=False)
+            say(console, left, "dim")
 
     def _drawn(self) -> str:
         return drawn(self.scene)
@@ -68,8 +81,6 @@ def free_solution(scene: Scene, time_s: Array, wanted: Selection, *, bound: bool
     CrankcheckError
         Times before the start, and as `analytic.free.release.release`.
     """
-    from analytic.free.release import release
-
     law = scene.driver.law
     free = release(scene, float(np.max(time_s)) if np.max(time_s) > 0.0 else law.period_s)
     motion = _chosen(free.at(time_s, bound=bound), wanted)
@@ -86,3 +97,94 @@ def _chosen(of: Bodies, wanted: Selection) -> Bodies:
         points={name: of.points[name] for name in wanted.points},
         sliders={name: of.sliders[name] for name in wanted.sliders},
     )
+
+
+def show_free(console: Console, whole: FreeMotion, motion: Motion) -> None:
+    """Print the mechanism, every sample of its motion, and the notes."""
+    scene = whole.scene
+    told = heading(scene, analyse(scene)) if whole.by_dyads else _without_dyads(whole)
+    say(console, told)
+    shown = cleaned(motion)
+    tables = motion_tables(scene, shown, console.width)
+    if scene.driver.link in motion.links:
+        tables = [*free_tables(whole, shown, console.width), *tables]
+    for table in tables:
+        console.print(table, "")
+    notes = [*free_notes(whole, float(np.max(motion.time_s))), continued_note(scene, motion)]
+    for note in filter(None, notes):
+        say(console, note, "yellow")
+
+
+def _without_dyads(whole: FreeMotion) -> str:
+    """What a mechanism of other freedoms than one, or of other groups than dyads, is."""
+    scene = whole.scene
+    return (
+        f"{scene.name}: {scene.source}\nmobility {whole.freedoms}; driver {scene.driver.link}, "
+        f"{describe_law(scene)}; by the equations of motion of all bodies\n"
+    )
+
+
+class LetGo(Solving):
+    """What is asked of scenes that are let go, with rigid links or elastic ones."""
+
+    def refuse(self, scene: Scene, request: SolveOptions) -> None:
+        of_driver = "at_deg at_m turns steps_per_turn clockwise along forces"
+        for option in given(request, *of_driver.split()):
+            raise CrankcheckError(
+                f"{option}: {scene.name} is let go, and moves over time as masses and forces have "
+                f"it; leave {option} out, and give --duration and --steps"
+            )
+        refuse_samples(request)
+
+    def instants(self, scene: Scene, request: SolveOptions) -> Array:
+        """From 0 to the end, both included [s]. Raises CrankcheckError."""
+        until_s = scene.driver.law.period_s if request.duration is None else request.duration
+        if not (math.isfinite(until_s) and until_s > 0.0):
+            raise CrankcheckError(f"--duration {until_s:g}: give seconds above 0")
+        steps = request.steps
+        if steps is None:
+            steps = ON_SCREEN if request.output is None else LONG_FILE
+        if steps < 1:
+            raise CrankcheckError(f"--steps {steps}: give at least 1")
+        most = most_samples(request)
+        if steps >= most:
+            raise CrankcheckError(f"--steps {steps}: {steps + 1:.7g} samples; at most {most}")
+        return np.linspace(0.0, until_s, steps + 1)
+
+    def refuse_forces(self, scene: Scene, asked: Asked) -> None:
+        """Refuse forces that nothing drives. Raises CrankcheckError."""
+        if is_true(asked.forces, "forces"):
+            raise CrankcheckError(f"forces=True: {scene.name} is let go, and has no driving torque")
+
+
+class FreeSolving(LetGo):
+    """Of scenes in free motion, with rigid links."""
+
+    def solution(self, scene: Scene, asked: Asked) -> FreeSolution:
+        asked.choice.refuse_of_rigid(scene)
+        self.refuse_forces(scene, asked)
+        chosen = Selection.of(scene, *asked.wanted)
+        instants = samples(asked.time_s, "time_s")
+        return free_solution(scene, instants, chosen, bound=is_true(asked.bound, "bound"))
+
+    def show(self, console: Console, solution: FreeSolution, request: SolveOptions) -> None:
+        show_free(console, solution.free, solution)
+        more = "Points, and more digits: -o out.csv, .parquet or .xlsx; figures: -o out.html"
+        say(console, more, "dim")
+
+    def figure_files(self) -> Sequence[str]:
+        from reports.figures.free_figures import FREE_FIGURES
+
+        return FREE_FIGURES.files
+
+    def drawn(self, solution: FreeSolution, folder: Path) -> str:
+        from reports.figures.free_figures import FREE_FIGURES, free_course
+
+        return FREE_FIGURES.written(free_course(solution.free), folder)
+
+    def page(self, solution: FreeSolution) -> tuple[str, str]:
+        from reports.requests.scene_report import free_page_of
+
+        lasts_s = solution.time_s[-1]
+        words = f"the free motion of {solution.scene.name} over {lasts_s:g} s"
+        return free_page_of(solution.free), words

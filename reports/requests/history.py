@@ -7,26 +7,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
 from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from models.files.reading import find_scenes
-from reports.history.cache import alone, cache_folder
-from reports.history.document import page, table_text
 from reports.history.environments import EngineVersion, NotMeasuredError, ready, uv_here, wanted
-from reports.history.table import show
-from reports.history.verification import kept, key_of, measure, place
+from reports.history.table import page, show, table_text
+from reports.history.verification import alone, cache_folder, kept, key_of, measure, place
 from reports.history.version_result import VersionResult, read_version
 from reports.judge.cell import Cell
+from reports.output.console import say_whole
 from reports.output.provenance import provenance
 from reports.output.write import check_folder, refuse_link, write
 from reports.plan.chosen import left_out_note
-from reports.plan.free import free_names
-from reports.requests.options import Duration, Jobs, StepS, StepsPerTurn
-from reports.requests.verify import VerifyRequest, plan
-from reports.requests.verify_files import IN_FOLDER
+from reports.requests.options import Duration, Jobs, StepS, StepsPerTurn, argument, option
+from reports.requests.verify import IN_FOLDER, VerifyRequest, plan
 from reports.results.changes.reading import scene_digests
 from reports.workers.signals import run_child
 from sim.registry import ENGINES, engine
@@ -38,36 +34,24 @@ FILES = ("history.csv", "history.md")
 class HistoryRequest:
     """What `history` was asked for, as given; as of `verify` where the names are the same."""
 
-    engine: Annotated[str, typer.Argument(metavar="ENGINE", help="Engine, such as mujoco.")]
-    versions: Annotated[
-        Sequence[str], typer.Argument(metavar="VERSION", help="Released versions of it.")
-    ]
+    engine: Annotated[str, argument("ENGINE", "Engine, such as mujoco.")]
+    versions: Annotated[Sequence[str], argument("VERSION", "Released versions of it.")]
     scenes: Annotated[
-        Sequence[str],
-        typer.Option("--scene", help="Shipped name or file; may be repeated; all if none."),
+        Sequence[str], option("Shipped name or file; may be repeated; all if none.", "--scene")
     ] = ()
     profiles: Annotated[
-        Sequence[str], typer.Option("--profile", help="Profile; default: tuned and as-shipped.")
+        Sequence[str], option("Profile; default: tuned and as-shipped.", "--profile")
     ] = ()
     dt_s: StepS = None
     steps_per_turn: StepsPerTurn = None
-    turns: Annotated[float | None, typer.Option(help="Turns of the driver (default 2).")] = None
-    free: Annotated[
-        bool, typer.Option("--free", help="Let scenes go; those of free motion if none is named.")
-    ] = False
+    turns: Annotated[float | None, "Turns of the driver (default 2)."] = None
+    free: Annotated[bool, "Let scenes go; those of free motion if none is named."] = False
     duration_s: Duration = None
     jobs: Jobs = 0
-    cache: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Where environments and results are kept.")
-    ] = None
-    again: Annotated[bool, typer.Option("--again", help="Verify again; environments are kept.")] = (
-        False
-    )
+    cache: Annotated[Path | None, option("Where environments and results are kept.", "DIR")] = None
+    again: Annotated[bool, "Verify again; environments are kept."] = False
     folder: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="DIR", help="Write tables and each version's verification."
-        ),
+        Path | None, option("Write tables and each version's verification.", "-o --output DIR")
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
@@ -77,13 +61,13 @@ class HistoryRequest:
         versions = wanted(self.engine, self.versions)
         if not versions:
             raise CrankcheckError(f"history {self.engine}: name versions, such as 3.6.0 3.7.0")
-        cells = plan(_verification(self))
-        names = free_names(self.scenes) if self.free else self.scenes
+        verification = _verification(self)
+        cells, names = plan(verification), verification.names
         cache = cache_folder(self.cache)
         _check_outputs(self, versions)
         uv = uv_here()
         if note := left_out_note(names):
-            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+            say_whole(progress, note)
         # The files of a result hold the digests of the scenes' texts, by which they are compared.
         key, results = key_of([*cells, scene_digests(names)]), []
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:

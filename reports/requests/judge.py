@@ -7,18 +7,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, overload
 
-import typer
 from rich.console import Console
 
 from analytic.free.free_motion import loosened
-from models.errors import CrankcheckError, harmless
+from models.errors import CrankcheckError
 from models.files.inputs import names_in
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
-from reports.judge.tolerance import check_names, parse, refuse_of_other_kinds
+from reports.judge.tolerance import (
+    check_names,
+    parse,
+    refuse_of_other_kinds,
+)
 from reports.logs.map_file import Map, read_map
+from reports.output.console import say_whole
 from reports.output.provenance import provenance
-from reports.output.write import check_file, check_outputs
+from reports.output.write import Outputs, check_file
 from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, judge_log
 from reports.own_log.log_kind import LogRequest
@@ -27,9 +31,17 @@ from reports.own_log.rows import row_table
 from reports.own_log.table import markdown, show
 from reports.plan.elastic import given_of
 from reports.plan.steps import positive
-from reports.quantities.limits import DEFAULTS, FREE
 from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
-from reports.requests.arguments import SceneLike, is_true, one_of, scene_of, tolerances_of
+from reports.requests.arguments import (
+    SceneLike,
+    in_python,
+    is_true,
+    one_of,
+    parts_in_python,
+    scene_of,
+    told_at_the_call,
+    tolerances_of,
+)
 from reports.requests.check import CellVerdict, verdict_of_run
 from reports.requests.compare import (
     LOG_DRIVES,
@@ -37,12 +49,18 @@ from reports.requests.compare import (
     refuse_segments,
     refuse_without_forces,
 )
-from reports.requests.judge_files import write_log_map, write_results
-from reports.requests.options import SceneName, SegmentCount, SpringKind, seconds
+from reports.requests.judge_files import contents, write_log_map
+from reports.requests.options import (
+    SceneName,
+    SegmentCount,
+    SpringKind,
+    argument,
+    option,
+    output_option,
+    seconds,
+)
 from reports.requests.shown import Shown
 from reports.requests.solution import drawn
-from reports.requests.told import in_python, parts_in_python, told_at_the_call
-from reports.way.length import LEAST_STEPS
 from reports.way.way import way_of
 from sim.engine import Run
 
@@ -191,7 +209,7 @@ def judged(
         scene = scene_of_run(scene, log)
         _refuse_other_targets(scene, limits)
         _refuse_few_steps(scene, log)
-        every_name = FREE if scene.is_free else DEFAULTS
+        every_name = way_of(scene).targets
         named = limits if every is None else {name: limits.get(name, every) for name in every_name}
         return verdict_of_run(scene, log, named)
     if free:
@@ -220,10 +238,10 @@ def _refuse_other_targets(scene: Scene, target: Mapping[str, float]) -> None:
 
 def _refuse_few_steps(scene: Scene, run: Run) -> None:
     """Refuse a free run that has hardly begun, whose drift and order are those of its start."""
-    if scene.is_free and run.steps < LEAST_STEPS:
+    if run.steps < (least := way_of(scene).least_judged):
         raise CrankcheckError(
             f"{scene.name}: the run has {run.steps} steps; free motion is judged from "
-            f"{LEAST_STEPS} on: take shorter ones, or a longer time"
+            f"{least} on: take shorter ones, or a longer time"
         )
 
 
@@ -242,46 +260,30 @@ class JudgeRequest:
     """What `judge` was asked for, as given."""
 
     scene: SceneName
-    log: Annotated[
-        Path, typer.Argument(metavar="LOG", help="Your log: .csv, .tsv, .txt, .parquet or .xlsx.")
-    ]
-    map: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="TOML that says what columns mean.")
-    ] = None
+    log: Annotated[Path, argument("LOG", "Your log: .csv, .tsv, .txt, .parquet or .xlsx.")]
+    map: Annotated[Path | None, option("TOML that says what columns mean.", "FILE")] = None
     write_map: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Write the map of what was understood, and end."),
+        Path | None, option("Write the map of what was understood, and end.", "FILE")
     ] = None
-    drive: Annotated[
-        str,
-        typer.Option(help="scene, fitted (speed and start), or logged (geometry at its angle)."),
-    ] = "scene"
+    drive: Annotated[str, "scene, fitted (speed and start), or logged (geometry at its angle)."] = (
+        "scene"
+    )
     step_s: Annotated[
-        float | None,
-        typer.Option("--step", metavar="SECONDS", parser=seconds, help="Step of the solver."),
+        float | None, option("Step of the solver.", "--step SECONDS", parser=seconds)
     ] = None
     target: Annotated[
         Sequence[str],
-        typer.Option(
-            metavar="NUMBER", help="Largest pure error, such as 1e-3 or angle=1e-4; repeatable."
-        ),
+        option("Largest pure error, such as 1e-3 or angle=1e-4; repeatable.", "NUMBER"),
     ] = ()
     require: Annotated[
-        Sequence[str],
-        typer.Option(metavar="NAME", help="Quantity or body that has to be in the log."),
+        Sequence[str], option("Quantity or body that has to be in the log.", "NAME")
     ] = ()
-    format: Annotated[str, typer.Option(metavar="text|md", help="What is printed.")] = "text"
-    json: Annotated[Path | None, typer.Option(help="Write errors and findings as JSON.")] = None
-    junit: Annotated[Path | None, typer.Option(help="Write JUnit XML, a case per error.")] = None
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="Write a page, .html.")] = (
-        None
-    )
-    free: Annotated[
-        bool, typer.Option("--free", help="It is of the driven scene, let go at time 0.")
-    ] = False
-    forces: Annotated[
-        bool, typer.Option("--forces", help="Judge its columns of forces and torque as well.")
-    ] = False
+    format: Annotated[str, option("What is printed.", "text|md")] = "text"
+    json: Annotated[Path | None, "Write errors and findings as JSON."] = None
+    junit: Annotated[Path | None, "Write JUnit XML, a case per error."] = None
+    output: Annotated[Path | None, output_option("Write a page, .html.")] = None
+    free: Annotated[bool, "It is of the driven scene, let go at time 0."] = False
+    forces: Annotated[bool, "Judge its columns of forces and torque as well."] = False
     segments: SegmentCount = None
     springs: SpringKind = None
 
@@ -291,49 +293,36 @@ class JudgeRequest:
         scene = load_scene(self.scene)
         if self.free:
             scene = loosened(scene)
-        asked = _checked(self, scene)
+        outputs = Outputs({"-o": self.output, "--json": self.json, "--junit": self.junit})
+        asked = _checked(self, scene, outputs)
         check_names(scene)
         _refuse_other_targets(scene, asked.target)
-        map_ = read_map(self.map) if self.map else Map()
         if self.write_map is not None:
-            told = f"{self.write_map}: {write_log_map(self.write_map, self.log, scene, map_)}"
-            console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
+            map_ = read_map(self.map) if self.map else Map()
+            told = write_log_map(self.write_map, self.log, scene, map_)
+            say_whole(console, f"{self.write_map}: {told}")
             return 0
-        from reports.logs.columns import read_columns
-        from reports.logs.meanings import understood, wanted
-
-        # No name for the columns, which take as much memory as all readings.
-        log = understood(
-            read_columns(self.log, map_.layout, wanted(scene, map_, forces=self.forces)),
-            scene,
-            map_,
-            forces=self.forces,
-        )
-        judged = judge_log(log, asked)
+        judged = judge_log(log_of(scene, self.log, self.map, forces=self.forces), asked)
         facts = provenance({})
-        try:
-            write_results(judged, facts, self.json, self.junit, self.output)
-        finally:  # a full disk costs the file, and not the verdict with it
+        with outputs.written(contents(judged, facts)):
             if self.format == "md":
-                console.print(
-                    markdown(judged, facts), markup=False, highlight=False, soft_wrap=True
-                )
+                text = markdown(judged, facts)
+                console.print(text, markup=False, highlight=False, soft_wrap=True)
             else:
                 show(console, judged, facts)
         return int(judged.verdict == "out")
 
 
-def _checked(request: JudgeRequest, scene: Scene) -> LogRequest:
+def _checked(request: JudgeRequest, scene: Scene, outputs: Outputs) -> LogRequest:
     """What the log is to be judged by. Raises CrankcheckError for what can be told before."""
     if request.format not in FORMATS:
         raise CrankcheckError(f"--format {request.format!r}: unknown; use text or md")
-    endings = {"--write-map": (".toml",), "-o": (".html",)}
-    files = {"--write-map": request.write_map, "-o": request.output}
-    for option, path in files.items():
-        if path is not None:
-            check_file(path, option, endings[option])
-    files |= {"--json": request.json, "--junit": request.junit}
-    check_outputs(files, inputs=(find_scene(request.scene), request.log, request.map))
+    if request.write_map is not None:
+        check_file(request.write_map, "--write-map", (".toml",))
+    if request.output is not None:
+        check_file(request.output, "-o", (".html",))
+    files = {"--write-map": request.write_map, **outputs.files}
+    Outputs(files).check((find_scene(request.scene), request.log, request.map))
     drive = chosen_drive(request.drive)
     refuse_geometry_alone(drive, forces=request.forces)
     if request.step_s is not None and not request.step_s > 0.0:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from models.errors import CrankcheckError
@@ -43,23 +43,20 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
     return f"what {log} says, as it was understood"
 
 
-def write_results(
-    judged: JudgedLog,
-    facts: Mapping[str, str],
-    document: Path | None,
-    cases: Path | None,
-    page: Path | None,
-) -> None:
-    """Every output that was asked for, each whole or not at all."""
-    if document:
-        write(document, _json(judged, facts))
-    if cases:
-        write(cases, junit(suite(judged, facts)))
-    if page:
-        # It brings the drawings, which nothing else here needs.
-        from reports.page.log_page import log_page
+def contents(judged: JudgedLog, facts: Mapping[str, str]) -> dict[str, Callable[[], str]]:
+    """What there is to write, by option."""
+    return {
+        "--json": lambda: _json(judged, facts),
+        "--junit": lambda: junit(suite(judged, facts)),
+        "-o": lambda: _page(judged, facts),
+    }
 
-        write(page, log_page(judged, facts))
+
+def _page(judged: JudgedLog, facts: Mapping[str, str]) -> str:
+    """The page of a verdict."""
+    from reports.page.log_page import log_page  # the drawings, which nothing else here needs
+
+    return log_page(judged, facts)
 
 
 def _json(judged: JudgedLog, facts: Mapping[str, str]) -> str:

@@ -8,15 +8,14 @@ from os import PathLike
 from pathlib import Path
 from typing import Annotated, Literal
 
-import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.output.console import tell
+from reports.output.console import say, tell
 from reports.output.write import check_file, write
-from reports.requests.arguments import path_of
+from reports.requests.arguments import path_of, told_at_the_call
+from reports.requests.options import argument, option, output_option
 from reports.requests.sweep import Sweep
-from reports.requests.told import told_at_the_call
 from reports.stability.matrix import FILE as MATRIX
 from reports.stability.matrix import Matrix, read_matrix
 from reports.store.schema import TABLES
@@ -93,16 +92,11 @@ def format_of(text: str) -> Format:
 class ReportRequest:
     """What `report` was asked for, as given."""
 
-    folder: Annotated[
-        Path, typer.Argument(metavar="DIR", help="Folder of a sweep, or of hard cases.")
-    ]
+    folder: Annotated[Path, argument("DIR", "Folder of a sweep, or of hard cases.")]
     output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", help="File to write (default report.html; md: none)."),
+        Path | None, output_option("File to write (default report.html; md: none).")
     ] = None
-    format: Annotated[
-        str, typer.Option("--format", metavar="html|md", help="A page, or text in Markdown.")
-    ] = "html"
+    format: Annotated[str, option("A page, or text in Markdown.", "html|md")] = "html"
 
     def run(self, console: Console, progress: Console) -> int:
         """Write the report of the store in ``folder``, or of the hard cases alone; returns the exit
@@ -127,7 +121,7 @@ class ReportRequest:
             return 0
         write(output, made.text)
         size = len(made.text.encode()) / 1e6
-        console.print(f"{output}: {made.content}, {size:.1f} MB", markup=False, highlight=False)
+        say(console, f"{output}: {made.content}, {size:.1f} MB")
         return 0
 
 

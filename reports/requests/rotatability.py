@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-import typer
 from rich.console import Console
 
 from analytic.circuits.arcs import own_arc
@@ -21,8 +20,8 @@ from models.driver import driver_unit
 from models.errors import CrankcheckError, StructureError, harmless, shown
 from models.files.reading import load_scene
 from models.scene import Scene
-from reports.output.columns import plain_table
-from reports.requests.options import SceneName
+from reports.output.console import plain_table, say, say_whole
+from reports.requests.options import SceneName, option
 
 Row = Mapping[str, object]
 
@@ -34,13 +33,13 @@ class RotatabilityRequest:
     scene: SceneName
     position: Annotated[
         Sequence[str],
-        typer.Option(
-            metavar="DEG[:SIGNS]",
-            help="A position, such as 90 or 90:+-, signs by dyad in solving order; repeatable: "
+        option(
+            "A position, such as 90 or 90:+-, signs by dyad in solving order; repeatable: "
             "whether the driver leads through all in this order.",
+            "DEG[:SIGNS]",
         ),
     ] = ()
-    json: Annotated[bool, typer.Option("--json", help="As JSON, not as tables.")] = False
+    json: Annotated[bool, "As JSON, not as tables."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Show it; the exit code. Raises CrankcheckError for what can not be asked."""
@@ -158,22 +157,21 @@ def _of_own_branch(scene: Scene, why: str) -> dict[str, object]:
 
 def _show_own_branch(console: Console, document: Mapping[str, Any]) -> None:
     """The same in words and a table."""
-
-    def say(text: str) -> None:
-        console.print(harmless(text), highlight=False, markup=False)
-
-    say(f"{document['scene']}: the branch that it is on alone")
+    say(console, f"{document['scene']}: the branch that it is on alone")
     show_rows(console, document["rotations"], TABLES["rotations"].split())
-    say("")
+    say(console, "")
     for end in document["ends"]:
-        say(f"{document['driver']} ends at {end['at']:.6g} {document['unit']}: {end['where']}")
+        say(
+            console,
+            f"{document['driver']} ends at {end['at']:.6g} {document['unit']}: {end['where']}",
+        )
     if not document["ends"]:
-        say(f"{document['driver']} turns fully")
-    say(document["why_no_circuits"])
+        say(console, f"{document['driver']} turns fully")
+    say(console, harmless(document["why_no_circuits"]))
 
 
 def _print_json(console: Console, document: Mapping[str, object]) -> None:
-    console.print(json.dumps(document, indent=1), highlight=False, markup=False, soft_wrap=True)
+    say_whole(console, json.dumps(document, indent=1))
 
 
 def rotation_row(one: Rotation, *, is_limited: bool) -> Row:
@@ -212,27 +210,23 @@ TABLES = {
 
 def _show(console: Console, document: Mapping[str, Any]) -> None:
     """The same in words and tables."""
-
-    def say(text: str) -> None:
-        console.print(text, highlight=False, markup=False)
-
     kind = "no four-bar or slider-crank driven at its crank, so of no Grashof type"
     if document["type"] is not None:
         kind = f"{document['type']}, margin {document['margin_m']:.6g} m"
-    say(f"{document['scene']}: {kind}")
+    say(console, f"{document['scene']}: {kind}")
     for name, columns in TABLES.items():
         if name == "branches":
             meet = ", those that meet in change points as one" if document["change_points"] else ""
-            say(f"\ncircuits{meet}; signs of {', '.join(document['dyads']) or 'no dyad'}")
+            say(console, f"\ncircuits{meet}; signs of {', '.join(document['dyads']) or 'no dyad'}")
         elif name != "rotations":
-            say(f"\n{name.replace('_', ' ')}" + ("" if document[name] else ": none"))
+            say(console, f"\n{name.replace('_', ' ')}" + ("" if document[name] else ": none"))
         if document[name]:
             show_rows(console, document[name], columns.split())
-    say(f"\nindex of merit {document['merit']:.6g} at {document['merit_at_deg']:.6g} deg")
+    say(console, f"\nindex of merit {document['merit']:.6g} at {document['merit_at_deg']:.6g} deg")
     if "defect" in document:
         found = document["defect"]
         told = "led through by the driver" if found == "none" else f"a {found} defect"
-        say(f"positions: {told}")
+        say(console, f"positions: {told}")
 
 
 def show_rows(console: Console, rows: Sequence[Row], columns: Sequence[str]) -> None:

@@ -8,15 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
-import typer
 from rich.console import Console
 
-from analytic.free.free_motion import loosened
-from models.errors import CrankcheckError, harmless
+from models.errors import CrankcheckError
 from models.files.reading import find_scene
 from models.scene import Scene
-from reports.compare.beside import Truth
 from reports.compare.free.free_truth import released_state
+from reports.output.console import say, say_whole
 from reports.output.frame_file import ENDINGS, write_frame
 from reports.output.write import check_file
 from reports.plan.elastic import given_of
@@ -28,6 +26,7 @@ from reports.requests.arguments import (
     one_of,
     scene_of,
     settings_of,
+    told_at_the_call,
     whole_of,
 )
 from reports.requests.options import (
@@ -39,10 +38,11 @@ from reports.requests.options import (
     StepS,
     StepsPerTurn,
     given,
+    option,
+    output_option,
 )
 from reports.requests.shown import Shown
 from reports.requests.solution import ROWS, drawn, thinned
-from reports.requests.told import told_at_the_call
 from reports.way.length import SEGMENTS, GivenAs, Length, Planned, Springs
 from reports.way.way import way, way_of
 from sim import run as stepping
@@ -81,17 +81,17 @@ class Simulation(Shown, Run):
     def show(self, console: Console) -> None:
         from reports.describe.tables import motion_tables
 
-        console.print(self._heading(), highlight=False, markup=False)
+        say(console, self._heading())
         if self.motion is not None:
             few = thinned(self.motion, ROWS)
             for table in motion_tables(self.mechanism, few, console.width):
                 console.print(table, "")
             left = f"{few.time_s.size} of {self.motion.time_s.size} logged samples"
-            console.print(left, style="dim", highlight=False)
+            say(console, left, "dim")
         style = "" if self.status == "ok" else "red"
-        console.print(self.ending(), style=style, highlight=False, markup=False)
+        say(console, self.ending(), style)
         for warning in self.warnings:
-            console.print(f"warning: {warning}", style="yellow", highlight=False, markup=False)
+            say(console, f"warning: {warning}", "yellow")
 
     def _heading(self) -> str:
         """What was run."""
@@ -103,11 +103,7 @@ class Simulation(Shown, Run):
 
     def _length(self) -> str:
         """How long it is: in turns of what drives it, or in time."""
-        if self.mechanism.is_free:
-            return f"{self.steps} steps, {self.steps * self.dt_s:.6g} s"
-        per_turn = self.mechanism.driver.law.period_s / self.dt_s
-        turns = self.steps / per_turn
-        return f"{per_turn:.6g} steps a turn, {turns:.6g} turn{'s' * (turns != 1.0)}"
+        return way_of(self.mechanism).long(self.mechanism, self.dt_s, self.steps)
 
     def ending(self) -> str:
         """What came of it, in a line."""
@@ -126,25 +122,19 @@ class RunRequest:
     """What `run` was asked for, as given; ``settings`` in Python alone."""
 
     scene: SceneName
-    engine: Annotated[
-        str | None, typer.Option(help="Engine; the first of `crankcheck engines` if none.")
-    ] = None
-    profile: Annotated[str, typer.Option(help="Profile of the engine.")] = "tuned"
+    engine: Annotated[str | None, "Engine; the first of `crankcheck engines` if none."] = None
+    profile: Annotated[str, "Profile of the engine."] = "tuned"
     dt_s: StepS = None
     steps_per_turn: StepsPerTurn = None
-    turns: Annotated[float | None, typer.Option(help="Turns of the driver (default 2).")] = None
+    turns: Annotated[float | None, "Turns of the driver (default 2)."] = None
     duration_s: Duration = None
-    every: Annotated[int, typer.Option(metavar="N", help="Log every N-th step.")] = 1
+    every: Annotated[int, option("Log every N-th step.", "N")] = 1
     drive: Annotated[
         str | None,
-        typer.Option(
-            help="prescribed, servo, or free (nothing drives it); default free for a scene that is "
-            "let go, else prescribed."
-        ),
+        "prescribed, servo, or free (nothing drives it); default free for a scene that is "
+        "let go, else prescribed.",
     ] = None
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx.")
-    ] = None
+    output: Annotated[Path | None, output_option("Write .csv, .parquet or .xlsx.")] = None
     forces: Forces = False
     segments: SegmentCount = None
     springs: SpringKind = None
@@ -160,13 +150,13 @@ class RunRequest:
         _refuse_other_length(scene, drive, self)
         bent = given_of([scene], self.segments, self.springs)
         length = Length(self.dt_s, self.steps_per_turn, self.turns, self.duration_s, every, 1)
-        if drive == "free":
-            driven, scene = scene, loosened(scene)
-        if drive == "free" and (self.turns, self.steps_per_turn) != (None, None):
+        chosen, driven = way_of(scene, drive), scene
+        scene = chosen.released(scene)
+        if scene is not driven and [*given(self, "turns", "steps_per_turn")]:
             dt_s, steps = way("driven").counted(driven, length, bent)  # by the law that drove it
         else:
-            dt_s, steps = way_of(scene, drive).counted(scene, length, bent)
-        truth = _truth(scene, bent, dt_s, steps)
+            dt_s, steps = chosen.counted(scene, length, bent)
+        truth = chosen.launch(Planned(scene, dt_s, steps, bent))
         done = stepping.run(
             scene if truth is None else truth.given,
             released_state(scene) if truth is None else truth.start,
@@ -199,12 +189,10 @@ class RunRequest:
             raise CrankcheckError(f"{done.scene}, {done.engine}: {done.status}: {done.reason}")
         if self.output is None:
             done.show(console)
-            console.print(
-                "All samples: -o log.csv, .parquet or .xlsx", style="dim", highlight=False
-            )
+            say(console, "All samples: -o log.csv, .parquet or .xlsx", "dim")
         else:
             write_frame(self.output, done.frame(), "log", _origin(done))
-            console.print(_written(self, done), highlight=False, markup=False, soft_wrap=True)
+            say_whole(console, _written(self, done))
         return int(done.status != "ok")
 
 
@@ -223,14 +211,13 @@ def _written(request: RunRequest, done: Simulation) -> str:
         f"{request.output}: {done.motion.time_s.size} samples of {done.scene} in {done.engine} "
         f"{done.version}, profile {done.profile}; {done.ending()}"
     )
-    if done.mechanism.elastic and done.drive == "free":
-        return harmless(told)
+    bent = GivenAs(done.segments, done.springs)
+    options = way_of(done.mechanism).judged_by(bent)
+    if options is None:
+        return told
     judge = ["crankcheck", "judge", request.scene, str(request.output), "--step", repr(done.dt_s)]
     judge += ["--forces"] * request.forces + ["--free"] * (request.drive == "free")
-    if done.mechanism.elastic:
-        judge += ["--segments", str(done.segments)]
-        judge += ["--springs", done.springs] * (done.springs != "plain")
-    return harmless(f"{told}\nnext: {shlex.join(judge)}")
+    return f"{told}\nnext: {shlex.join([*judge, *options])}"
 
 
 @told_at_the_call
@@ -296,29 +283,21 @@ def run(
     return RunRequest(**locals()).answer()
 
 
-def _truth(scene: Scene, bent: GivenAs, dt_s: float, steps: int) -> Truth | None:
-    """What a run of so many steps starts from, None of one with rigid links that is let go. Raises
-    CrankcheckError."""
-    if scene.is_free and not scene.elastic:
-        return None
-    return way_of(scene).truth(Planned(scene, dt_s, steps, bent))
-
-
 def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> None:
     """Refuse a length that the run has no use for: turns of a scene that has no law, a duration of
     what is driven, or both. Raises CrankcheckError."""
-    for option in given(request, "turns", "steps_per_turn"):
-        if scene.is_free:
+    for name in given(request, "turns", "steps_per_turn"):
+        if name not in way_of(scene).lengths_by:
             raise CrankcheckError(
-                f"{option}: {scene.name} is let go, and has no turns; give --dt and --duration, in "
+                f"{name}: {scene.name} is let go, and has no turns; give --dt and --duration, in "
                 "seconds"
             )
         if request.duration_s is not None:
             raise CrankcheckError(
-                f"--duration and {option}: a run that is let go has its length in seconds, or that "
+                f"--duration and {name}: a run that is let go has its length in seconds, or that "
                 "of turns of the law that drove it; give one of them"
             )
-    if request.duration_s is not None and drive != "free":
+    if request.duration_s is not None and "--duration" not in way_of(scene, drive).lengths_by:
         raise CrankcheckError(
             f"--duration: it is of runs that are let go, and {scene.name} is driven; give --turns, "
             "or let it go with --drive free"
@@ -327,10 +306,11 @@ def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> Non
 
 def _drive(scene: Scene, drive: str | None) -> Drive:
     """What drives a scene. Raises CrankcheckError for a drive of what is let go: it has no law."""
+    chosen = way_of(scene)
     if drive is None:
-        return "free" if scene.is_free else "prescribed"
+        return chosen.drive
     driven = cast(Drive, one_of(drive, "--drive", DRIVES))
-    if scene.is_free and driven != "free":
+    if driven not in chosen.drives:
         raise CrankcheckError(
             f"--drive {driven}: {scene.name} is let go, and nothing drives it; leave --drive out"
         )

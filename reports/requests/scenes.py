@@ -12,8 +12,8 @@ from analytic.structure.mobility import analyse
 from models.errors import StructureError
 from models.files.reading import KINEMATICS, kinds, load_scene, shipped
 from models.scene import Scene
-from reports.describe.law import describe_law
-from reports.output.columns import plain_table
+from reports.describe.facts import describe_law
+from reports.output.console import plain_table
 
 
 @dataclass(frozen=True)

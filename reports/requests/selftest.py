@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Annotated
 
 import pandas as pd
-import typer
 from rich.console import Console
 from rich.progress import Progress
 
@@ -17,15 +16,16 @@ from models.errors import CrankcheckError
 from reports.judge.cell import Checked
 from reports.output.frame_file import csv
 from reports.output.provenance import provenance
-from reports.output.write import check_outputs, write
+from reports.output.write import Outputs
 from reports.plan.chosen import chosen_engines
-from reports.requests.options import Jobs
-from reports.selftest.all_faults import RUNS, chosen_faults
+from reports.requests.options import Jobs, option, output_option
 from reports.selftest.fault import PROFILE, RunKind
 from reports.selftest.table import place_row, show
 from reports.selftest.trial import (
+    RUNS,
     Passed,
     Verdict,
+    chosen_faults,
     healthy,
     passed_by,
     passes,
@@ -35,7 +35,7 @@ from reports.selftest.trial import (
 from sim.registry import engine, offering
 
 KINDS_ASKED: tuple[RunKind, ...] = ("forces", "free", "elastic")
-IN_FOLDER = ("selftest.csv", "selftest.json")
+IN_FOLDER = {"selftest.csv": "--csv", "selftest.json": "--json"}
 
 
 @dataclass(frozen=True)
@@ -43,29 +43,18 @@ class SelftestRequest:
     """What `selftest` was asked for, as given."""
 
     engines: Annotated[
-        Sequence[str], typer.Option("--engine", help="Engine; may be repeated; all if none.")
+        Sequence[str], option("Engine; may be repeated; all if none.", "--engine")
     ] = ()
     faults: Annotated[
-        Sequence[str],
-        typer.Option(
-            "--fault", metavar="NAME", help="Fault of the table; may be repeated; all if none."
-        ),
+        Sequence[str], option("Fault of the table; may be repeated; all if none.", "--fault NAME")
     ] = ()
     jobs: Jobs = 0
-    csv: Annotated[Path | None, typer.Option(help="Write a row per fault and place.")] = None
-    json: Annotated[Path | None, typer.Option(help="Write the same and more as JSON.")] = None
-    folder: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Write both into a folder.")
-    ] = None
-    forces: Annotated[
-        bool, typer.Option("--forces", help="Plant faults of reactions and torques instead.")
-    ] = False
-    free: Annotated[
-        bool, typer.Option("--free", help="Plant faults of dynamics in free motion instead.")
-    ] = False
-    elastic: Annotated[
-        bool, typer.Option("--elastic", help="Plant faults of elastic links instead.")
-    ] = False
+    csv: Annotated[Path | None, "Write a row per fault and place."] = None
+    json: Annotated[Path | None, "Write the same and more as JSON."] = None
+    folder: Annotated[Path | None, output_option("Write both into a folder.")] = None
+    forces: Annotated[bool, "Plant faults of reactions and torques instead."] = False
+    free: Annotated[bool, "Plant faults of dynamics in free motion instead."] = False
+    elastic: Annotated[bool, "Plant faults of elastic links instead."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Do it; returns the exit code: 0 where every fault is caught, 1 where one escapes or
@@ -73,7 +62,8 @@ class SelftestRequest:
         CrankcheckError for an unknown engine or fault, and an output that can not be written."""
         engines, kind = chosen_engines(self.engines), _kind(self)
         faults = chosen_faults(self.faults, engines, kind)
-        check_outputs({"--csv": self.csv, "--json": self.json}, self.folder, IN_FOLDER)
+        outputs = Outputs({"--csv": self.csv, "--json": self.json}, self.folder, IN_FOLDER)
+        outputs.check()
         for name in engines:
             if name not in offering("spoiler"):
                 progress.print(f"engine {name}: it has no spoiler, so nothing is planted inside it")
@@ -88,9 +78,12 @@ class SelftestRequest:
         ]
         passed = [] if self.faults else passed_by(engines, kind)
         facts = provenance({name: engine(name).version() for name in engines})
-        try:
-            _write(self, verdicts, sound, passed, facts)
-        finally:  # a full disk costs the file, and not the verdict with it
+        rows = [place_row(one, place) for one in verdicts for place in one.places]
+        contents = {
+            "selftest.csv": lambda: csv(pd.DataFrame(rows)),
+            "selftest.json": lambda: _json(verdicts, sound, passed, rows, facts),
+        }
+        with outputs.written(contents):
             show(console, sound, verdicts, engines, facts, passed)
         return int(not all(one.caught for one in verdicts) or any(one.nothing for one in passed))
 
@@ -105,25 +98,6 @@ def _kind(request: SelftestRequest) -> RunKind:
             "one of them"
         )
     return asked[0] if asked else "motion"
-
-
-def _write(
-    request: SelftestRequest,
-    verdicts: Sequence[Verdict],
-    sound: Sequence[Checked],
-    passed: Sequence[Passed],
-    facts: Mapping[str, str],
-) -> None:
-    """Every output that was asked for, each whole or not at all."""
-    rows = [place_row(one, place) for one in verdicts for place in one.places]
-    texts = (
-        csv(pd.DataFrame(rows)),
-        _json(verdicts, sound, passed, rows, facts),
-    )
-    folder = request.folder
-    for name, text, path in zip(IN_FOLDER, texts, (request.csv, request.json), strict=True):
-        for target in filter(None, (path, folder and folder / name)):
-            write(target, text)
 
 
 def _settings(verdicts: Sequence[Verdict]) -> dict[str, object]:

@@ -1,23 +1,45 @@
-"""The motion of a scene in closed form, as `solve` returns it."""
+"""The motion of a scene in closed form, as `solve` returns it, and on the terminal."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from rich.console import Console
 
 from analytic.forces.efficiency import Efficiency, efficiency
+from analytic.mechanism.cycle import Along
+from analytic.structure.groups import Bridge
+from analytic.structure.mobility import Structure, analyse
+from models.driver import driver_place
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
-from reports.describe.with_forces import cleaned_forces
+from reports.describe.facts import describe_law, facts, speed_facts
+from reports.describe.force_tables import (
+    friction_words,
+    largest_table,
+    motion_force_tables,
+    position_force_tables,
+)
+from reports.describe.frame import cleaned
+from reports.describe.tables import certainty, motion_tables, position_tables, speed_table
+from reports.describe.with_forces import (
+    cleaned_forces,
+    force_certainty,
+    force_notes,
+    left_out_notes,
+    turn_with_forces,
+)
+from reports.output.console import say
+from reports.plan.singular import continued_note, singular_note
 from reports.requests.shown import Shown
 
 if TYPE_CHECKING:
     import pandas as pd
-    from rich.console import Console
 
 ROWS = 13
 """Samples that are printed."""
@@ -46,33 +68,12 @@ class Solution(Shown, Motion):
         return motion_frame(self)
 
     def show(self, console: Console) -> None:
-        from analytic.structure.mobility import analyse
-        from reports.describe.facts import speed_facts
-        from reports.requests.solution_text import (
-            show_friction,
-            show_heading,
-            show_largest,
-            show_motion,
-            show_notes,
-            show_position,
-        )
-
-        speeds = speed_facts(self.scene)
-        show_heading(console, self.scene, analyse(self.scene), speeds=speeds)
-        if self.time_s.size == 1:
-            show_position(console, self.scene, self)
-        else:
-            acting = self.forces and cleaned_forces(self.forces)
-            few = thinned(replace(self, forces=acting), ROWS)
-            show_motion(console, self.scene, few)
-            if few.time_s.size < self.time_s.size:
-                left = f"{few.time_s.size} of {self.time_s.size} samples; all of them: frame()"
-                console.print(left, style="dim", highlight=False)
-            if self.forces is not None:
-                show_largest(console, self.scene)
-        if self.forces is not None:
-            show_friction(console, self.scene)
-        show_notes(console, self.scene, self)
+        acting = self.forces and cleaned_forces(self.forces)
+        few = thinned(replace(self, forces=acting), ROWS)
+        left = ""
+        if few.time_s.size < self.time_s.size:
+            left = f"{few.time_s.size} of {self.time_s.size} samples; all of them: frame()"
+        show_solution(console, self, few if self.time_s.size > 1 else None, left)
 
     def _drawn(self) -> str:
         return drawn(self.scene, with_forces=self.forces is not None)
@@ -103,3 +104,91 @@ def drawn(scene: Scene, logged: Motion | None = None, *, with_forces: bool = Fal
         return svg(scene, logged, with_forces=with_forces)
     except CrankcheckError:
         return ""
+
+
+def show_solution(
+    console: Console,
+    motion: Solution,
+    few: Motion | None,
+    left: str = "",
+    more: str = "",
+    along: Sequence[Along] = (),
+    *,
+    clockwise: bool = False,
+) -> None:
+    """Print what the mechanism is, its extreme speeds, and those samples of its motion that are
+    ``few``, or its only one in full, with what is ``left`` out, and where there is ``more``."""
+    scene, acting = motion.scene, motion.forces is not None
+    speeds = speed_facts(scene, along, clockwise=clockwise)
+    say(console, heading(scene, analyse(scene), along))
+    if speeds and speeds.rows:
+        console.print(speed_table(speeds), "")
+    if few is None:
+        _show_position(console, scene, motion)
+    else:
+        _show_motion(console, scene, few)
+        if left:
+            say(console, left, "dim")
+        if acting:
+            _show_largest(console, scene)
+    if acting:
+        for words in friction_words(scene):
+            say(console, words)
+    if more:
+        say(console, more, "dim")
+    told = driver_place(scene, motion) is not None
+    singular = singular_note(scene, motion) if told else ""
+    notes = (continued_note(scene, motion), singular, *force_notes(scene, motion))
+    for note in filter(None, notes):
+        say(console, note, "yellow")
+
+
+def heading(scene: Scene, structure: Structure, along: Sequence[Along] = ()) -> str:
+    """What the mechanism is, and what the theory says of it as a whole."""
+    groups = ", ".join(
+        f"{part.kind} ({', '.join(part.bodies)})"
+        for part in structure.order
+        if not isinstance(part, Bridge)
+    )
+    lines = [
+        f"{scene.name}: {scene.source}",
+        f"{structure.words}; driver {scene.driver.joint}, {describe_law(scene)}; "
+        f"groups in solving order: {groups}",
+        *facts(scene, structure, along),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _show_position(console: Console, scene: Scene, motion: Motion) -> None:
+    """Print a single position in full, and how certain it is."""
+    for table in position_tables(scene, cleaned(motion)):
+        console.print(table, "")
+    told = [certainty(motion)]
+    if motion.forces is not None:
+        told.append(force_certainty(scene, motion.forces))
+        for table in position_force_tables(scene, motion, cleaned_forces(motion.forces)):
+            console.print(table, "")
+    say(console, "\n".join(filter(None, told)), "dim")
+
+
+def _show_motion(console: Console, scene: Scene, motion: Motion) -> None:
+    """Print every sample of a motion."""
+    for table in motion_tables(scene, cleaned(motion), console.width):
+        console.print(table, "")
+    if motion.forces is not None:
+        acting = cleaned_forces(motion.forces)
+        for table in motion_force_tables(scene, motion, acting, console.width):
+            console.print(table, "")
+
+
+def _show_largest(console: Console, scene: Scene) -> None:
+    """Print the largest forces over a turn, closely sampled, and their means over time, where the
+    driver goes through a turn."""
+    try:
+        turn = turn_with_forces(scene)
+    except CrankcheckError:
+        return
+    assert turn.forces is not None
+    console.print(largest_table(scene, turn, cleaned_forces(turn.forces)), "")
+    for note in left_out_notes(scene, turn):
+        say(console, note, "yellow")

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import cast
+from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,45 +14,37 @@ from rich.console import Console
 
 from analytic import kinematics
 from analytic.mechanism.cycle import Along
-from analytic.result import Selection
 from analytic.structure.mobility import analyse
-from models.array import Array, samples
+from models.array import Array
 from models.errors import CrankcheckError, suggestion
 from models.files.reading import find_scene, load_scene
 from models.laws import MOST_TURNS
 from models.motion import Motion
 from models.scene import Scene
-from reports.describe.driver_at import MOST_DEG, driver_at
-from reports.describe.facts import speed_facts
+from reports.describe.facts import MOST_DEG, driver_at
 from reports.describe.with_forces import with_forces
 from reports.output.frame_file import ENDINGS
 from reports.output.write import check_file
-from reports.requests.arguments import SceneLike, is_true, scene_of
-from reports.requests.elastic_choice import ElasticChoice
-from reports.requests.named import FAMILY, named
-from reports.requests.solution import Solution
-from reports.requests.solution_text import (
-    show_friction,
-    show_heading,
-    show_largest,
-    show_motion,
-    show_notes,
-    show_position,
-)
-from reports.requests.solve_files import check_figures, check_page, tell_written
-from reports.requests.solve_lengths import (
+from reports.requests.arguments import SceneLike, is_true, scene_of, told_at_the_call
+from reports.requests.options import FAMILY, LIVE_SHEET, given, named
+from reports.requests.solution import Solution, show_solution
+from reports.requests.solve_options import SolveOptions
+from reports.requests.solving import (
     FAMILY_ENDINGS,
     PAGE,
+    Asked,
+    ElasticChoice,
+    Names,
+    Solving,
     elastic_choice,
     instants_of,
+    is_page,
     refuse_times,
+    solving_of,
 )
-from reports.requests.solve_options import SolveOptions
-from reports.requests.told import told_at_the_call
 
 SAMPLES = 361
 """Instants of a period, both ends included, where none are given: as in a file of the command."""
-Names = str | Iterable[str] | None
 
 
 @told_at_the_call
@@ -101,67 +94,12 @@ def solve(
         without mass and load, or no instant outside of dead points.
     """
     scene = scene_of(scene)
-    asked = ElasticChoice(modes, axial_modes, elements, shape, linear)
-    if not scene.elastic:
-        asked.refuse_of_rigid(scene)
+    choice = ElasticChoice(modes, axial_modes, elements, shape, linear)
+    solving = solving_of(scene)
     if time_s is None:
         time_s = np.linspace(0.0, scene.driver.law.period_s, SAMPLES)
-    if scene.elastic:
-        return _elastic_solution(scene, time_s, links, points, sliders, asked, forces=forces)
-    if scene.is_free:
-        return _free_solution(scene, time_s, links, points, sliders, bound=bound, forces=forces)
-    # Whatever the times are, they are looked at there.
-    motion = kinematics.solve(
-        scene,
-        cast(Array, time_s),
-        links=links,
-        points=points,
-        sliders=sliders,
-        bound=is_true(bound, "bound"),
-    )
-    _refuse_far(scene, motion)
-    if is_true(forces, "forces"):
-        motion = with_forces(scene, motion, bound=bound)
-    return Solution(**vars(motion), scene=scene)
-
-
-def _free_solution(
-    scene: Scene,
-    time_s: ArrayLike,
-    links: Names,
-    points: Names,
-    sliders: Names,
-    *,
-    bound: bool,
-    forces: bool,
-) -> Solution:
-    """The free motion of a scene. Raises CrankcheckError."""
-    from reports.requests.free_solution import free_solution  # slow to import
-
-    if is_true(forces, "forces"):
-        raise CrankcheckError(f"forces=True: {scene.name} is let go, and has no driving torque")
-    wanted = Selection.of(scene, links, points, sliders)
-    instants = samples(time_s, "time_s")
-    return free_solution(scene, instants, wanted, bound=is_true(bound, "bound"))
-
-
-def _elastic_solution(
-    scene: Scene,
-    time_s: ArrayLike,
-    links: Names,
-    points: Names,
-    sliders: Names,
-    asked: ElasticChoice,
-    *,
-    forces: bool,
-) -> Solution:
-    """The motion of a scene with elastic links. Raises CrankcheckError."""
-    from reports.requests.elastic_solution import elastic_solution  # slow to import
-
-    if is_true(forces, "forces") and scene.is_free:
-        raise CrankcheckError(f"forces=True: {scene.name} is let go, and has no driving torque")
-    wanted = Selection.of(scene, links, points, sliders)
-    return elastic_solution(scene, samples(time_s, "time_s"), wanted, asked, forces=forces)
+    asked = Asked(time_s, (links, points, sliders), choice, bound, forces)
+    return solving.solution(scene, asked)
 
 
 def _refuse_far(scene: Scene, motion: Motion) -> None:
@@ -219,9 +157,7 @@ def solve_driven(
         sliders=sliders,
         bound=is_true(bound, "bound"),
     )
-    if is_true(forces, "forces"):
-        motion = with_forces(scene, motion, by_law=False, bound=bound)
-    return Solution(**vars(motion), scene=scene)
+    return _with_forces(scene, motion, forces=forces, by_law=False, bound=bound)
 
 
 @dataclass(frozen=True)
@@ -234,65 +170,103 @@ class SolveRequest(SolveOptions):
             endings = (*ENDINGS, PAGE) if self.family is None else FAMILY_ENDINGS
             check_file(self.output, "-o", endings, inputs=[find_scene(self.scene)])
         scene = load_scene(self.scene)
-        asked = elastic_choice(self)
         if self.family is not None:
             named(FAMILY)(scene, self, console)
-            return 0
-        if scene.elastic:
-            from reports.requests.solve_elastic import run_solve_elastic  # slow to import
-
-            run_solve_elastic(scene, self, asked, console)
-            return 0
-        asked.refuse_of_rigid(scene)
-        if scene.is_free:
-            from reports.requests.solve_free import run_solve_free  # slow to import
-
-            run_solve_free(scene, self, console)
-            return 0
-        _check_driven(scene, self)
-        along = [_along(scene, text) for text in self.along]
-        structure = analyse(scene)
-        motion = _over(scene, self) if not self.at_place else _at(scene, self)
-        if self.forces:
-            motion = with_forces(scene, motion, by_law=not self.at_place)
-        if self.output is not None or self.figures is not None:
-            tell_written(console, scene, motion, self)
-            return 0
-        speeds = speed_facts(scene, along, clockwise=self.clockwise)
-        show_heading(console, scene, structure, along, speeds)
-        _show(console, scene, motion, self)
-        show_notes(console, scene, motion)
+        else:
+            solving_of(scene).run(scene, self, elastic_choice(self), console)
         return 0
 
 
-def _check_driven(scene: Scene, request: SolveOptions) -> None:
-    """Refuse what can not be asked of a scene that is driven. Raises CrankcheckError."""
-    refuse_times(scene, request)
-    if request.at_place and (request.turns or request.steps_per_turn):
-        raise CrankcheckError(
-            f"{request.at_place} with --turns or --steps-per-turn: one is a single "
-            "position, the others a motion; give one of them"
-        )
-    if request.clockwise and not request.at_place:
-        raise CrankcheckError("--clockwise: it is of one position; give --at-deg, such as 90")
-    check_figures(request)
-    check_page(request)
+class DrivenSolving(Solving):
+    """Of scenes whose driver follows a law, with rigid links: in closed form, also at one place."""
+
+    def solution(self, scene: Scene, asked: Asked) -> Solution:
+        asked.choice.refuse_of_rigid(scene)
+        links, points, sliders = asked.wanted
+        names = {"links": links, "points": points, "sliders": sliders}
+        # Whatever the times are, they are looked at there.
+        times, bound = cast(Array, asked.time_s), is_true(asked.bound, "bound")
+        motion = kinematics.solve(scene, times, **names, bound=bound)
+        _refuse_far(scene, motion)
+        return _with_forces(scene, motion, forces=asked.forces, bound=bound)
+
+    def refuse(self, scene: Scene, request: SolveOptions) -> None:
+        elastic_choice(request).refuse_of_rigid(scene)
+        refuse_times(scene, request)
+        place = request.at_place
+        if place and (request.turns or request.steps_per_turn):
+            raise CrankcheckError(
+                f"{place} with --turns or --steps-per-turn: one is a single "
+                "position, the others a motion; give one of them"
+            )
+        if request.clockwise and not place:
+            raise CrankcheckError("--clockwise: it is of one position; give --at-deg, such as 90")
+        if request.figures is not None and not request.forces:
+            raise CrankcheckError("--figures: it draws forces; give --forces as well")
+        if request.figures is not None and place:
+            raise CrankcheckError(
+                f"--figures with {place}: they are of a turn; leave one of them out"
+            )
+        whole = [*given(request, "at_deg", "at_m", "turns", "steps_per_turn")]
+        if is_page(request) and whole:
+            raise CrankcheckError(
+                f"-o {request.output}: a page shows a turn; leave out --at-deg, --at-m, --turns "
+                "and --steps-per-turn"
+            )
+
+    def answer(self, scene: Scene, request: SolveOptions, choice: ElasticChoice) -> Solution:
+        for text in request.along:
+            _along(scene, text)
+        analyse(scene)  # which says what is no mechanism at all
+        if not request.at_place:
+            motion = kinematics.solve(scene, instants_of(scene, request))
+        else:  # moving as the law of the driver moves it there
+            at = request.at_deg, request.at_m
+            state = driver_at(scene, *at, clockwise=request.clockwise)
+            motion = kinematics.solve_driven(scene, *(np.array([each]) for each in state))
+        by_law = not request.at_place
+        return _with_forces(scene, motion, forces=request.forces, by_law=by_law)
+
+    def show(self, console: Console, solution: Solution, request: SolveOptions) -> None:
+        along = [_along(solution.scene, text) for text in request.along]
+        few = None if request.at_place else solution
+        more = "" if request.at_place else "Points, and more digits: -o out.csv, .parquet or .xlsx"
+        show_solution(console, solution, few, more=more, along=along, clockwise=request.clockwise)
+
+    def figure_files(self) -> Sequence[str]:
+        from reports.figures.force_figures import FORCE_FIGURES
+
+        return FORCE_FIGURES.files
+
+    def drawn(self, solution: Solution, folder: Path) -> str:
+        from reports.figures.force_figures import FORCE_FIGURES
+        from reports.figures.force_turn import force_turn
+
+        return FORCE_FIGURES.written(force_turn(solution.scene), folder)
+
+    def page(self, solution: Solution) -> tuple[str, str]:
+        from reports.requests.scene_report import page_of
+
+        scene = solution.scene
+        forces = solution.forces is not None
+        return page_of(scene, with_forces=forces), f"{scene.name} over one turn"
+
+    def more(
+        self, solution: Solution, columns: list[str], request: SolveOptions
+    ) -> tuple[str, Callable[[Any], None] | None]:
+        if request.at_place:
+            return "", None
+        told, more = named(LIVE_SHEET)(solution.scene, solution.time_s, columns)
+        return told, more
 
 
-def _show(console: Console, scene: Scene, motion: Motion, request: SolveOptions) -> None:
-    """Print one position, or a motion."""
-    if request.at_place:
-        show_position(console, scene, motion)
-        if request.forces:
-            show_friction(console, scene)
-        return
-    show_motion(console, scene, motion)
-    if request.forces:
-        show_largest(console, scene)
-        show_friction(console, scene)
-    console.print(
-        "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
-    )
+def _with_forces(
+    scene: Scene, motion: Motion, *, forces: bool, by_law: bool = True, bound: bool = True
+) -> Solution:
+    """The motion with its forces, if these are asked for. Raises CrankcheckError."""
+    if is_true(forces, "forces"):
+        motion = with_forces(scene, motion, by_law=by_law, bound=bound)
+    return Solution(**vars(motion), scene=scene)
 
 
 def _along(scene: Scene, text: str) -> Along:
@@ -310,16 +284,3 @@ def _along(scene: Scene, text: str) -> Along:
     if point not in points:
         raise CrankcheckError(f"--along {text}: {suggestion(point, points, 'the points are')}")
     return Along(point, math.radians(direction_deg))
-
-
-def _at(scene: Scene, request: SolveOptions) -> Motion:
-    """The mechanism with its driver at a place, moving as its law moves it there."""
-    theta, omega, alpha = driver_at(
-        scene, request.at_deg, request.at_m, clockwise=request.clockwise
-    )
-    return kinematics.solve_driven(scene, np.array([theta]), np.array([omega]), np.array([alpha]))
-
-
-def _over(scene: Scene, request: SolveOptions) -> Motion:
-    """The motion over whole turns, the last sample included."""
-    return kinematics.solve(scene, instants_of(scene, request))

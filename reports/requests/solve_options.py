@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, ClassVar
 
-import typer
-
-from reports.requests.options import SceneName
+from reports.requests.options import SceneName, option, output_option
 
 
 @dataclass(frozen=True)
@@ -18,77 +16,48 @@ class SolveOptions:
 
     answered_by: ClassVar[str] = "requests.solve:SolveRequest"
     scene: SceneName
-    at_deg: Annotated[
-        float | None, typer.Option(metavar="DEG", help="One position: the driver's angle.")
-    ] = None
+    at_deg: Annotated[float | None, option("One position: the driver's angle.", "DEG")] = None
     at_m: Annotated[
-        float | None,
-        typer.Option(metavar="M", help="One position: the displacement of a slider that drives."),
+        float | None, option("One position: the displacement of a slider that drives.", "M")
     ] = None
-    turns: Annotated[
-        float | None, typer.Option(help="A motion over so many turns (default 1).")
-    ] = None
-    steps_per_turn: Annotated[
-        int | None, typer.Option(help="Samples in a turn (default 12, in a file 360).")
-    ] = None
+    turns: Annotated[float | None, "A motion over so many turns (default 1)."] = None
+    steps_per_turn: Annotated[int | None, "Samples in a turn (default 12, in a file 360)."] = None
     output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx, or a page, .html."),
+        Path | None, output_option("Write .csv, .parquet or .xlsx, or a page, .html.")
     ] = None
     duration: Annotated[
-        float | None,
-        typer.Option(metavar="S", help="Free motion: for how long (default the scene's own)."),
+        float | None, option("Free motion: for how long (default the scene's own).", "S")
     ] = None
     steps: Annotated[
-        int | None,
-        typer.Option(metavar="N", help="Free motion: samples in it (default 12, in a file 1000)."),
+        int | None, option("Free motion: samples in it (default 12, in a file 1000).", "N")
     ] = None
-    clockwise: Annotated[
-        bool, typer.Option("--clockwise", help="With --at-deg: the driver turning clockwise there.")
-    ] = False
+    clockwise: Annotated[bool, "With --at-deg: the driver turning clockwise there."] = False
     along: Annotated[
-        Sequence[str],
-        typer.Option(metavar="POINT:DEG", help="Stroke of a point along a direction; repeatable."),
+        Sequence[str], option("Stroke of a point along a direction; repeatable.", "POINT:DEG")
     ] = ()
-    forces: Annotated[
-        bool, typer.Option("--forces", help="The reactions and the driving torque as well.")
-    ] = False
+    forces: Annotated[bool, "The reactions and the driving torque as well."] = False
     figures: Annotated[
         Path | None,
-        typer.Option(
-            metavar="DIR",
-            help="With --forces: draw them over a turn; or a free motion, or elastic links; as SVG "
+        option(
+            "With --forces: draw them over a turn; or a free motion, or elastic links; as SVG "
             "and PDF.",
+            "DIR",
         ),
     ] = None
-    modes: Annotated[
-        int | None,
-        typer.Option(metavar="N", help="Elastic links: sines across each."),
-    ] = None
-    axial_modes: Annotated[
-        int | None,
-        typer.Option(metavar="N", help="Elastic links: sines along each."),
-    ] = None
-    elements: Annotated[
-        int | None,
-        typer.Option(metavar="N", help="Elastic links: beam elements of each."),
-    ] = None
+    modes: Annotated[int | None, option("Elastic links: sines across each.", "N")] = None
+    axial_modes: Annotated[int | None, option("Elastic links: sines along each.", "N")] = None
+    elements: Annotated[int | None, option("Elastic links: beam elements of each.", "N")] = None
     shape: Annotated[
         str | None,
-        typer.Option(
-            help="Elastic links start periodic, quasi-static or straight (default the scene's own)."
-        ),
+        "Elastic links start periodic, quasi-static or straight (default the scene's own).",
     ] = None
-    linear: Annotated[
-        bool,
-        typer.Option("--linear", help="Elastic links: leave out that a bent link is shorter."),
-    ] = False
+    linear: Annotated[bool, "Elastic links: leave out that a bent link is shorter."] = False
     family: Annotated[
         str | None,
-        typer.Option(
-            metavar="NAME=A,B,...",
-            help="With -o FILE.xlsx, .html, .svg or .pdf: mechanisms that differ in a number, such "
+        option(
+            "With -o FILE.xlsx, .html, .svg or .pdf: mechanisms that differ in a number, such "
             "as a length.",
+            "NAME=A,B,...",
         ),
     ] = None
 

@@ -5,24 +5,25 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import pandas as pd
-import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError, suggestion
+from reports.output.console import say, say_whole
 from reports.output.frame_file import csv
 from reports.output.numbers import count
 from reports.output.provenance import provenance
-from reports.output.write import check_folder, write
+from reports.output.write import Outputs
 from reports.plan.chosen import PROFILES, chosen_engines, chosen_profiles
-from reports.plan.forces import silent_note
-from reports.requests.options import Engines, Forces, Jobs
-from reports.stability.all_cases import CATALOGUE
+from reports.plan.singular import silent_note
+from reports.requests.options import Engines, Forces, Jobs, argument, option, output_option
 from reports.stability.case import Case
 from reports.stability.critical import command
+from reports.stability.grading import CATALOGUE
 from reports.stability.matrix import FILE, Matrix, read_matrix, run_rows, to_json
 from reports.stability.running import CaseLine, run_lines, run_one
 from reports.stability.table import show, show_run
@@ -31,36 +32,25 @@ from reports.workers.isolated import Limits, checked_limits
 from reports.workers.progress import progress_bar
 from sim.registry import engine
 
-TABLE, PAGE = "stability.csv", "stability.html"
+KINDS = {"free": "case of free motion", "elastic": "elastic link in it"}
+"""Of hard cases, that are run where they are asked for; and what others have not."""
 
 
 @dataclass(frozen=True)
 class StabilityRequest:
     """What the user asked for; ``at`` is one value of one case."""
 
-    cases: Annotated[
-        Sequence[str], typer.Argument(metavar="CASE", help="Hard cases; all if none.")
-    ] = ()
+    cases: Annotated[Sequence[str], argument("CASE", "Hard cases; all if none.")] = ()
     engines: Engines = ()
-    profiles: Annotated[
-        Sequence[str], typer.Option("--profile", help="Profile; may be repeated.")
-    ] = ()
-    at: Annotated[
-        float | None, typer.Option(help="Only this value of the one case that is named.")
-    ] = None
-    folder: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder for matrix, table and page.")
-    ] = None
-    limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 120.0
-    memory_gb: Annotated[float, typer.Option(help="Most memory for a run, in GB.")] = 4.0
+    profiles: Annotated[Sequence[str], option("Profile; may be repeated.", "--profile")] = ()
+    at: Annotated[float | None, "Only this value of the one case that is named."] = None
+    folder: Annotated[Path | None, output_option("Folder for matrix, table and page.")] = None
+    limit_s: Annotated[float, "Longest time for a run, in seconds."] = 120.0
+    memory_gb: Annotated[float, "Most memory for a run, in GB."] = 4.0
     jobs: Jobs = 0
     forces: Forces = False
-    free: Annotated[
-        bool, typer.Option("--free", help="The cases of free motion, which are not among all.")
-    ] = False
-    elastic: Annotated[
-        bool, typer.Option("--elastic", help="Those of elastic links, which are not among all.")
-    ] = False
+    free: Annotated[bool, "The cases of free motion, which are not among all."] = False
+    elastic: Annotated[bool, "Those of elastic links, which are not among all."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Do it; returns the exit code: 0, or for one value 1 where it is not held.
@@ -76,11 +66,12 @@ class StabilityRequest:
         profiles = [name for name, _ in chosen_profiles(self.profiles or PROFILES, engines)]
         limits = checked_limits(self.limit_s, self.memory_gb)
         if self.forces and (note := silent_note(engines)):
-            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+            say_whole(progress, note)
         if self.at is not None:
             return _single(cases, self, engines, profiles, limits, console)
+        outputs = Outputs({}, self.folder, dict.fromkeys(CONTENTS, ""))
+        outputs.check()
         if self.folder is not None:
-            check_folder(self.folder, "-o", (FILE, TABLE, PAGE))
             _keep_others(self.folder, {case.name for case in cases})
         lines = [
             CaseLine(case.name, engine_, profile, self.forces)
@@ -95,14 +86,10 @@ class StabilityRequest:
             critical=tuple(line.critical for line in graded),
             pictures=tuple(picture for line in graded for picture in line.pictures),
         )
-        try:
-            if self.folder is not None:
-                _write(self.folder, matrix)
-        finally:  # a full disk costs the file, and not the result with it
+        with outputs.written({name: partial(of, matrix) for name, of in CONTENTS.items()}):
             show(console, matrix)
         if self.folder is not None:
-            names = ", ".join((FILE, TABLE, PAGE))
-            console.print(f"{self.folder}: {names}", markup=False, highlight=False)
+            say(console, f"{self.folder}: {', '.join(CONTENTS)}")
         return 0
 
 
@@ -163,12 +150,18 @@ def _single(
     return code
 
 
-def _write(folder: Path, matrix: Matrix) -> None:
-    """The matrix as JSON, its runs as a table, and its page."""
+def _table(matrix: Matrix) -> str:
+    """The runs of a matrix as CSV."""
+    told = zip(run_rows(matrix), matrix.runs, strict=True)
+    return csv(pd.DataFrame([row | {"command": command(run)} for row, run in told]))
+
+
+def _page(matrix: Matrix) -> str:
+    """The page of a matrix."""
     from reports.page.build import stability_page
 
-    write(folder / FILE, to_json(matrix))
-    told = zip(run_rows(matrix), matrix.runs, strict=True)
-    rows = [row | {"command": command(run)} for row, run in told]
-    write(folder / TABLE, csv(pd.DataFrame(rows)))
-    write(folder / PAGE, stability_page(matrix))
+    return stability_page(matrix)
+
+
+CONTENTS = {FILE: to_json, "stability.csv": _table, "stability.html": _page}
+"""The files of a matrix."""

@@ -10,11 +10,11 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import typer
 from rich.console import Console
 
 from models.errors import CrankcheckError, shown
 from models.files.inputs import names_in
+from reports.output.console import say_whole
 from reports.plan.chosen import left_out_note
 from reports.plan.chosen_study import (
     StudyChoice,
@@ -22,8 +22,8 @@ from reports.plan.chosen_study import (
     refuse_other_engine,
     study_engines,
 )
-from reports.plan.elastic import chosen_segments, chosen_springs, shortened_note
-from reports.plan.forces import silent_note
+from reports.plan.elastic import chosen_segments, chosen_springs
+from reports.plan.singular import silent_note
 from reports.plan.steps import positive
 from reports.plan.study import Study, StudyValue, load_study
 from reports.requests.arguments import (
@@ -31,8 +31,18 @@ from reports.requests.arguments import (
     each_of,
     is_true,
     path_of,
+    told_at_the_call,
 )
-from reports.requests.options import Duration, Engines, Forces, Jobs, SpringKind
+from reports.requests.options import (
+    Duration,
+    Engines,
+    Forces,
+    Jobs,
+    SpringKind,
+    argument,
+    option,
+    output_option,
+)
 from reports.requests.shown import Shown
 from reports.requests.sweep_arguments import (
     command_of,
@@ -42,7 +52,7 @@ from reports.requests.sweep_arguments import (
     refuse_empty_lists,
     scene_names,
 )
-from reports.requests.told import told_at_the_call
+from reports.way.way import way_of
 from reports.workers.isolated import checked_limits
 
 if TYPE_CHECKING:
@@ -155,7 +165,7 @@ def sweep(
         What can be told of the arguments before running; a folder that is not to be written.
     """
     from reports.output.console import terminal
-    from reports.sweep.whole import swept
+    from reports.sweep.running import swept
 
     where = path_of(folder, "folder")
     chosen = {"scenes": scenes, "engines": engines, "profiles": profiles}
@@ -191,50 +201,33 @@ def sweep(
 class SweepRequest:
     """What `sweep` was asked for, as given."""
 
-    folder: Annotated[Path, typer.Option("-o", "--output", help="Folder of the results.")]
+    folder: Annotated[Path, output_option("Folder of the results.")]
     scenes: Annotated[
-        Sequence[str],
-        typer.Argument(metavar="SCENE", help="Shipped names or scene files; those of the study."),
+        Sequence[str], argument("SCENE", "Shipped names or scene files; those of the study.")
     ] = ()
-    study: Annotated[
-        Path | None, typer.Option(help="Study file (.toml, .yaml); the shipped one if none.")
-    ] = None
+    study: Annotated[Path | None, "Study file (.toml, .yaml); the shipped one if none."] = None
     engines: Engines = ()
     profiles: Annotated[
-        Sequence[str], typer.Option("--profile", help="Profile, in place of the study's variants.")
+        Sequence[str], option("Profile, in place of the study's variants.", "--profile")
     ] = ()
-    steps_per_turn: Annotated[
-        str | None, typer.Option(metavar="N,N,...", help="Steps in a turn, with commas.")
-    ] = None
-    turns: Annotated[float | None, typer.Option(help="Turns of the driver.")] = None
+    steps_per_turn: Annotated[str | None, option("Steps in a turn, with commas.", "N,N,...")] = None
+    turns: Annotated[float | None, "Turns of the driver."] = None
     settings: Annotated[
-        Sequence[str],
-        typer.Option("--set", metavar="ENGINE.SETTING=A,B", help="One variant per value."),
+        Sequence[str], option("One variant per value.", "--set ENGINE.SETTING=A,B")
     ] = ()
-    limit_s: Annotated[float, typer.Option(help="Longest time for a cell, in seconds.")] = 60.0
-    memory_gb: Annotated[float, typer.Option(help="Most memory for a cell, in GB.")] = 2.0
+    limit_s: Annotated[float, "Longest time for a cell, in seconds."] = 60.0
+    memory_gb: Annotated[float, "Most memory for a cell, in GB."] = 2.0
     jobs: Jobs = 0
-    dask: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Run on the cluster of this scheduler.")
-    ] = None
-    timing: Annotated[bool, typer.Option(help="Time the cells after the error runs.")] = True
-    keep_trajectories: Annotated[
-        bool, typer.Option("--keep-trajectories", help="Keep the whole motion of every cell.")
-    ] = False
-    again: Annotated[
-        bool, typer.Option("--again", help="Run cells again that timed out or crashed.")
-    ] = False
+    dask: Annotated[str | None, option("Run on the cluster of this scheduler.", "ADDRESS")] = None
+    timing: Annotated[bool, "Time the cells after the error runs."] = True
+    keep_trajectories: Annotated[bool, "Keep the whole motion of every cell."] = False
+    again: Annotated[bool, "Run cells again that timed out or crashed."] = False
     forces: Forces = False
-    free: Annotated[
-        bool, typer.Option("--free", help="Let scenes go; those of free motion if none is named.")
-    ] = False
-    dt_s: Annotated[
-        str | None, typer.Option("--dt", metavar="S,S,...", help="Steps of free motion, seconds.")
-    ] = None
+    free: Annotated[bool, "Let scenes go; those of free motion if none is named."] = False
+    dt_s: Annotated[str | None, option("Steps of free motion, seconds.", "--dt S,S,...")] = None
     duration_s: Duration = None
     segments: Annotated[
-        str | None,
-        typer.Option(metavar="N,N,...", help="Of each elastic link, with commas (default 16)."),
+        str | None, option("Of each elastic link, with commas (default 16).", "N,N,...")
     ] = None
     springs: SpringKind = None
 
@@ -246,7 +239,7 @@ class SweepRequest:
         request before running.
         """
         from reports.requests.sweep_text import show_sweep
-        from reports.sweep.whole import Manner, swept
+        from reports.sweep.running import Manner, swept
 
         limits = checked_limits(self.limit_s, self.memory_gb)
         manner = Manner(
@@ -261,14 +254,14 @@ class SweepRequest:
         study = asked(self)
         silent = silent_note([one.engine for one in study.variants]) if study.forces else ""
         for note in filter(None, (silent, left_out_note(study.scenes))):
-            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+            say_whole(progress, note)
         laid, done = swept(study, self.folder, manner, command, progress)
         lengths = {
             (t.cell.scene.name, t.cell.dt_s * t.cell.steps): t.cell.scene for t in laid.tasks
         }
-        notes = (shortened_note(scene, lasts_s) for (_, lasts_s), scene in lengths.items())
+        notes = (way_of(scene).shortened(scene, lasts_s) for (_, lasts_s), scene in lengths.items())
         for note in filter(None, dict.fromkeys(notes)):
-            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+            say_whole(progress, note)
         show_sweep(console, self.folder, len(laid.tasks), done)
         return 0
 

@@ -31,7 +31,7 @@ from reports.requests.arguments import (
 from reports.workers.isolated import checked_limits
 
 if TYPE_CHECKING:
-    from reports.sweep.whole import Manner
+    from reports.sweep.running import Manner
 
 MOST_JOBS = 1024
 
@@ -73,7 +73,7 @@ def manner_of(
     jobs = whole_of(jobs, "--jobs", 0)
     if jobs > MOST_JOBS:
         raise CrankcheckError(f"--jobs {jobs}: at most {MOST_JOBS}; 0 is one per processor")
-    from reports.sweep.whole import Manner  # pandas, which takes a third of a second
+    from reports.sweep.running import Manner  # pandas, which takes a third of a second
 
     return Manner(
         limits,

@@ -7,6 +7,7 @@ from pathlib import Path
 from rich.console import Console
 
 from models.errors import harmless
+from reports.output.console import say
 from reports.output.numbers import count
 from reports.results.lines import lines
 from reports.results.recommend import recommendations
@@ -24,7 +25,7 @@ def show_sweep(console: Console, folder: Path, number: int, done: Done) -> None:
     for status, reasons in sorted(done.failed.items()):
         console.print(f"  {sum(reasons.values())} {status}, such as", highlight=False)
         for reason, _ in reasons.most_common(2):
-            console.print(f"    {reason}", markup=False, highlight=False)
+            say(console, f"    {reason}")
     stored = f"stored in {folder}; next: crankcheck report {folder} -o report.html"
     console.print(harmless(stored), markup=False)
     found = read_store(folder)

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-import typer
 from rich.console import Console
 from rich.text import Text
 
@@ -19,18 +18,17 @@ from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files.reading import find_scenes, read_text
 from reports.judge.three_steps import AT_ROUNDING
+from reports.output.console import say_whole
 from reports.output.provenance import crankcheck_version, provenance
 from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
 from reports.plan.elastic import rigid_alone
-from reports.plan.key import MEASURE, digest
-from reports.plan.short_tables import refuse_short_tables
-from reports.plan.singular import refuse_singular
+from reports.plan.grid import MEASURE, digest
+from reports.plan.singular import refuse_short_tables, refuse_singular
 from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
-from reports.tune.attempt import Attempt, Bench, Goal, LostError, Row
-from reports.tune.search import Plan, attempts, best_of, plainer, search
-from reports.tune.storage import check_storage, study_in
+from reports.requests.options import argument, output_option
+from reports.tune.attempt import Attempt, Bench, Goal, LostError, Row, times
+from reports.tune.search import Plan, attempts, best_of, check_storage, plainer, search, study_in
 from reports.tune.table import Side, footer, show
-from reports.tune.timing import times
 from reports.workers.isolated import Limits
 from reports.workers.progress import progress_bar
 from reports.workers.signals import Stopped
@@ -48,28 +46,22 @@ MOST_BUDGET, MOST_SEED, COARSEST = 100_000, 2**32 - 1, 1.0
 class TuneRequest:
     """What `tune` was asked for, as given."""
 
-    scenes: Annotated[
-        Sequence[str], typer.Argument(metavar="SCENE", help="Shipped names or scene files.")
-    ]
-    engine: Annotated[str, typer.Option(help="Engine whose settings are searched.")]
-    target: Annotated[
-        float, typer.Option(help="Error to reach, as a pure number: rad, lengths over L.")
-    ]
-    budget: Annotated[int, typer.Option(help="Trials in all, also of a resumed search.")] = 60
-    seed: Annotated[int, typer.Option(help="The same seed finds the same settings.")] = 0
-    turns: Annotated[float, typer.Option(help="Turns of the driver in a run.")] = 2.0
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Keep the search (.db), to go on later.")
-    ] = None
-    limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 20.0
-    timing: Annotated[bool, typer.Option(help="Time what was found beside the profile.")] = True
+    scenes: Annotated[Sequence[str], argument("SCENE", "Shipped names or scene files.")]
+    engine: Annotated[str, "Engine whose settings are searched."]
+    target: Annotated[float, "Error to reach, as a pure number: rad, lengths over L."]
+    budget: Annotated[int, "Trials in all, also of a resumed search."] = 60
+    seed: Annotated[int, "The same seed finds the same settings."] = 0
+    turns: Annotated[float, "Turns of the driver in a run."] = 2.0
+    output: Annotated[Path | None, output_option("Keep the search (.db), to go on later.")] = None
+    limit_s: Annotated[float, "Longest time for a run, in seconds."] = 20.0
+    timing: Annotated[bool, "Time what was found beside the profile."] = True
 
     def run(self, console: Console, progress: Console) -> int:
         """Do it; returns the exit code: 0 when settings reach the target, 1 when none do. Raises
         CrankcheckError for what can be told of the request before the search."""
         goal = _goal(self)
         if note := left_out_note(self.scenes):
-            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+            say_whole(progress, note)
         base = resolved(profile_of(engine(goal.engine), goal.profile), None)
         space = search_space(goal.engine).around(base)
         if self.output is not None:
@@ -98,7 +90,7 @@ class TuneRequest:
             ].driver.law.period_s  # to copy, at the speed of the first scene
             text = snippet(goal.engine, best.settings, float(best.tried), period_s)
             console.print()
-            console.print(text, markup=False, highlight=False, soft_wrap=True)
+            say_whole(console, text)
         around = len(goal.scenes) + sum(len(side.rows) for side in sides)
         facts = provenance({goal.engine: engine(goal.engine).version()})
         how = _how(self, trials, tried, around)
@@ -171,12 +163,10 @@ def _searched(
                 return search(study, plan, bench.attempt, advance)
         except Stopped:
             if request.output is not None:
-                progress.print(
+                say_whole(
+                    progress,
                     f"{len(attempts(study))} of {request.budget} trials are kept in "
                     f"{request.output}; the same command goes on from there",
-                    markup=False,
-                    highlight=False,
-                    soft_wrap=True,
                 )
             raise
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
+from xml.etree.ElementTree import Element
 
 from rich.console import Console
 from rich.progress import Progress
@@ -14,15 +16,19 @@ from models.errors import CrankcheckError
 from models.files.reading import find_scenes
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked
+from reports.judge.rows import cell_frame, cell_row, error_frame
 from reports.judge.tolerance import (
     check_names,
     parse,
     refuse_forces_unasked,
     refuse_of_other_kinds,
 )
-from reports.output.console import tell
+from reports.output.console import say_whole, tell
+from reports.output.frame_file import csv, parquet
+from reports.output.junit import junit
+from reports.output.numbers import finite
 from reports.output.provenance import provenance
-from reports.output.write import check_outputs
+from reports.output.write import Outputs, check_outputs
 from reports.plan.chosen import (
     chosen_engines,
     chosen_profiles,
@@ -31,25 +37,22 @@ from reports.plan.chosen import (
     refuse_unfollowed,
 )
 from reports.plan.elastic import given_of
-from reports.plan.forces import gives_forces, silent_note
 from reports.plan.free import (
     free_names,
     refuse_other_options,
     scenes_of,
     under_control,
 )
-from reports.requests.verify_files import IN_FOLDER, Results, write_results
+from reports.plan.singular import gives_forces, silent_note
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions, refuse_of_models
 from reports.verify.advised import check_all
-from reports.verify.table import show
+from reports.verify.table import show, suite
 from reports.way.length import Length
-from reports.way.way import laid_out, way_of
+from reports.way.way import driven_by, laid_out, way_of
 from sim.engine import Drive
 from sim.registry import engine
 
-if (
-    TYPE_CHECKING
-):  # what reads stored runs takes half a second to import: where there is one to read
+if TYPE_CHECKING:
     from reports.results.changes.changes import Diff
     from reports.results.changes.runs import StoredRun
 
@@ -57,6 +60,11 @@ if (
 @dataclass(frozen=True)
 class VerifyRequest(VerifyOptions):
     """What `verify` was asked for, as given."""
+
+    @property
+    def names(self) -> Sequence[str]:
+        """The scenes by name, also where free ones are meant and none is named."""
+        return free_names(self.scenes) if self.free else self.scenes
 
     def run(self, console: Console, progress: Console) -> int:
         """Do it; returns the exit code: 0 within, 1 out of tolerance or worse than the baseline, 2
@@ -68,15 +76,14 @@ class VerifyRequest(VerifyOptions):
         refuse_of_models(self)
         cells = plan(self)
         files = {"--junit": self.junit, "--csv": self.csv, "--json": self.json}
-        names = free_names(self.scenes) if self.free else self.scenes
-        read = find_scenes(names)
-        check_outputs(files, self.folder, IN_FOLDER, inputs=read)
+        outputs = Outputs(files, self.folder, IN_FOLDER)
+        outputs.check(find_scenes(self.names))
         if self.baseline is not None:
             _spare_baseline(files, self.baseline)
         digests = _digests(self)
         silent = silent_note(chosen_engines(())) if self.forces and not self.engines else ""
-        for note in filter(None, (*passages(cells), silent, left_out_note(names))):
-            progress.print(note, markup=False, highlight=False, soft_wrap=True)
+        for note in filter(None, (*passages(cells), silent, left_out_note(self.names))):
+            say_whole(progress, note)
         base = _baseline(self, cells, digests)
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
             task = bar.add_task("verifying", total=len(cells))
@@ -84,9 +91,7 @@ class VerifyRequest(VerifyOptions):
         engines = dict.fromkeys(cell.engine for cell in cells)
         facts = provenance({name: engine(name).version() for name in engines})
         diff = _changes(base, checked, facts, digests, self.factor) if base else None
-        try:
-            write_results(self, Results(checked, facts, digests, diff))
-        finally:  # a full disk costs the file, and not the verdict with it
+        with outputs.written(contents(checked, facts, digests, diff)):
             show(console, checked, facts)
             if diff:
                 from reports.diff.terminal import show as show_diff
@@ -132,7 +137,7 @@ def plan(request: VerifyOptions) -> list[Cell]:
             dt_s=dt_s,
             steps=count,
             gated=gated,
-            drive="free" if scene.is_free else cast(Drive, request.drive),
+            drive=driven_by(scene, cast(Drive, request.drive)),
             tolerance=tolerance,
             converge=request.converge,
             with_forces=request.forces and (bool(request.engines) or gives_forces(name)),
@@ -167,14 +172,14 @@ def _refuse_options(request: VerifyOptions, scenes: Sequence[Scene]) -> None:
             f"--drive {request.drive!r}: unknown; use prescribed or servo, let scenes go with "
             "--free, or name the model whose joint that is with --mjcf FILE"
         )
-    free = [scene.name for scene in scenes if scene.is_free]
-    if free and request.drive != PRESCRIBED:
+    other = [scene.name for scene in scenes if request.drive not in way_of(scene).drives]
+    if other and request.drive != PRESCRIBED:
         raise CrankcheckError(
-            f"--drive {request.drive}: {free[0]} is let go, and nothing drives it; leave --drive "
+            f"--drive {request.drive}: {other[0]} is let go, and nothing drives it; leave --drive "
             "out, or the scene"
         )
-    driven = {"--turns": request.turns, "--steps-per-turn": request.steps_per_turn}
-    refuse_other_options(scenes, {"--duration": request.duration_s}, driven)
+    lengths = {"--duration": request.duration_s, "--turns": request.turns}
+    refuse_other_options(scenes, lengths | {"--steps-per-turn": request.steps_per_turn})
 
 
 def passages(cells: Sequence[Cell]) -> list[str]:
@@ -206,18 +211,18 @@ def _baseline(
 def _spare_baseline(files: Mapping[str, Path | None], baseline: Path) -> None:
     """Raises CrankcheckError for an output that is a file of the baseline, which ``-o`` may go on
     from."""
-    from reports.requests.stored_files import stored_files
+    from reports.requests.diff import stored_files
 
     check_outputs(files, inputs=stored_files(baseline))
 
 
-def _digests(request: VerifyOptions) -> dict[str, str]:
+def _digests(request: VerifyRequest) -> dict[str, str]:
     """The digests of the texts of the scenes, where they are kept or compared."""
     if not (request.baseline or request.folder or request.json):
         return {}
     from reports.results.changes.reading import scene_digests
 
-    return scene_digests(free_names(request.scenes) if request.free else request.scenes)
+    return scene_digests(request.names)
 
 
 def _changes(
@@ -232,3 +237,55 @@ def _changes(
     from reports.results.changes.runs import run_of
 
     return compare(base, run_of(checked, facts, digests), factor)
+
+
+IN_FOLDER = {
+    "verify.csv": "--csv",
+    "verify.json": "--json",
+    "verify.junit.xml": "--junit",
+    "errors.parquet": "",
+}
+
+
+def contents(
+    checked: Sequence[Checked],
+    facts: Mapping[str, str],
+    digests: Mapping[str, str],
+    diff: Diff | None,
+) -> dict[str, Callable[[], bytes | str]]:
+    """What there is to write: of cells, where they come from, the digests of the texts of their
+    scenes, and what changed since the baseline."""
+    return {
+        "verify.csv": lambda: csv(cell_frame(checked)),
+        "verify.json": lambda: _json(checked, facts, digests),
+        "verify.junit.xml": lambda: junit(suite(checked, facts), *_suites(diff)),
+        "errors.parquet": lambda: parquet(error_frame(checked)),
+    }
+
+
+def _suites(diff: Diff | None) -> Iterator[Element]:
+    """The suite of what changed, if that is known."""
+    if diff is not None:
+        from reports.diff.junit import suite as diff_suite
+
+        yield diff_suite(diff)
+
+
+def _json(checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping[str, str]) -> str:
+    """Facts, digests of scenes, and cells with their findings; what is not finite is null."""
+    cells = [
+        cell_row(one)
+        | {
+            "settings": dict(one.settings),
+            "not_reported": list(one.errors.not_reported) if one.errors else [],
+            "notes": list(one.errors.notes) if one.errors else [],
+            "findings": [vars(finding) for finding in one.findings],
+        }
+        for one in checked
+    ]
+    content = {
+        "provenance": dict(facts),
+        "scenes": dict(digests),
+        "cells": cells,
+    }
+    return json.dumps(finite(content), indent=1) + "\n"

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Real
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -20,17 +19,23 @@ from reports.judge.tolerance import parse
 from reports.output.frame_file import csv, parquet
 from reports.output.junit import junit
 from reports.output.provenance import provenance
-from reports.output.write import check_file, check_outputs, write
+from reports.output.write import Outputs, check_file
 from reports.own_model.account import read
 from reports.own_model.assembly import ModelRequest
 from reports.own_model.judged import JudgedModel, run_lines
 from reports.own_model.sentences import is_diff, recommended_head
 from reports.own_model.table import document, show
 from reports.plan.steps import TURNS, positive
-from reports.requests.arguments import is_true, kind_of, path_of, text_of, tolerances_of
+from reports.requests.arguments import (
+    is_true,
+    kind_of,
+    path_of,
+    text_of,
+    told_at_the_call,
+    tolerances_of,
+)
 from reports.requests.options import given
 from reports.requests.shown import Shown
-from reports.requests.told import told_at_the_call
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions
 from reports.verify.table import suite
 from reports.workers.isolated import LIMIT_S, MEMORY_GB, checked_limits
@@ -157,16 +162,16 @@ def _branch(branch: object) -> dict[str, int]:
     return {text_of(name, "--branch", "C"): sign for name, sign in branch.items()}
 
 
-IN_FOLDER = (
-    "verify.csv",
-    "verify.json",
-    "verify.junit.xml",
-    "errors.parquet",
-    "scene.toml",
-    "recommended.diff",
-    "recommended.txt",
-    "page.html",
-)
+IN_FOLDER = {
+    "verify.csv": "--csv",
+    "verify.json": "--json",
+    "verify.junit.xml": "--junit",
+    "errors.parquet": "",
+    "scene.toml": "--write-scene",
+    "recommended.diff": "",
+    "recommended.txt": "",
+    "page.html": "",
+}
 NOT_OF_MODELS = [
     "scenes",
     "engines",
@@ -187,32 +192,22 @@ def verify_model(request: VerifyOptions, console: Console, progress: Console) ->
     anything is written."""
     asked = _asked(request)
     limits = checked_limits(request.limit_s, request.memory_gb)
-    _check_outputs(request, [asked.path])
+    if request.write_scene is not None:
+        check_file(request.write_scene, "--write-scene", (".toml",))
+    files = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
+    files["--write-scene"] = request.write_scene
+    outputs = Outputs(files, request.folder, IN_FOLDER)
+    outputs.check([asked.path])
     account = read(asked, limits)
-    _check_outputs(request, account.files)
+    outputs.check(account.files)
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("running", total=len(account.profiles))
         judged = run_lines(account, limits, lambda _: bar.advance(task))
     name = reading_engine()
     facts = provenance({name: engine(name).version()})
-    try:
-        _write(request, judged, facts)
-    finally:  # a full disk costs the file, and not the verdict with it
+    with outputs.written(_contents(judged, facts)):
         show(console, judged, facts)
     return {"within": 0, "out": 1}.get(judged.verdict, 2)
-
-
-def _check_outputs(request: VerifyOptions, inputs: Sequence[Path]) -> None:
-    """Refuse outputs that can not be written, or that are read. Raises CrankcheckError."""
-    files = {
-        "--junit": request.junit,
-        "--csv": request.csv,
-        "--json": request.json,
-        "--write-scene": request.write_scene,
-    }
-    if request.write_scene is not None:
-        check_file(request.write_scene, "--write-scene", (".toml",))
-    check_outputs(files, request.folder, IN_FOLDER, inputs=inputs)
 
 
 def _asked(request: VerifyOptions) -> ModelRequest:
@@ -250,40 +245,25 @@ def _branch_of(texts: Sequence[str]) -> dict[str, int]:
     return branch
 
 
-def _write(request: VerifyOptions, judged: JudgedModel, facts: Mapping[str, str]) -> None:
-    """Every output that was asked for, each whole or not at all."""
-    named: dict[str, Path | None] = {
-        "verify.csv": request.csv,
-        "verify.json": request.json,
-        "verify.junit.xml": request.junit,
-        "scene.toml": request.write_scene,
+def _contents(
+    judged: JudgedModel, facts: Mapping[str, str]
+) -> dict[str, Callable[[], bytes | str]]:
+    """What there is to write, by name."""
+    return {
+        "verify.csv": lambda: csv(cell_frame(judged.lines)),
+        "verify.json": lambda: document(judged, facts),
+        "verify.junit.xml": lambda: junit(suite(judged.lines, facts)),
+        "errors.parquet": lambda: parquet(error_frame(judged.lines)),
+        "scene.toml": lambda: scene_text(judged.scene),
+        # Empty where there is none: one of an earlier run must not stay.
+        "recommended.diff": lambda: judged.patch if is_diff(judged.patch) else "",
+        "recommended.txt": lambda: f"{recommended_head(judged)}\n{judged.patch}",
+        "page.html": lambda: _page(judged, facts),
     }
-    for name in IN_FOLDER:
-        targets = [*filter(None, (named.get(name), request.folder and request.folder / name))]
-        content = _content(name, judged, facts) if targets else ""
-        for target in targets:
-            write(target, content)
 
 
-def _content(name: str, judged: JudgedModel, facts: Mapping[str, str]) -> str | bytes:
-    """What stands in one output."""
-    match name:
-        case "verify.csv":
-            return csv(cell_frame(judged.lines))
-        case "verify.json":
-            return document(judged, facts)
-        case "verify.junit.xml":
-            return junit(suite(judged.lines, facts))
-        case "errors.parquet":
-            return parquet(error_frame(judged.lines))
-        case "scene.toml":
-            return scene_text(judged.scene)
-        case "recommended.diff":  # empty where there is none: one of an earlier run must not stay
-            return judged.patch if is_diff(judged.patch) else ""
-        case "recommended.txt":
-            return f"{recommended_head(judged)}\n{judged.patch}"
-        case _:
-            # It brings the drawings, which nothing else here needs.
-            from reports.page.model_page import model_page
+def _page(judged: JudgedModel, facts: Mapping[str, str]) -> str:
+    """The page of a verdict."""
+    from reports.page.model_page import model_page  # the drawings, which nothing else here needs
 
-            return model_page(judged, facts)
+    return model_page(judged, facts)

@@ -10,10 +10,9 @@ from models.errors import CrankcheckError, shown, suggestion
 from reports.plan.steps import positive
 from reports.quantities.limits import DEFAULTS
 from reports.requests.any_log import LogLike, MapLike
-from reports.requests.arguments import SceneLike, is_true
+from reports.requests.arguments import SceneLike, is_true, told_at_the_call
 from reports.requests.check import CellVerdict
 from reports.requests.judge import LogVerdict, Target, judged, target_of
-from reports.requests.told import told_at_the_call
 from sim.engine import Run
 
 BY_ARGUMENT = {name.replace("-", "_"): name for name in DEFAULTS if name != "drive"}

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from reports.results.fits.reach import interpolate
-from reports.results.lines import Line
-from reports.results.one_processor import comparable
+from reports.results.fits.curves import interpolate
+from reports.results.lines import Line, comparable
 from reports.store.reader import Stored
 from sim.engine import Drive
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, cast
 
+import numpy as np
 import pandas as pd
 from pydantic import ValidationError
 
@@ -16,9 +17,7 @@ from reports.judge.halving import BEHIND_DRIVE, EXACT_DRIVE
 from reports.judge.three_steps import AT_ROUNDING
 from reports.plan.study import Study
 from reports.quantities import QUANTITIES
-from reports.results.fits.line import LineFit, fit_line
-from reports.results.fits.words import words
-from reports.results.one_processor import comparable
+from reports.results.fits.line import LineFit, fit_line, words
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
 from reports.way.clock import clock_of
@@ -189,3 +188,38 @@ def _rounding(rows: pd.DataFrame) -> float:
     drives = rows.get("drive_pure", ())  # what is let go has none
     drive = max((float(error) for error in drives if error <= EXACT_DRIVE), default=0.0)
     return max(AT_ROUNDING, BEHIND_DRIVE * drive)
+
+
+TIMES = ("us_per_step", "us_per_step_median", "us_per_step_a", "us_per_step_b", "s_per_turn")
+"""The columns that hold times; NaN where a cell was not timed."""
+
+
+def machine(cells: pd.DataFrame) -> str | None:
+    """The processor that timed last, None where nothing was timed."""
+    timed = _timed(cells)
+    return None if timed.empty else str(timed.sort_values("made")["processor"].iloc[-1])
+
+
+def left_out(cells: pd.DataFrame) -> tuple[str, ...]:
+    """The processors whose times are not compared."""
+    names = {str(name) for name in _timed(cells)["processor"]}
+    return tuple(sorted(names - {str(machine(cells))}))
+
+
+def comparable(cells: pd.DataFrame) -> pd.DataFrame:
+    """The cells with the times of the processor that timed last; other times are blanked.
+
+    Processors are told apart by name: two machines of one kind can not be.
+    """
+    cleared = cells.reindex(columns=[*cells.columns, *(c for c in TIMES if c not in cells.columns)])
+    name = machine(cells)
+    if name is not None:
+        cleared.loc[cleared["processor"] != name, list(TIMES)] = np.nan
+    return cleared
+
+
+def _timed(cells: pd.DataFrame) -> pd.DataFrame:
+    """The cells with a time."""
+    if "processor" not in cells.columns:  # a store without timings
+        return cells.iloc[:0].assign(processor="", made="")
+    return cells[cells["us_per_step"].notna()]

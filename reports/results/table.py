@@ -9,11 +9,10 @@ from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.text import Text
 
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.numbers import short
 from reports.results.cost import SHARE, noise, pairs
-from reports.results.lines import called
-from reports.results.one_processor import left_out, machine
+from reports.results.lines import called, left_out, machine
 from reports.results.recommend import Recommendation
 from reports.store.reader import Stored
 from reports.way.clock import clock_of

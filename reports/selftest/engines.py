@@ -11,24 +11,29 @@ from typing import Any
 import numpy as np
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.scene import Scene, span
 from reports.judge.cell import CellRunner
 from reports.selftest.fault import FOURBAR, REFUSED, Fault, Plant, can_set, in_engine, in_settings
 from reports.selftest.logs import last, moved
 from sim.engine import Run, Session
+from sim.registry import engine
 from sim.run import run
-from sim.spoil import Opening, Post, Spoiler
+from sim.spoil import Opening, Post, Spoiler, spoilt
 
 CLEAR_RAD = 0.01
 """How far beyond the end of its swing a link does not touch what stands there."""
 TIMES = 36
 """How often in a run something that changes over time is changed."""
-Act = Callable[[Spoiler, Session, float], None]
+TOGETHER = 10
+"""Steps that are made explicit together: what they lack adds up to a change of velocity."""
+Act = Callable[[Spoiler], Callable[[Session, float], object]]
+"""What is done to a session, by a size."""
 
 
 def done_to(act: Act, at: Callable[[int], Iterable[int]] = lambda _: (0,)) -> Plant:
     """What is done to a session before the first step, or after others of so many."""
-    return in_engine(at, lambda tools, session, _o, size, _: act(tools, session, size))
+    return in_engine(at, lambda tools, session, _o, size, _: act(tools)(session, size))
 
 
 def after_a_third(act: Act) -> Plant:
@@ -36,10 +41,35 @@ def after_a_third(act: Act) -> Plant:
     return done_to(act, lambda steps: (steps // 3,))
 
 
+def after_look(act: Act) -> Plant:
+    """What is done to a session after its first step, when the model was looked at."""
+    return done_to(act, lambda _: (1,))
+
+
+def now_and_then(steps: int) -> range:
+    return range(1, steps, max(steps // TIMES, 1))
+
+
+def explicit(share: float) -> CellRunner:
+    """Positions go on with the velocity before each step, as explicit Euler has it, or a share of
+    the way there: they are held back by the step times the change of velocity."""
+
+    def runner(scene: Scene, state: Any, name: str, *args: Any, **options: Any) -> Run:
+        before: list[Array] = []
+
+        def act(tools: Spoiler, session: Session, opening: Opening, _: int) -> None:
+            before.append(tools.hold_back(session, share * opening.dt_s, *before[-1:]))
+
+        steps = tuple(range(0, options["steps"], TOGETHER))
+        return run(scene, state, spoilt(engine(name), steps, act), *args, **options)
+
+    return runner
+
+
 def _dropped(turns: float) -> CellRunner:
     """The loop opens so many turns before the end of one turn."""
     plant = done_to(
-        lambda tools, session, _: tools.open_loop(session),
+        lambda tools: lambda session, _: tools.open_loop(session),
         lambda steps: (steps - round(turns * steps),) if turns else (),
     )
     return plant(turns)
@@ -68,11 +98,6 @@ def _post(scene: Scene, into_rad: float) -> Post:
     angle = swing - (into_rad or -CLEAR_RAD) + math.asin(thick / away)
     x, y = scene.ground[pivot]
     return Post((x + away * math.cos(angle), y + away * math.sin(angle)), radius)
-
-
-def _lose(tools: Spoiler, session: Session, size: float) -> None:
-    if size:
-        tools.lose(session)
 
 
 def _iterations(size: float) -> str:
@@ -115,7 +140,7 @@ FAULTS = (
         "joint-slips",
         "a joint slips on its link in mid-turn",
         "CC105",
-        after_a_third(lambda tools, session, size: tools.slip(session, size)),
+        after_a_third(lambda tools: tools.slip),
         1e-3,
         "L",
         scenes=(FOURBAR,),
@@ -124,7 +149,7 @@ FAULTS = (
         "gravity-left-on",
         "gravity, of which the scene has none",
         "CC101",
-        done_to(lambda tools, session, size: tools.pull(session, size)),
+        done_to(lambda tools: tools.pull),
         9.81,
         "m/s^2",
         says=(REFUSED, "gravity"),
@@ -133,7 +158,7 @@ FAULTS = (
         "mass-off",
         "a body is too heavy",
         "CC101",
-        done_to(lambda tools, session, size: tools.load(session, size)),
+        done_to(lambda tools: tools.load),
         1e-3,
         "of it",
         says=(REFUSED, "mass_kg"),
@@ -142,7 +167,7 @@ FAULTS = (
         "starts-askew",
         "a body starts turned",
         "CC101",
-        done_to(lambda tools, session, size: tools.turn(session, size)),
+        done_to(lambda tools: tools.turn),
         1e-6,
         "rad",
         says=(REFUSED,),
@@ -176,9 +201,7 @@ FAULTS = (
         "float32-arithmetic",
         "the state is kept in float32",
         "CC102",
-        done_to(
-            lambda tools, session, size: tools.round_state(session, size), lambda n: range(1, n)
-        ),
+        done_to(lambda tools: tools.round_state, lambda n: range(1, n)),
         2.0**-24,
         "of it",
         scenes=(FOURBAR,),  # each of its runs is cut into 360 stretches
@@ -187,7 +210,7 @@ FAULTS = (
         "state-lost",
         "a velocity in the engine becomes NaN",
         "CC101",
-        after_a_third(_lose),
+        after_a_third(lambda tools: lambda session, size: tools.lose(session) if size else None),
         says=("diverged",),
     ),
     _fault(

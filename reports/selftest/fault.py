@@ -6,7 +6,7 @@ in it. A size of 0 goes the same way and changes nothing, which must not be noti
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -15,7 +15,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.scene import Same, Scene
-from reports.judge.cell import CellRunner
+from reports.judge.cell import Cell, CellRunner
 from reports.way.length import Planned
 from reports.way.way import way_of
 from sim.engine import Run, Session, Settings
@@ -91,6 +91,22 @@ class Fault:
         return self.shown(size) if self.shown else f"{size:.{digits}g} {self.unit}"
 
 
+@dataclass(frozen=True)
+class Unseen:
+    """Something that is not as it should be, passes every rule, and why that is right.
+
+    ``needs`` says of an engine whether it can have it; where ``shows`` the errors are others with
+    it, if only in their last digits: else nothing was planted.
+    """
+
+    name: str
+    what: str
+    reason: str
+    plant: Plant
+    needs: Callable[[str], bool] = lambda _: True
+    shows: bool = True
+
+
 def in_scene(change: Callable[[Scene, float], Scene]) -> Plant:
     """The engine is given another scene than the reference, well assembled."""
 
@@ -134,7 +150,7 @@ def in_settings(what: WrongSetting) -> Plant:
 
 def in_engine(
     at: Callable[[int], Iterable[int]],
-    spoil: Callable[[Spoiler, Session, Opening, float, float], None],
+    spoil: Callable[[Spoiler, Session, Opening, float, float], object],
 ) -> Plant:
     """The engine is meddled with while it runs.
 
@@ -191,3 +207,35 @@ def _healthy(same: Same, name: str, profile: str, settings: Items, options: Item
 def switched(change: Callable[[Scene, Run], Run]) -> Plant:
     """What has been logged is changed, or is not."""
     return in_log(lambda scene, done, size: change(scene, done) if size else done)
+
+
+STEPS = 360
+"""Steps of a turn, or of a run that is a turn's."""
+
+
+@dataclass(frozen=True, eq=False)
+class FaultRuns:
+    """How the runs of a kind are made and shown.
+
+    ``groups`` are the headings of its faults, by group. ``cell`` gives the run of a scene in an
+    engine, with so many steps in a turn where that is `STEPS`, and halved steps compared or not.
+    ``words`` says how long the runs of some scenes are, ``settings`` the same as numbers.
+    ``unseen`` need not be seen in the scene ``unseen_in``. Faults of the kinds ``also`` are asked
+    for with it.
+    """
+
+    groups: Mapping[str, str]
+    cell: Callable[[Scene, str, int, bool], Cell]
+    words: Callable[[Collection[str]], Sequence[str]]
+    settings: Mapping[str, object]
+    unseen_in: str = FOURBAR
+    unseen: Sequence[Unseen] = ()
+    also: Sequence[RunKind] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class FaultSet:
+    """The faults of a way, in the order of the table, and their runs by kind."""
+
+    faults: Sequence[Fault]
+    runs: Mapping[RunKind, FaultRuns]

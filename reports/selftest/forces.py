@@ -19,8 +19,11 @@ from reports.selftest.force_changes import (
     in_torque,
     largest_n,
     lighter,
+    load_in_body,
+    load_late,
     nan_at_end,
     of_another,
+    of_load,
     of_reference,
     of_the_giver,
     one_sided,
@@ -34,7 +37,6 @@ from reports.selftest.force_changes import (
     weighed,
     without_last_pin,
 )
-from reports.selftest.load_changes import load_in_body, load_late, of_load
 from reports.selftest.logs import WHEN, noisy
 from sim.registry import engine
 
@@ -44,12 +46,7 @@ START = slice(5, 39)
 _fault = partial(Fault, "force", needs=gives)
 FAULTS = (
     _fault("force-sign", "all forces have the other sign", "CC120", each_force(lambda x, _: -x)),
-    _fault(
-        "force-giver",
-        "a pin's force said of the other body",
-        "CC120",
-        in_forces(of_the_giver),
-    ),
+    _fault("force-giver", "a pin's force said of the other body", "CC120", in_forces(of_the_giver)),
     _fault("force-body-frame", "vectors in the bodies' frames", "CC120", in_forces(in_body_frame)),
     _fault("force-turned", "x for y: a quarter of a turn", "CC120", in_forces(turned_aside)),
     _fault("force-half-step", "stamped too late", "CC120", in_forces(stamped), 0.5, "steps"),
@@ -97,10 +94,7 @@ FAULTS = (
         "steps",
     ),
     _fault(
-        "load-in-body",
-        "a load felt in the body's frame",
-        "CC120",
-        in_forces(of_load(load_in_body)),
+        "load-in-body", "a load felt in the body's frame", "CC120", in_forces(of_load(load_in_body))
     ),
     _fault("load-left-out", "a load is not felt", "CC120", in_forces(of_load(lambda *_: None))),
     _fault(
@@ -222,12 +216,7 @@ FAULTS = (
         scenes=(FOURBAR,),
         finer=True,
     ),
-    _fault(
-        "forces-copied",
-        "forces of the reference",
-        "CC111",
-        in_forces(of_reference),
-    ),
+    _fault("forces-copied", "forces of the reference", "CC111", in_forces(of_reference)),
     _fault("force-nan", "a reaction not a number at the end", "CC109", in_forces(nan_at_end)),
     _fault("pin-missing", "a pin is not in the log", "CC109", in_forces(without_last_pin)),
     _fault("forces-missing", "no force is in the log", "CC109", in_log(dropped)),

@@ -16,7 +16,7 @@ from models.loads import PinSpring
 from models.motion import State
 from models.scene import Link, Scene
 from reports.judge.cell import CellRunner
-from reports.selftest.elastic_runs import truth_of_chain
+from reports.selftest.elastic_changes import truth_of_chain
 from reports.selftest.fault import Plant
 from sim.engine import Run
 from sim.run import run

@@ -11,10 +11,9 @@ from rich.text import Text
 
 from reports.judge.cell import Checked
 from reports.judge.rules import RULES
-from reports.output.columns import plain_table
-from reports.selftest.all_faults import GROUPS, RUNS
+from reports.output.console import plain_table
 from reports.selftest.fault import PROFILE, Fault
-from reports.selftest.trial import FaultTrial, Passed, Verdict, passes
+from reports.selftest.trial import GROUPS, RUNS, FaultTrial, Passed, Verdict, passes
 
 WIDE = 96
 """Columns of a terminal that have room for what a fault is."""

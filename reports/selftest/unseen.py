@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,29 +12,16 @@ from models.motion import Motion
 from models.scene import Same, Scene
 from reports.compare.beside import truth_of
 from reports.judge.cell import CellRunner
+from reports.selftest.elastic_changes import at_quarter, in_chain_log
 from reports.selftest.engines import after_a_third
-from reports.selftest.fault import Plant, in_log, in_scene
+from reports.selftest.fault import Unseen, in_log, in_scene
+from reports.selftest.free_changes import in_free_scene, of_all_matter
 from reports.selftest.logs import last, moved, with_link
 from reports.selftest.requests import other_engine
-from sim.engine import Cost, Run
+from reports.selftest.segment_changes import in_chain, segments, springs, stiffer, turning_light
+from sim.engine import Cost, Energy, Run
 from sim.registry import engine, offering
 from sim.run import run, setup
-
-
-@dataclass(frozen=True)
-class Unseen:
-    """Something that is not as it should be, passes every rule, and why that is right.
-
-    ``needs`` says of an engine whether it can have it; where ``shows`` the errors are others with
-    it, if only in their last digits: else nothing was planted.
-    """
-
-    name: str
-    what: str
-    reason: str
-    plant: Plant
-    needs: Callable[[str], bool] = lambda _: True
-    shows: bool = True
 
 
 def _heavier(scene: Scene, share: float) -> Scene:
@@ -120,6 +106,30 @@ def _cheaper(_: Scene, done: Run, size: float) -> Run:
     return replace(done, cost=replace(cost, wall_s=cost.wall_s * (1.0 - 0.5 * size)))
 
 
+def _even(_: Scene, done: Run, size: float) -> Run:
+    """The energy of the start, at every instant."""
+    if not (size and done.energy):
+        return done
+    level = np.full_like(done.energy.kinetic_j, done.energy.total_j[0])
+    return replace(done, energy=Energy(done.energy.kinetic_j, level - done.energy.kinetic_j))
+
+
+def _parts(_: Scene, done: Run, size: float) -> Run:
+    """Each part of the energy is called by the name of the other."""
+    if not (size and done.energy):
+        return done
+    return replace(done, energy=Energy(done.energy.potential_j, done.energy.kinetic_j))
+
+
+def _half_a_step(_: Scene, done: Run, size: float) -> Run:
+    """The potential energy of half a step before, beside the kinetic energy of the sample."""
+    if not (size and done.energy):
+        return done
+    late = done.energy.potential_j.copy()
+    late[1:] -= 0.5 * size * np.diff(late)
+    return replace(done, energy=Energy(done.energy.kinetic_j, late))
+
+
 _NO_FORCES = (
     "Under a prescribed crank the lengths alone say how a mechanism moves; masses and loads decide "
     "the forces, which no rule compares."
@@ -135,7 +145,7 @@ UNSEEN = (
         "gravity-midway",
         "gravity is switched on in mid-run",
         f"{_NO_FORCES} Gravity at the start is refused (gravity-left-on).",
-        after_a_third(lambda tools, session, size: tools.pull(session, 9.81 * size)),
+        after_a_third(lambda tools: lambda session, size: tools.pull(session, 9.81 * size)),
         needs=lambda name: name in offering("spoiler"),
     ),
     Unseen(
@@ -182,5 +192,59 @@ UNSEEN = (
         "Times are advice, measured apart, and judged by nothing.",
         in_log(_cheaper),
         shows=False,
+    ),
+)
+UNSEEN_FREE = (
+    Unseen(
+        "matter-scaled",
+        "every mass and inertia twice",
+        "Under weight alone a mechanism moves as it does, whatever the factor of all its masses; "
+        "its reactions differ, which --forces plants. One mass of several is seen (mass-wrong).",
+        in_free_scene(of_all_matter),
+        shows=False,  # of a factor of two not one bit changes in some engines
+    ),
+    Unseen(
+        "energy-even",
+        "the energy of the start at every instant",
+        "The energy is worked out of the logged motion here, and not told by an engine: what "
+        "damps or drives that motion is seen in it (damping-left-on, energy-fed).",
+        in_log(_even),
+    ),
+    Unseen(
+        "energy-half-step",
+        "potential energy of half a step before",
+        "The total comes and goes with the motion by as much as a step makes of it, as that of an "
+        "engine does; its drift is judged, and the motion itself.",
+        in_log(_half_a_step),
+    ),
+    Unseen(
+        "energy-parts",
+        "kinetic energy told as potential",
+        "The total is judged: both parts are worked out of the logged motion here.",
+        in_log(_parts),
+        shows=False,  # a sum does not know its order
+    ),
+)
+UNSEEN_ELASTIC = (
+    Unseen(
+        "node-elsewhere",
+        "a node away from the middle, 1 % too far out",
+        "How far the middle is from the line between the pins is what is compared; a chain that is "
+        "bent otherwise elsewhere moves otherwise in its middle, too, unless only its log is off.",
+        in_chain_log(lambda truth, motion, size: at_quarter(truth, motion, 1e-2 * size)),
+        shows=False,  # nothing of it is among the errors
+    ),
+    Unseen(
+        "modulus-hardly",
+        "the modulus, by 0.01 %",
+        "Within what an engine may be off by at this step; 1 % is seen (modulus-off).",
+        in_chain(springs(lambda one, n, size: stiffer(one, n, 1e-4 * size))),
+    ),
+    Unseen(
+        "turning-inertia",
+        "segments with 1 % less inertia about their centre",
+        "Most of the inertia of a chain is that of its masses across; what rods have about their "
+        "own centre falls as 1/n^2, and three times as much of it is seen (inertia-at-ends).",
+        in_chain(segments(lambda link, size: turning_light(link, 1e-2 * size))),
     ),
 )

@@ -5,16 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
-from typing import Literal
+from typing import Literal, cast
+
+import numpy as np
 
 from analytic.free.toggle_barrier import ToggleBarrier
+from analytic.kinematics import solve
+from models.array import Array
 from models.cut_scenes import SegmentedScene
 from models.errors import CrankcheckError
 from models.hard import Chain
-from models.motion import State
+from models.motion import Motion, State
 from models.scene import Scene
+from reports.stability.error_series import ErrorSeries
 from reports.stability.matrix import CaseFacts, Outcome
-from sim.engine import Drive, SettingValue
+from reports.way.way import WAYS, way
+from sim.engine import Drive, Run, SettingValue
 
 WITHIN = 1e-2
 """The class of every case that names no other: a hundredth of a radian, or of the longest link."""
@@ -24,7 +30,7 @@ BEYOND = 10.0
 """How far beyond its values a case may be looked at: by that factor."""
 Scale = Literal["log", "linear", "whole"]
 Judge = str
-"""What runs are compared with, by name, see `reports.stability.yardstick`."""
+"""What runs are compared with, by name, see `reports.stability.case`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,3 +125,28 @@ class Case(CaseFacts):
         own = {each.name: getattr(self, each.name) for each in fields(CaseFacts)}
         unit = self.trial(self.values[0]).scene.driver.unit
         return CaseFacts(**own | {"driver_unit": unit})
+
+
+def _solved_start(trial: Trial) -> State:
+    return trial.start or solve(trial.scene, np.zeros(1)).state()
+
+
+@dataclass(frozen=True)
+class Yardstick:
+    """How a run is seen beside its truth, how that moves, to be drawn, and the state that they
+    start in. ``error_of`` says what the errors are of, as pure numbers; ``with_forces`` whether
+    those of forces may be asked for as well."""
+
+    error_of: str
+    look: Callable[[Trial, Run], ErrorSeries]
+    motion: Callable[[Trial, Array], Motion]
+    start: Callable[[Trial], State] = _solved_start
+    with_forces: bool = False
+
+
+def yardsticks() -> dict[Judge, tuple[str, Yardstick]]:
+    """All, by name, each with the name of its way."""
+    series = {
+        name: cast(Mapping[Judge, Yardstick], way(name).own_part("series", {})) for name in WAYS
+    }
+    return {judge: (name, each) for name, own in series.items() for judge, each in own.items()}

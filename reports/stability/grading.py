@@ -4,19 +4,47 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import cast
 
-from reports.stability.all_cases import YARDSTICKS
-from reports.stability.case import Case, Trial
-from reports.stability.force_error import force_error
+import numpy as np
+
+from models.array import Array
+from models.errors import CrankcheckError
+from models.motion import Motion
+from models.scene import Scene
+from reports.compare.beside import Beside, Truth
+from reports.compare.whole_errors import force_rows
+from reports.drawing.moving import INSTANTS, displacements, drawing, drawn_links, moving_points
+from reports.output.numbers import DIGITS, finite
+from reports.stability.case import Case, Trial, Yardstick, yardsticks
 from reports.stability.grades import outcome
 from reports.stability.matrix import Graded, Outcome, Picture, label
-from reports.stability.picture import picture
-from reports.stability.yardstick import Yardstick
+from reports.way.way import WAYS, way
 from sim.engine import Run
 from sim.registry import engine as engine_of
 from sim.run import run
 from sim.settings import SettingError
+
+YARDSTICKS = yardsticks()
+_PARTS = (way(name).own_part("cases", {}) for name in reversed(WAYS))
+GROUPS = {
+    group: cases
+    for part in _PARTS
+    for group, cases in cast(Mapping[str, tuple[Case, ...]], part).items()
+}
+CATALOGUE: dict[str, Case] = {
+    case.name: replace(
+        case,
+        group=group,
+        way=YARDSTICKS[case.judge][0],
+        error_of=YARDSTICKS[case.judge][1].error_of,
+    )
+    for group, cases in GROUPS.items()
+    for case in cases
+}
+
 
 GradedPicture = tuple[Graded, Picture | None]
 
@@ -94,3 +122,80 @@ def _graded(
         force=math.nan if apart else force_error(trial.scene, done, trial.settled_turns),
     )
     return result, done
+
+
+def force_error(scene: Scene, run: Run, settled_turns: float = 0.0) -> float:
+    """The worst error of a reaction, normal force, moment or torque, as a share of the largest of
+    its kind, from ``settled_turns`` on; infinite where a number is missing, NaN where there is no
+    reference of forces (nothing has a mass, or the motion is not the driver's)."""
+    motion = run.motion
+    if not run.with_forces or motion is None:
+        return math.nan
+    first_s = motion.time_s[0] + settled_turns * scene.driver.law.period_s
+    kept = slice(min(int(np.searchsorted(motion.time_s, first_s)), motion.time_s.size - 1), None)
+    cut = replace(
+        motion.each_series(lambda series: series[kept]),
+        time_s=motion.time_s[kept],
+        forces=motion.forces and motion.forces.stretch(kept),
+    )
+    settled = replace(
+        run, motion=cut, forces_of="states" if kept.start else run.forces_of
+    )  # the start, where steps have no forces, is cut off
+    beside = Beside.of(Truth(scene, bound=False), settled)
+    try:
+        rows = force_rows(beside).rows if beside else ()
+    except CrankcheckError:
+        return math.nan
+    sizes = [row.pure if row.finite else math.inf for row in rows if row.kind != "start"]
+    return max(sizes, default=math.nan)
+
+
+BEFORE = 0.3
+"""How much of a turn is shown before the place of the failure, of one turn in all."""
+
+
+def picture(
+    case: Case, trial: Trial, graded: Graded, run: Run, truth: Callable[[Trial, Array], Motion]
+) -> Picture | None:
+    """The picture of a graded run; None where there is no truth to be drawn there."""
+    scene = trial.given  # with the segments of elastic links, which show how these bend
+    assert run.motion is not None
+    kept = _around(run.motion.time_s, graded.at_s, scene.driver.law.period_s)
+    if kept.size < 2:
+        return None
+    time_s = run.motion.time_s[kept]
+    trace: dict[str, Array] = {"time_s": time_s}
+    for name in moving_points(scene):
+        if name in run.motion.points:
+            place = run.motion.points[name].position[kept]
+            trace[f"x.{name}"], trace[f"y.{name}"] = place.T
+    for name in drawn_links(scene):
+        trace[f"theta.{name}"] = run.motion.links[name].theta[kept]
+    try:
+        true = truth(trial, time_s)
+        shape = drawing(scene, time_s, true)
+        rows = displacements(scene, trace, time_s, true)
+    except CrankcheckError:
+        return None
+    if rows is None:
+        return None
+    return Picture(
+        case=graded.case,
+        engine=graded.engine,
+        profile=graded.profile,
+        value=graded.value,
+        label=graded.label,
+        title=f"{case.title}: {case.parameter} {graded.label} {case.unit}".strip(),
+        drawing=cast(Mapping[str, object], finite(shape, DIGITS)),
+        rows=finite(rows, DIGITS),
+    )
+
+
+def _around(time_s: Array, at_s: float, period_s: float) -> np.ndarray:
+    """Samples of one turn about the failure, evenly spread; of the last turn where it has none."""
+    end = float(time_s[-1])
+    middle = end if math.isnan(at_s) else at_s
+    first = max(min(middle - BEFORE * period_s, end - period_s), float(time_s[0]))
+    low, high = np.searchsorted(time_s, [first, first + period_s])
+    high = min(int(high), len(time_s) - 1)
+    return np.unique(np.linspace(int(low), high, INSTANTS).round().astype(np.intp))

@@ -7,10 +7,9 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 
 from models.errors import CrankcheckError
-from reports.stability.all_cases import CATALOGUE
 from reports.stability.case import Case
 from reports.stability.critical import critical, line
-from reports.stability.grading import GradedPicture, graded
+from reports.stability.grading import CATALOGUE, GradedPicture, graded
 from reports.stability.matrix import Critical, Graded, Picture, label
 from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
 

@@ -12,10 +12,8 @@ import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
 
 from models.errors import few
 from models.files.inputs import UnreadableError
-from reports.store.damage import Damage
-from reports.store.folder import Folder, being_written, open_folder
-from reports.store.manifest import MANIFEST, Manifest, read_manifest
-from reports.store.part import Part, rows_in
+from reports.store.folder import Folder, Part, being_written, open_folder, rows_in
+from reports.store.manifest import MANIFEST, Damage, Manifest, read_manifest
 from reports.store.schema import DAMAGED, LOCK, TABLES, TRAJECTORIES
 
 HARD = ("stability.json", "stability.csv", "stability.html")

@@ -1,16 +1,92 @@
-"""The parts of one table as they lie in its folder, and which of their rows count."""
+"""The files of a store: parts of its tables, which of their rows count, and its lock.
+
+To see it is to take the lock for a moment, so each side has patience: a sweep waits longer for it
+than any reader holds it, and a reader longer than another reader does.
+"""
 
 from __future__ import annotations
 
+import hashlib
+import io
 import os
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from models.files.inputs import UnreadableError
-from reports.store.part import NAME, Part, open_part
-from reports.store.schema import TABLES
+import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
+import pyarrow.parquet as pq  # type: ignore[import-untyped]  # as above
+from filelock import FileLock, Timeout
+
+from models.errors import CrankcheckError
+from models.files.inputs import UnreadableError, regular_bytes
+from reports.output.write import write
+from reports.store.schema import LOCK, NESTED, TABLES
+
+NAME = re.compile(r"(cells|timings)-(\d{20})-(\d+)-([0-9a-f]{16})\.parquet")
+"""Table, time [ns], number of rows, and seal."""
+MAGIC = b"PAR1"
+MOST_BYTES = 1_000_000_000
+"""A sweep writes what has come in a second or so, a hundredth of it."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part that is as it was written."""
+
+    path: Path
+    file: pq.ParquetFile
+
+    @cached_property
+    def rows(self) -> pa.Table:
+        """All of it but the columns that hold rows of their own."""
+        names = [name for name in self.file.schema_arrow.names if name not in NESTED]
+        return self.file.read(names, use_threads=False)
+
+    @cached_property
+    def keys(self) -> tuple[str, ...]:
+        """The key of the cell that each row is of."""
+        return tuple(self.rows.column("key").to_pylist())
+
+    def nested(self, column: str) -> pa.Table:
+        """The rows of their own that a column holds, beside the keys of the cells."""
+        return self.file.read(["key", column], use_threads=False)
+
+    def write_again(self, staying: Sequence[bool]) -> None:
+        """Write the rows that stay as a part that is to take the place of this one; a nanosecond
+        later than it, so that its rows count as soon as they are there."""
+        if any(staying):
+            rows = self.file.read(use_threads=False).filter(pa.array(staying))
+            table, time_ns, *_ = self.path.name.split("-")
+            write_part(self.path.parent, table, rows, int(time_ns) + 1)
+
+
+def rows_in(name: str) -> int:
+    """How many rows the part of that name was written with."""
+    return int(name.split("-")[2])
+
+
+def write_part(place: Path, table: str, rows: pa.Table, time_ns: int) -> None:
+    """Write rows of a table into its folder."""
+    buffer = io.BytesIO()
+    pq.write_table(rows, buffer, compression="zstd")
+    raw = buffer.getvalue()
+    write(place / f"{table}-{time_ns:020d}-{rows.num_rows}-{_seal(raw)}.parquet", raw)
+
+
+def open_part(path: Path) -> Part:
+    """The part in a file. Raises UnreadableError for one that is not as it was written."""
+    raw = regular_bytes(path, MOST_BYTES)
+    if not path.stem.endswith(_seal(raw)):
+        whole = raw.endswith(MAGIC)
+        raise UnreadableError("not as it was written: its checksum differs" * whole or "cut short")
+    return Part(path, pq.ParquetFile(pa.BufferReader(raw)))
+
+
+def _seal(raw: bytes) -> str:
+    """The hash of the bytes of a file: 64 bits are enough against chance."""
+    return hashlib.sha256(raw).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
@@ -83,3 +159,47 @@ def open_folder(place: Path, table: str) -> Folder:
 def being_written(name: str) -> bool:
     """Whether a file is one that is being written, or was when its sweep was killed."""
     return name.startswith(".") and name.endswith(".tmp")
+
+
+SWEEP_S, READER_S = 0.5, 0.05
+"""How long each side tries; a reader holds the lock for less than a millisecond."""
+POLL_S = 0.01
+
+
+def locked(folder: Path) -> FileLock:
+    """The lock of a store, taken for a sweep into a folder that is there.
+
+    Raises
+    ------
+    CrankcheckError
+        Another sweep has it, or it is no file that can be locked.
+    """
+    lock = FileLock(folder / LOCK, timeout=SWEEP_S)
+    try:
+        lock.acquire(poll_interval=POLL_S)
+    except Timeout:
+        raise CrankcheckError(
+            f"-o {folder}: another sweep writes there now; wait for it, or choose another"
+        ) from None
+    except OSError as error:
+        raise CrankcheckError(
+            f"-o {folder}: {LOCK} can not be locked: {error.strerror or error}; remove it, or "
+            "choose another place"
+        ) from None
+    return lock
+
+
+def is_written(folder: Path) -> bool:
+    """Whether a sweep writes to a store now; not where its lock can not be tried, as without the
+    right to write there. Makes no file."""
+    if not os.path.lexists(folder / LOCK):
+        return False
+    lock = FileLock(folder / LOCK, timeout=READER_S)
+    try:
+        lock.acquire(poll_interval=POLL_S)
+    except Timeout:
+        return True
+    except OSError:
+        return False
+    lock.release()
+    return False

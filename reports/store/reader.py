@@ -15,11 +15,9 @@ import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no stubs
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.inputs import UnreadableError
-from reports.store.damage import BUSY, Damage, command, notice
 from reports.store.examine import STOPPED, Examined, examine
-from reports.store.folder import has_parts, paths_of
-from reports.store.lock import is_written
-from reports.store.manifest import MANIFEST, Manifest, read_manifest
+from reports.store.folder import has_parts, is_written, paths_of
+from reports.store.manifest import BUSY, MANIFEST, Damage, Manifest, command, notice, read_manifest
 from reports.store.schema import unnested
 from reports.workers.isolated import Limits
 

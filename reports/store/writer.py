@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import count
 from pathlib import Path
 from types import TracebackType
 
@@ -13,12 +14,9 @@ from models.files.inputs import UnreadableError
 from reports.describe.frame import run_frame
 from reports.output.frame_file import parquet
 from reports.output.write import check_folder, refuse_link, write
-from reports.store.examine import examine
-from reports.store.folder import has_parts, paths_of
-from reports.store.lock import locked
-from reports.store.manifest import MANIFEST, Manifest, read_manifest
-from reports.store.mending import mend
-from reports.store.part import open_part, write_part
+from reports.store.examine import STOPPED, Examined, examine
+from reports.store.folder import has_parts, locked, open_part, paths_of, write_part
+from reports.store.manifest import MANIFEST, Manifest, indented, read_manifest
 from reports.store.schema import DAMAGED, LOCK, TABLES, TRAJECTORIES, table
 from sim.engine import Run
 
@@ -167,3 +165,48 @@ def _create(folder: Path, names: Iterable[str]) -> None:
         raise CrankcheckError(
             f"-o {folder}: {error.strerror or error}; choose another place"
         ) from None
+
+
+def mend(folder: Path, store: Examined) -> list[str]:
+    """Move what is damaged into the folder ``damaged``, and keep of a cell that is there several
+    times the row that counts; gives the lines that say so.
+
+    Such a row is there twice in between, which readers know, and at no moment not at all. Raises
+    CrankcheckError for a file that can not be moved.
+    """
+    for here in store.folders.values():
+        for name, part in here.parts.items():
+            if not all(here.last[name]):
+                part.write_again(here.last[name])
+    moved = [_set_aside(folder, each.path) for each in store.damage if each.aside]
+    # What was stopped goes on without a word.
+    bad = [each for each in store.damage if each.cure == "sweep" and each.what != STOPPED]
+    lines = [each.line for each in bad]
+    if moved:
+        lines.append(f"moved to {folder / DAMAGED}: {', '.join(moved)}")
+    if any(each.path == MANIFEST for each in bad):
+        lines.append(f"{MANIFEST} is made again, and knows of this sweep alone")
+    return [f"{folder}: damaged", *indented(lines)] if lines else []
+
+
+def _set_aside(folder: Path, path: str) -> str:
+    """Move a file or a folder of the store; gives its new name."""
+    place = folder / DAMAGED
+    try:
+        place.mkdir(exist_ok=True)
+        name = next(name for name in _names(path) if not os.path.lexists(place / name))
+        (folder / path).rename(place / name)
+    except OSError as error:
+        raise CrankcheckError(
+            f"-o {folder}: {path} is damaged, and can not be moved to {place}: "
+            f"{error.strerror or error}; move it yourself, or choose another folder"
+        ) from None
+    return name
+
+
+def _names(path: str) -> Iterator[str]:
+    """Names for what is moved, one of which is free: without its folder, and with a number."""
+    stem, dot, ending = path.rpartition("/")[2].partition(".")
+    yield f"{stem}{dot}{ending}"
+    for number in count(2):
+        yield f"{stem}-{number}{dot}{ending}"

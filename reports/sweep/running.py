@@ -6,7 +6,9 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -14,23 +16,30 @@ from rich.console import Console
 from models.errors import CrankcheckError
 from reports.judge.cell import Cell, unfinished
 from reports.judge.rows import cell_row
-from reports.plan.grid import Task
+from reports.output.console import tell
+from reports.output.provenance import provenance
+from reports.plan.grid import Grid, Task, grid
+from reports.plan.study import Study
+from reports.store.manifest import Manifest
 from reports.store.reader import stored_costs, stored_endings, stored_keys
 from reports.store.writer import Writer
-from reports.sweep.cluster import on_cluster
 from reports.sweep.measured import (
     UNMEASURED,
     MeasuredCell,
     Repeats,
+    connected,
     measured,
+    on_cluster,
     timed_in_turns,
     timing_row,
 )
 from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
 from reports.workers.progress import progress_bar
+from reports.workers.signals import Stopped
 
 if TYPE_CHECKING:
     from distributed import Client
+
 
 ROUNDS = 6
 """Rounds of timing over the same cells, A and B in turn: a disturbance is shorter than most."""
@@ -169,3 +178,58 @@ def _lost(task: Task, lost: Lost) -> MeasuredCell:
     """A cell that came to no end of its own, as a row with its reason."""
     row = cell_row(unfinished(task.cell, lost.status, lost.reason))
     return MeasuredCell({**row, **UNMEASURED})
+
+
+@dataclass(frozen=True)
+class Manner:
+    """How a sweep is run: what a cell may take, how many at a time (0: one per processor), on which
+    cluster, if any; whether it is timed, runs are kept whole, and failed cells run again."""
+
+    limits: Limits
+    jobs: int = 0
+    dask: str | None = None
+    timing: bool = True
+    keep_runs: bool = False
+    again: bool = False
+
+
+def swept(
+    study: Study, folder: Path, manner: Manner, command: Sequence[str], progress: Console
+) -> tuple[Grid, Done]:
+    """Do what of the study is not done yet; what is damaged in the store is mended, and told.
+
+    ``command`` is kept with the run, to be repeated. Raises CrankcheckError for what can be told
+    of the study, or of the folder, before running.
+    """
+    laid = grid(study)
+    client = None if manner.dask is None else connected(manner.dask)
+    facts = provenance({task.cell.engine: task.version for task in laid.tasks})
+    run = {
+        "command": list(command),
+        "started": datetime.now(UTC).isoformat(timespec="seconds"),
+        "study": study.model_dump(exclude_defaults=True),
+        "provenance": facts,
+        # What the cells are called in this run, which may not be what they were called before.
+        "lines": {t.line: [t.variant, t.cell.profile, t.cell.gated] for t in laid.tasks},
+    }
+    run |= {"own_steps": own} if (own := _own_steps(study, laid.tasks)) else {}
+    with Writer(folder, Manifest(laid.texts, (run,))) as writer:
+        tell(writer.mended)
+        running = Running(writer, laid.tasks, manner.limits, facts, progress)
+        try:
+            done = running.errors(manner.keep_runs, manner.jobs, client, manner.again)
+            if manner.timing:
+                done = running.timings(done)
+        except Stopped:
+            progress.print("what is done is kept; the same command goes on from there")
+            raise
+    return laid, done
+
+
+def _own_steps(study: Study, tasks: Sequence[Task]) -> dict[str, list[float]]:
+    """The steps in a turn of lines that have others than the study, as elastic links may."""
+    steps: dict[str, list[float]] = {}
+    for task in tasks:
+        if task.cell.scene.elastic and study.times_held:
+            steps.setdefault(task.line, []).append(task.cell.steps_per_turn)
+    return steps

@@ -9,11 +9,10 @@ from dataclasses import dataclass
 from rich.console import Console
 from rich.text import Text
 
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.quantities import QUANTITIES, named
-from reports.results.settings_text import value_text
-from reports.tune.attempt import Attempt, Goal, Row
-from reports.tune.timing import Taken
+from reports.results.variants import value_text
+from reports.tune.attempt import Attempt, Goal, Row, Taken
 from sim.offers import SearchSpace
 
 OTHERS = {

@@ -17,7 +17,7 @@ from reports.judge.cell import Checked
 from reports.judge.rules import FORCES
 from reports.judge.rules.rule import Finding
 from reports.judge.three_steps import Convergence
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.quantities import QUANTITIES
 
 Texts = Callable[[Checked], Sequence[str]]

@@ -13,7 +13,7 @@ from rich.text import Text
 from reports.judge.cell import Checked
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import Finding
-from reports.output.columns import hanging
+from reports.output.console import hanging
 from reports.output.junit import case_of, say, suite_of
 from reports.output.numbers import count
 from reports.quantities import QUANTITIES, named

@@ -1,22 +1,24 @@
 """A way: how scenes of a kind are run and compared with the reference.
 
 A kind of scene is a folder of the room `ways`, found by its name, with a value ``WAY``; to add one,
-add the folder and its name in `WAYS`. Its parts in other rooms are modules of the folder (`Parts`).
+add the folder and its name in `WAYS`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Collection, Mapping, Sequence, Set
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from types import ModuleType
-from typing import Any, Protocol, cast
+from typing import Any, NoReturn, Protocol, cast
 
+from models.array import Array
+from models.motion import Forces, Motion, State
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.quantities.quantity import Role, Tolerance
-from reports.way.length import GivenAs, Length, Planned
+from reports.way.length import GivenAs, Length, Planned, Springs
 from reports.way.result_kind import ResultKind
 from sim.engine import Drive
 
@@ -35,9 +37,18 @@ class StudyLengths(Protocol):
     times_held: list[float]
 
 
-class Parts:
-    """The parts of a way: each is a module in its folder, or in one of a way that it builds on, and
-    is loaded where it is needed.
+class StudyLinks(Protocol):
+    """What a study says of elastic links."""
+
+    segments: list[int]
+    springs: list[Springs]
+
+
+class Way(Protocol):
+    """How scenes of a kind are run and compared.
+
+    Its parts are modules in its folder, or in one of a way that it builds on, each loaded where it
+    is needed; the value of a module has its name, in capitals.
 
     ========== ===============================================================================
     columns    the columns of its cells, a `reports.judge.rows.ColumnsOf`
@@ -49,43 +60,9 @@ class Parts:
     figures    its figures of a store, by name (`reports.figures.drawing.Drawing`)
     section    its section of the page (`reports.page.sections.section.WaySection`)
     log        how its logs are judged, a `reports.own_log.log_kind.LogKind`
+    solving    how its scenes are solved, a `reports.requests.solving.Solving`
     ========== ===============================================================================
-
-    The value of a module has its name, in capitals; the footer is one more of the table's module.
-    A way without columns of its own has those of all cells alone.
     """
-
-    def part(self, name: str) -> object:
-        """The part of that name."""
-        return _part(type(self).__mro__[:-1], name)
-
-    def own_part(self, name: str, default: object = ()) -> object:
-        """The part of that name of the way alone, and of none that it builds on."""
-        module = _module(type(self), name)
-        return getattr(module, name.upper()) if module else default
-
-
-@cache
-def _part(classes: tuple[type, ...], name: str) -> object:
-    found = (getattr(_module(cls, name), name.upper(), None) for cls in classes if cls is not Parts)
-    return next(filter(None, found), None) or _OF_ALL[name]
-
-
-def _no_columns(checked: object) -> dict[str, object]:
-    return {}
-
-
-_OF_ALL = {"columns": _no_columns}
-
-
-def _module(cls: type, name: str) -> ModuleType | None:
-    """The module of a part in the folder of a class, None where there is none."""
-    whole = f"{cls.__module__}.{'table' if name == 'footer' else name}"
-    return import_module(whole) if find_spec(whole) else None
-
-
-class Way(Protocol):
-    """How scenes of a kind are run and compared."""
 
     name: str
     drive: Drive
@@ -116,15 +93,20 @@ class Way(Protocol):
     """What of its errors is over the sensitivity of the motion, in words."""
 
     def part(self, name: str) -> object:
-        """The part of that name, as of `Parts`."""
-        ...
+        """The part of that name."""
+        return _part(type(self).__mro__[:-1], name)
 
     def own_part(self, name: str, default: object = ()) -> object:
-        """As of `Parts`."""
-        ...
+        """The part of that name of the way alone, and of none that it builds on."""
+        module = _module(type(self), name)
+        return getattr(module, name.upper()) if module else default
 
     def roles_of(self, *, with_forces: bool) -> Set[Role]:
         """The roles of the quantities of a run."""
+        return {*self.roles, *(("force",) if with_forces else ())}
+
+    def stored(self, row: Mapping[Any, Any]) -> bool:
+        """Whether a row of a store is a cell of the kind, or of one that builds on it."""
         ...
 
     def takes(self, scene: Scene, drive: Drive) -> bool:
@@ -144,25 +126,17 @@ class Way(Protocol):
         """Refuse a run that has no reference. Raises CrankcheckError."""
         ...
 
-    def stored(self, row: Mapping[Any, Any]) -> bool:
-        """Whether a row of a store is a cell of the kind, or of one that builds on it."""
-        ...
-
     def turn_s(self, scene: Scene) -> float:
         """What lengths of runs are multiples of [s]: a turn of the driver, or a second."""
         ...
 
     def every(self, steps: int, steps_per_turn: float) -> int:
         """How many steps are taken from sample to sample of the log."""
-        ...
+        return 1
 
     def given(self, scene: Scene, given: GivenAs) -> Scene:
         """The scene that an engine is given: of elastic links, the segments."""
-        ...
-
-    def moved(self, scene: Scene) -> Scene:
-        """A scene as a run of the kind moves it, where it says otherwise."""
-        ...
+        return scene
 
     def note(self, scene: Scene, duration_s: float) -> str:
         """What is said of a run of that duration [s] beside its numbers; "" for nothing."""
@@ -171,6 +145,95 @@ class Way(Protocol):
     def truth(self, run: Planned) -> Truth:
         """The reference of a run. Raises CrankcheckError for a scene that has none."""
         ...
+
+    drives: tuple[Drive, ...]
+    """By which it may be run."""
+    lengths_by: tuple[str, ...]
+    """Options of a length that say something of it."""
+    over: str
+    """What is drawn of it, in words."""
+    targets: Collection[str]
+    """The quantities that one target stands for."""
+    least_judged: int
+    """Steps of a run that was made before, and can be judged."""
+
+    def refuse_length(self, option: str) -> NoReturn:
+        """Refuse an option of a length that says nothing of it. Raises CrankcheckError."""
+        ...
+
+    def step(self, scene: Scene, dt_s: float) -> str:
+        """A step, in words."""
+        ...
+
+    def long(self, scene: Scene, dt_s: float, steps: int) -> str:
+        """How long a run of so many steps is, in words."""
+        ...
+
+    def released(self, scene: Scene) -> Scene:
+        """The scene that a run of it is of: let go, where the drive is free."""
+        ...
+
+    def opened(self, scene: Scene) -> tuple[Scene, State]:
+        """The scene that an engine is given, and where it begins. Raises CrankcheckError where it
+        can not."""
+        ...
+
+    def held_steps(self, scene: Scene) -> tuple[float, ...]:
+        """Steps in a turn that the scene of an engine is exact for; empty for any."""
+        return ()
+
+    def launch(self, run: Planned) -> Truth | None:
+        """What a run starts from, None where it starts as the scene is let go. Raises
+        CrankcheckError."""
+        ...
+
+    def refuse_made(self, run: Planned) -> None:
+        """Refuse a run that was made before and has no reference. Raises CrankcheckError."""
+        ...
+
+    def judged_by(self, given: GivenAs) -> list[str] | None:
+        """The options of `judge` for a log of it; None where no log of it is judged."""
+        return []
+
+    def given_by(self, study: StudyLinks) -> list[GivenAs]:
+        """All that a study gives elastic links as. Raises CrankcheckError."""
+        return [GivenAs()]
+
+    def key(self, given: GivenAs) -> list[object]:
+        """What names a stored result beside what all have."""
+        return []
+
+    def shortened(self, scene: Scene, lasts_s: float) -> str:
+        """What is said of a run that ends before the scene does; "" for nothing."""
+        return ""
+
+    def motion(self, scene: Scene, time_s: Array) -> Motion:
+        """How it moves in truth, to be drawn, with rigid links. Raises CrankcheckError."""
+        ...
+
+    def drawn_forces(self, scene: Scene, time_s: Array) -> Forces:
+        """The forces that it is drawn with. Raises CrankcheckError where there are none."""
+        ...
+
+    def drawn_s(self, most_s: float) -> float:
+        """How long of it is drawn at most, where it does not come back [s]."""
+        ...
+
+    def latest_s(self, scene: Scene) -> float:
+        """Until when it can be looked at [s]."""
+        ...
+
+
+@cache
+def _part(classes: tuple[type, ...], name: str) -> object:
+    found = (_module(cls, name) for cls in classes if cls is not Way)
+    return getattr(next(module for module in found if module), name.upper())
+
+
+def _module(cls: type, name: str) -> ModuleType | None:
+    """The module of that name in the folder of a class, None where there is none."""
+    whole = f"{cls.__module__}.{name}"
+    return import_module(whole) if find_spec(whole) else None
 
 
 @cache
@@ -183,6 +246,12 @@ def way_of(scene: Scene, drive: Drive | None = None) -> Way:
     """The way of a run of the scene with a drive; of None with its own."""
     chosen = drive or ("free" if scene.is_free else "prescribed")
     return next(each for each in map(way, WAYS) if each.takes(scene, chosen))
+
+
+def driven_by(scene: Scene, drive: Drive) -> Drive:
+    """The drive of a run of the scene: that which is asked for, if it takes that, or its own."""
+    chosen = way_of(scene)
+    return drive if drive in chosen.drives else chosen.drive
 
 
 def laid_out(

@@ -64,7 +64,7 @@ def main() -> None:
     from reports.history.version_result import FOLLOWED
     from reports.judge.cell import Cell, check
     from reports.judge.rows import cell_frame, error_frame
-    from reports.page.sections.convergence import DIAGRAMS
+    from reports.page.sections.errors import DIAGRAMS
     from reports.results.changes.runs import COMPARED
     from reports.store.schema import table
     from reports.tune.table import OTHERS

@@ -15,7 +15,7 @@ from analytic.lectures.synthesis.examine import Examined
 from analytic.lectures.synthesis.sensitivity import Sensitivity, Spread
 from analytic.lectures.synthesis.solutions import Solutions
 from reports.lectures.design.proof import Met, in_words, unit_of
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.numbers import count
 
 if TYPE_CHECKING:

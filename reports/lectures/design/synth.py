@@ -38,7 +38,7 @@ from reports.lectures.design.design_tables import (
 )
 from reports.lectures.design.proof import Met, by_reference, limit_of, proven
 from reports.lectures.drawing.sheets.paper import Paper
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.frame_file import csv
 from reports.output.numbers import count
 from reports.output.provenance import provenance

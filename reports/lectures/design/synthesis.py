@@ -13,8 +13,8 @@ from models.lectures.shipped_tables import table_of
 from models.lectures.tasks.files import KINDS, load_task, refuse_unknown
 from models.lectures.tasks.task import TaskTable
 from models.scene import Scene
+from reports.requests.arguments import told_at_the_call
 from reports.requests.shown import Shown
-from reports.requests.told import told_at_the_call
 
 if TYPE_CHECKING:
     import pandas as pd

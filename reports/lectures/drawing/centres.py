@@ -15,7 +15,7 @@ from analytic.structure.mobility import analyse, refuse_other_than_cranked
 from models.array import Array
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
-from reports.describe.driver_at import angle_at, driver_at
+from reports.describe.facts import angle_at, driver_at
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
 from reports.lectures.drawing.sheets.centre_sheet import (
     CentreSheet,
@@ -26,7 +26,7 @@ from reports.lectures.drawing.sheets.centre_sheet import (
 )
 from reports.lectures.drawing.sheets.driver_range import sense_of_law
 from reports.lectures.drawing.sheets.paper import Paper, sheet_note
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.write import check_file
 from reports.requests.options import PaperSize, SceneName
 

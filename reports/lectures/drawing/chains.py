@@ -14,11 +14,11 @@ from analytic.lectures.chains.assur_groups import Mechanism, inversions
 from analytic.lectures.chains.chain import Chain, assortment_in_words, assortments
 from analytic.lectures.chains.chain_synthesis import chain_names, chains, type_in_letters, types
 from models.errors import CrankcheckError
-from reports.describe.roman import roman
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
 from reports.lectures.drawing.sheets.chain_sheet import DrawnChain, check_room, draw_chains
 from reports.lectures.drawing.sheets.paper import Paper
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
+from reports.output.numbers import roman
 from reports.output.provenance import crankcheck_version
 from reports.output.write import check_file
 from reports.requests.options import PaperSize

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from analytic.lectures.schemes.joint_class import JointAnalysis, analyse_joint
 from models.lectures.touching import Touching, load_touching, shipped_contacts
-from reports.output.columns import hanging, plain_table
+from reports.output.console import hanging, plain_table
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from analytic.lectures.schemes.scheme_mobility import SchemeMobility, scheme_mob
 from models.errors import CrankcheckError, harmless
 from models.lectures.scheme import HIGHER, Scheme
 from models.lectures.scheme_files import find_scheme, load_scheme, scheme_text, shipped_schemes
-from reports.output.columns import hanging, plain_table
+from reports.output.console import hanging, plain_table
 from reports.output.write import check_file, write
 
 HEAD = 10

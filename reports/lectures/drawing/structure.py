@@ -17,13 +17,13 @@ from analytic.structure.mobility import Structure, analyse
 from models.errors import CrankcheckError
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
-from reports.describe.driver_at import place_at
-from reports.describe.roman import roman
+from reports.describe.facts import place_at
 from reports.lectures.drawing.assemblies import Assembled, all_assemblies
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
 from reports.lectures.drawing.sheets.assembly_sheet import draw_assemblies
 from reports.lectures.drawing.sheets.paper import Paper, sheet_note
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
+from reports.output.numbers import roman
 from reports.output.write import check_file
 from reports.requests.options import PaperSize, SceneName
 

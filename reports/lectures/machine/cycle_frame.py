@@ -17,7 +17,7 @@ from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from models.array import Array
 from reports.lectures.machine import cycle_rows
 from reports.lectures.machine.cycle_rows import number_rows, way_rows, work_rows
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.numbers import NONE, error_text, finite
 from reports.output.provenance import crankcheck_version
 

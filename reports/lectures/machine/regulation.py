@@ -12,9 +12,8 @@ from analytic.lectures.regulation.steady_cycle import SteadyCycle, cycle_scene, 
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.requests.arguments import SceneLike, kind_of, scene_of
+from reports.requests.arguments import SceneLike, kind_of, scene_of, told_at_the_call
 from reports.requests.shown import Shown
-from reports.requests.told import told_at_the_call
 
 if TYPE_CHECKING:
     import pandas as pd

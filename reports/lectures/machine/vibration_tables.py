@@ -11,7 +11,7 @@ from rich.table import Table
 from analytic.lectures.vibration.over_speeds import InertiaMap, OverSpeeds
 from analytic.lectures.vibration.steady_vibration import SteadyVibration
 from reports.lectures.machine import vibration_rows
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.numbers import NONE, count, readable
 
 MODES = 6

@@ -10,14 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import cast
 
-from reports.page.sections.convergence import build as convergence
-from reports.page.sections.fairness import build as fairness
+from reports.page.sections.copied import reading_forces, recommendation
+from reports.page.sections.errors import convergence, precision
 from reports.page.sections.hard import build as hard
 from reports.page.sections.motion import build as motion
-from reports.page.sections.precision import build as precision
-from reports.page.sections.provenance import build as provenance
-from reports.page.sections.reading_forces import build as reading_forces
-from reports.page.sections.recommendation import build as recommendation
+from reports.page.sections.provenance import fairness, provenance
 from reports.page.sections.section import PageReport, Section, WaySection
 from reports.page.sections.stability import build as stability
 from reports.page.sections.verdict import build as verdict

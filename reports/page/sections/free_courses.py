@@ -15,9 +15,9 @@ from models.scene import Scene
 from reports.compare.free.drift import window_means
 from reports.drawing.moving import displacements, drawing, drawn_links, moving_points
 from reports.drawing.packed import packed, size_of
-from reports.drawing.true_motion import true_motion
+from reports.drawing.shape import true_motion
 from reports.output.numbers import duration
-from reports.page.thinning import chosen
+from reports.page.sections.section import chosen
 from reports.results.lines import Line
 from reports.results.overview import Report
 

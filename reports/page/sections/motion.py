@@ -14,8 +14,7 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.describe.facts import facts
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law, facts
 from reports.drawing.moving import (
     displacements,
     drawing,
@@ -26,8 +25,7 @@ from reports.drawing.moving import (
 )
 from reports.drawing.packed import packed, size_of
 from reports.output.numbers import error_text
-from reports.page.sections.section import Section
-from reports.page.thinning import BUDGET, chosen, steps_held
+from reports.page.sections.section import BUDGET, Section, chosen, steps_held
 from reports.results.error_parts import CurveBody, Parts, Split, split, worst_body
 from reports.results.lines import Line
 from reports.results.overview import Report
@@ -128,7 +126,7 @@ class _DrawnScene:
         trace = self.report.stored.trace
         parts = None if body is None else split(line, trace, body, self.scene.longest_m)
         rows = line.cells.set_index("key")
-        scene = line.way.moved(self.scene)
+        scene = self.scene
         return {
             "look": self.report.look(line).number,
             "floor": "" if parts is None else _floor(parts),

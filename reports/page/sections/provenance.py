@@ -1,4 +1,5 @@
-"""Where the numbers come from: versions, processor, studies, commands, settings, every cell."""
+"""Where the numbers come from, versions, processor, studies, commands, settings and every cell, and
+the rules by which engines are compared."""
 
 from __future__ import annotations
 
@@ -9,14 +10,12 @@ from collections.abc import Mapping, Sequence
 
 from reports.output.provenance import crankcheck_version
 from reports.page.sections.section import Section
-from reports.results.lines import Line
-from reports.results.looks import Look
-from reports.results.one_processor import left_out
+from reports.results.lines import Line, left_out
 from reports.results.overview import Report
-from reports.results.settings_text import usual, value_text
+from reports.results.variants import Look, usual, value_text
 
 
-def build(report: Report) -> Section:
+def provenance(report: Report) -> Section:
     """The section."""
     runs = [_run(run) for run in report.stored.manifest.runs]
     older = len(report.stored.cells) - len(report.cells)
@@ -66,3 +65,118 @@ def _settings(report: Report, engine: str) -> dict[str, object]:
         values = [value_text(line.settings.get(name)) for line in variants.values()]
         rows.append((name, [(value, value != known) for value in values]))
     return {"engine": engine, "looks": list(variants), "usual": first.name, "rows": rows}
+
+
+RULES = (
+    (
+        "One truth for all",
+        "Every engine is held to the closed-form solution of the mechanism, whose own error is "
+        "bounded at every sample. No engine is the reference for another.",
+    ),
+    (
+        "One scene",
+        "Lengths, masses, joints and the assembly branch come from one scene file. Each engine's "
+        "model is built from it and from nothing else.",
+    ),
+    (
+        "One start",
+        "Every run starts from the same state: angles, places and velocities of the closed form "
+        "at the first instant, with all pins closed.",
+    ),
+    (
+        "One drive",
+        "The crank follows the same law everywhere. Where it is not where it was told to be, that "
+        "is the drive's error, and is shown apart from the geometry's.",
+    ),
+    (
+        "Each at its own instants",
+        "Positions and velocities are compared at the instants that they belong to in the engine "
+        "that logged them: some engines log a velocity half a step away from the position.",
+    ),
+    (
+        "Twice where it can be",
+        "Velocities and accelerations are taken as an engine reports them, and by differencing "
+        "the places that it logged.",
+    ),
+    (
+        "Tolerances that know the step",
+        "A limit follows from the step, the curvature of the motion and the conditioning of its "
+        "dyads. It is one number per quantity, for every engine alike.",
+    ),
+    (
+        "Judged as tuned, shown as shipped",
+        "What is judged is profile tuned, with the settings that suit an engine best. What it "
+        "does as shipped, and under other settings, is shown beside it.",
+    ),
+    (
+        "Errors and times apart",
+        "Runs that are measured for error record every step; runs that are timed record nothing. "
+        "Timed runs go one by one, warmed up, with no other run beside them, several times over.",
+    ),
+    (
+        "Time is advice",
+        "The least of the repeats is shown. Times are compared within one processor only, and "
+        "called equal where they differ by less than two timings of one run.",
+    ),
+    (
+        "Nothing left out",
+        "A run that diverged, came apart or was not supported is a row with its reason, and takes "
+        "no part in a recommendation.",
+    ),
+)
+
+LET_GO = {
+    "One truth for all": (
+        "One truth for all",
+        "Every engine is held to the equation of the machine, integrated with high precision; a "
+        "second integration says what the first may be off by. No engine is the reference for "
+        "another.",
+    ),
+    "One start": (
+        "One start",
+        "Every run starts from the same state: angles, places and velocities, the accelerations "
+        "that weights and loads give it, and all pins closed.",
+    ),
+    "One drive": (
+        "No drive",
+        "Weights, springs and loads alone move the mechanism. A phase that has run away is told "
+        "from a linkage that has come open, and judged over the sensitivity of the motion.",
+    ),
+}
+"""What takes the place of a rule where every run was let go."""
+BENT = {
+    "One truth for all": (
+        "One truth for all",
+        "Every engine is held to the beam with foreshortening, whose motion is solved without an "
+        "engine; a finer description says what that may be off by. The exact chain of as many "
+        "segments says what the engine itself is off by.",
+    ),
+    "One start": (
+        "One start",
+        "Every run starts from the same state: that of the exact chain of segments, with all pins "
+        "closed.",
+    ),
+}
+"""What takes the place of a rule where links bend in every run."""
+
+
+def fairness(report: Report) -> Section:
+    """The section."""
+    return Section(
+        anchor="fairness",
+        title="How it is kept fair",
+        template="fairness.html",
+        words={
+            "rules": [_other(report).get(rule[0], rule) for rule in RULES],
+            "noise": report.noise if math.isfinite(report.noise) else None,
+        },
+    )
+
+
+def _other(report: Report) -> Mapping[str, tuple[str, str]]:
+    """What takes the place of rules, where nothing was driven with rigid links."""
+    if report.driven is not None:
+        return {}
+    kinds = {"let go": LET_GO, "elastic": BENT}
+    there = (rules for kind, rules in kinds.items() if report.of_kind(kind))
+    return {name: rule for rules in there for name, rule in rules.items()}

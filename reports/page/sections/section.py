@@ -1,11 +1,16 @@
-"""What a section of the page is, and what it is built from."""
+"""A section of the page, and what stands in it: text of a user's file, and what has room."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import json
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
+from models.errors import cut, harmless
+from reports.results.lines import Line
 from reports.results.overview import Report
 from reports.stability.matrix import Matrix
 
@@ -44,3 +49,73 @@ class Section:
     scripts: tuple[str, ...] = ()
     styles: tuple[str, ...] = ()
     plotly: bool = False
+
+
+LONGEST = 80
+"""Characters of a name, whatever a header holds."""
+LONGEST_SENTENCE = 2_000
+
+
+def name_text(text: str, most: int = LONGEST) -> str:
+    """A name on one line: ``\\u202e`` and the like, which turn round what follows, as escapes."""
+    return cut(" ".join(harmless(text).split()), most)
+
+
+def sentence_text(text: str) -> str:
+    """A sentence that such a name may stand in."""
+    return name_text(text, LONGEST_SENTENCE)
+
+
+def toml_text(value: object) -> str:
+    """A value as TOML, to be copied: exact, and what is not seen as its number."""
+    if not isinstance(value, str):
+        return json.dumps(value)
+    quoted = json.dumps(value, ensure_ascii=False)
+    return "".join(each if each.isprintable() else _escape(each) for each in quoted)
+
+
+def _escape(character: str) -> str:
+    number = ord(character)
+    return f"\\u{number:04x}" if number < 0x10000 else f"\\U{number:08x}"
+
+
+BUDGET = 1_900_000
+"""Characters for all drawings and curves: with Plotly (4.8 MB) a page of 560 cells stays below
+8 MB."""
+LEAST = 2
+"""The coarsest and the finest step are always there."""
+
+
+def steps_held(sizes: dict[str, int], lines: tuple[Line, ...], budget: int = BUDGET) -> int:
+    """How many steps of each line a page holds.
+
+    ``sizes`` says what each traced cell takes [characters], by its key.
+    """
+    most = max((len(line.cells) for line in lines), default=LEAST)
+    for number in range(most, LEAST, -1):
+        taken = sum(sizes[key] for line in lines for key in chosen(line, sizes, number))
+        if taken <= budget:
+            return number
+    return LEAST
+
+
+def chosen(line: Line, sizes: dict[str, int], number: int) -> list[str]:
+    """The keys of at most ``number`` traced cells: the two ends of the line, and evenly between."""
+    keys = [str(key) for key in line.cells["key"] if str(key) in sizes]
+    if len(keys) <= number:
+        return keys
+    places = np.unique(np.round(np.linspace(0, len(keys) - 1, number)).astype(int))
+    return [keys[place] for place in places]
+
+
+def fitting(order: Sequence[int], sizes: Sequence[int], room: int) -> list[int]:
+    """Which things a page holds, in their own order, when it takes them in the ``order`` given.
+
+    ``sizes`` says what each takes [characters]. One that does not fit makes way for smaller ones.
+    """
+    kept = []
+    for index in order:
+        if sizes[index] <= room:
+            room -= sizes[index]
+            kept.append(index)
+    return sorted(kept)

@@ -10,9 +10,10 @@ from typing import Literal
 
 from models.errors import CrankcheckError
 from reports.judge.three_steps import AT_ROUNDING
+from reports.output.numbers import count
 from reports.quantities.limits import ELASTIC, FREE
-from reports.results.changes.gone import refuse_gone
 from reports.results.changes.runs import COMPARED, CellName, StoredCell, StoredRun
+from reports.store.manifest import BUSY
 
 FACTOR = 1.1
 """How much an error may grow before it is called worse."""
@@ -218,3 +219,33 @@ def _changes(old: StoredCell, new: StoredCell) -> Iterator[ErrorChange]:
         was, now = old.errors[quantity], new.errors[quantity]
         if math.isfinite(was) or math.isfinite(now):
             yield ErrorChange(quantity, was, now, floor(quantity, new.name.steps_per_turn))
+
+
+def refuse_gone(old: StoredRun, new: StoredRun) -> None:
+    """Refuse to compare where a lost cell may be one that the other run has.
+
+    What is damaged in a run is of no account where it has every cell that the other one has: what
+    is lost then was not asked for. Otherwise there is no telling whether a cell was never there or
+    is lost, and whether it would be worse; nor where both have lost some, which may be the same.
+
+    Raises
+    ------
+    CrankcheckError
+        Says which cells are missing, and what is damaged.
+    """
+    for run, other in ((old, new), (new, old)):
+        if not run.gone:
+            continue
+        missing = [name for name in other.cells if name not in run.cells]
+        if missing:
+            which = f"{count(len(missing), 'cell')} of {other.label}, such as {missing[0].label},"
+        elif run.lost and other.lost:
+            which = f"cells that {other.label} has lost too"
+        else:
+            continue
+        busy = any(BUSY in each for each in run.gone)
+        raise CrankcheckError(
+            f"{run.label}: {which} may be among what is missing there "
+            f"({'; '.join(run.gone)}); {'let its sweep end' if busy else 'mend it'} first, or "
+            "compare with a whole run"
+        )

@@ -14,7 +14,7 @@ from typing import cast
 from models.errors import CrankcheckError
 from models.files.inputs import UnreadableError, regular_bytes
 from models.files.reading import scene_texts
-from reports.plan.key import digest
+from reports.plan.grid import digest
 from reports.results.changes.runs import CellName, CellRow, StoredCell, StoredRun, stored_cell, text
 from reports.store.examine import STOPPED
 from reports.store.folder import has_parts

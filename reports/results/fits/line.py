@@ -18,11 +18,13 @@ import numpy as np
 
 from models.array import Array
 from reports.judge.three_steps import AT_ROUNDING
-from reports.results.fits.curves import Curve, straight
+from reports.output.numbers import count, short
+from reports.results.fits.curves import Curve, reach, straight
 from reports.results.fits.floor_fit import ALIGNMENTS, ORDERS, within
 from reports.results.fits.forms import (
     FLAT,
     FLOOR,
+    LEVEL,
     LOWEST,
     POWER,
     WILD,
@@ -33,8 +35,6 @@ from reports.results.fits.forms import (
     slower,
     uncertainty,
 )
-from reports.results.fits.points import NEAR_ROUNDING, points
-from reports.results.fits.reach import reach
 
 FitKind = Literal[
     "order", "floor", "grows", "irregular", "too few", "at rounding", "diverges", "not run"
@@ -217,3 +217,119 @@ def _mask(indices: Sequence[int], number: int) -> tuple[bool, ...]:
 def _farthest(value: float, bounds: tuple[float, float]) -> float:
     """How far the farther bound is off the value."""
     return max(bounds[1] - value, value - bounds[0])
+
+
+NEVER_RUN = ("timeout", "unsupported")
+"""Statuses that say nothing about the step."""
+NEAR_ROUNDING = 10.0
+"""Up to so many times the rounding an error at the finest steps is still taken for rounding."""
+
+
+@dataclass(frozen=True)
+class Points:
+    """The runs of a line by their step, as indices into what was given, finest first.
+
+    ``well`` ended well, as did every finer run; ``fit`` are those of them above rounding.
+    ``bad`` is the finest run that did not end well, None where all did.
+    """
+
+    well: tuple[int, ...]
+    fit: tuple[int, ...]
+    bad: int | None
+    at_rounding: bool
+
+
+def points(
+    dt_s: Sequence[float], error: Sequence[float], statuses: Sequence[str], rounding: float
+) -> Points:
+    """Sort out a line (see `Points`).
+
+    Raises
+    ------
+    ValueError
+        Lengths differ, a step is not positive and finite, or an error is negative.
+    """
+    if not len(dt_s) == len(error) == len(statuses):
+        raise ValueError(f"{len(dt_s)} steps, {len(error)} errors, {len(statuses)} statuses")
+    if not all(math.isfinite(dt) and dt > 0.0 for dt in dt_s) or any(e < 0.0 for e in error):
+        raise ValueError("steps must be positive and finite, errors not negative")
+    order = sorted(range(len(dt_s)), key=lambda i: (dt_s[i], error[i], statuses[i]))
+    ended = [statuses[i] == "ok" and math.isfinite(error[i]) for i in range(len(dt_s))]
+    bad = next((i for i in order if not ended[i] and statuses[i] not in NEVER_RUN), None)
+    stable = math.inf if bad is None else dt_s[bad]
+    well = [i for i in order if ended[i] and dt_s[i] < stable]
+    coarsest = max((dt_s[i] for i in well if error[i] <= rounding), default=0.0)
+
+    def rounded(i: int) -> bool:
+        """Finer than a step at rounding an error is rounding too, and grows a little."""
+        near = NEAR_ROUNDING if dt_s[i] < coarsest else 1.0
+        return error[i] <= near * rounding
+
+    fit = [i for i in well if not rounded(i)]
+    return Points(tuple(well), tuple(fit), bad, bool(well) and rounded(well[0]))
+
+
+FAILS = {
+    "diverged": "diverges",
+    "branch-changed": "changes branch",
+    "locked": "locks",
+    "crashed": "crashes",
+}
+NOT_RUN = {"timeout": "timed out at every step", "unsupported": "unsupported"}
+VAGUE = 0.15
+"""An order that is known no better than this is told with its uncertainty."""
+
+
+def words(fit: LineFit, unit: str, period_s: float, turn: str = "turn") -> str:
+    """The verdict in a few words: 'order 2.0, no floor seen', 'diverges below 90 steps per turn'.
+
+    ``period_s`` is the time of a turn [s], or of what else is called ``turn``.
+    """
+    if fit.kind == "diverges":
+        verb = FAILS.get(fit.failed, "fails")
+        if "ok" not in fit.statuses:
+            return f"{verb} at every step"
+        return f"{verb} at {_per_turn(fit.fails_from_s, period_s, turn)}"
+    verdict = _told(fit, unit)
+    if not fit.failed:
+        return verdict
+    below = _per_turn(fit.stable_from_s, period_s, turn)
+    return f"{verdict}; {FAILS.get(fit.failed, 'fails')} below {below}"
+
+
+def _told(fit: LineFit, unit: str) -> str:
+    """The verdict on the runs that ended well."""
+    if fit.kind == "order":
+        return _order(fit)
+    if fit.kind == "floor":
+        return f"converges to the wrong answer: floor {short(fit.floor)} {unit}"
+    if fit.kind == "grows":
+        return f"does not shrink: grows to {short(fit.finest_error)} {unit}"
+    if fit.kind == "irregular":
+        return _irregular(fit, unit)
+    if fit.kind == "too few":
+        number = len({dt for dt, _ in fit.runs})
+        return f"{count(number, 'step')}: too few to tell"
+    if fit.kind == "not run":
+        return NOT_RUN.get(next(iter(fit.statuses), ""), "not run")
+    return "at rounding"
+
+
+def _order(fit: LineFit) -> str:
+    """An order, and that no floor is seen."""
+    if fit.order + fit.order_error < LEVEL:
+        return f"order {fit.order:.1f}: slower than any integrator, a floor may be near"
+    vague = f" +- {fit.order_error:.1f}" if fit.order_error > VAGUE else ""
+    return f"order {fit.order:.1f}{vague}, no floor seen"
+
+
+def _irregular(fit: LineFit, unit: str) -> str:
+    """How far an error falls that follows no curve."""
+    least, last = min(error for _, error in fit.runs), fit.finest_error
+    if least < last:
+        return f"irregular: falls to {short(least)} {unit}, then rises to {short(last)}"
+    return f"irregular: follows no order, {short(last)} {unit} at the finest step"
+
+
+def _per_turn(dt_s: float, period_s: float, turn: str) -> str:
+    return f"{period_s / dt_s:.4g} steps per {turn}"

@@ -1,5 +1,5 @@
-"""The hard cases; each file is one group of the catalogue.
+"""The hard cases, in groups.
 
-Another case is another `Case` in the tuple ``CASES`` of its group's file; another group is another
-file and its line in the part ``cases`` of a way.
+Another case is another `Case` in the tuple of its group; another group is another tuple and its
+line in the part ``cases`` of a way.
 """

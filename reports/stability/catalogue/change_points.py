@@ -1,14 +1,26 @@
-"""Four-bars that become flat, or nearly: where the linkage could go on in two ways."""
+"""Mechanisms that become flat, or nearly, where they could go on in two ways; and some that have
+more links than they need: by count they cannot move."""
 
 from __future__ import annotations
 
 from functools import partial
 
-from models.hard import fourbar, triad_platform
+import numpy as np
+
+from analytic.free.window_chain import ChainMotion
+from models.hard import (
+    SOURCE,
+    Chain,
+    double_parallelogram,
+    fourbar,
+    slider_crank,
+    slotted_lever,
+    triad_platform,
+)
 from models.scene import Scene
 from reports.stability.case import Case, Trial
 
-SOURCE = "Grashof's rule; the parallelogram and the kite are its limiting cases"
+GRASHOF = "Grashof's rule; the parallelogram and the kite are its limiting cases"
 TRIAD_CRANK_M = 0.06387509801
 """The longest crank of triad-platform that turns fully: at 239 deg two assemblies meet then."""
 through = partial(Case, parameter="steps in a turn", values=(5760.0, 1440.0, 360.0, 90.0))
@@ -22,7 +34,7 @@ def four_turns(scene: Scene, steps: float) -> Trial:
 
 def _excess(margin_m: float) -> Trial:
     name = "nearly-parallelogram"
-    return Trial(fourbar(name, 0.1, 0.3, 0.1 + margin_m, 0.3, source=SOURCE))
+    return Trial(fourbar(name, 0.1, 0.3, 0.1 + margin_m, 0.3, source=GRASHOF))
 
 
 def _triad_excess(margin_m: float) -> Trial:
@@ -31,18 +43,18 @@ def _triad_excess(margin_m: float) -> Trial:
 
 
 def _parallelogram(steps: float) -> Trial:
-    return four_turns(fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source=SOURCE), steps)
+    return four_turns(fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source=GRASHOF), steps)
 
 
 def _kite(steps: float) -> Trial:
-    return four_turns(fourbar("kite", 0.1, 0.1, 0.3, 0.3, source=SOURCE), steps)
+    return four_turns(fourbar("kite", 0.1, 0.1, 0.3, 0.3, source=GRASHOF), steps)
 
 
-CASES = (
+CHANGE_POINTS = (
     Case(
         name="grashof-excess",
         title="Nearly a parallelogram",
-        source=SOURCE,
+        source=GRASHOF,
         truth="closed form; the coupler stays on its side at the flat positions",
         expected="stays on its branch, though the rocker whips past the flat position",
         parameter="Grashof margin p + q - s - l",
@@ -64,7 +76,7 @@ CASES = (
     through(
         name="parallelogram",
         title="Parallelogram through its flat positions",
-        source=SOURCE,
+        source=GRASHOF,
         truth="the coupler keeps its direction, by smooth continuation",
         expected="goes on smoothly: inertia carries it through",
         trial=_parallelogram,
@@ -72,9 +84,139 @@ CASES = (
     through(
         name="kite",
         title="Kite through its flat positions",
-        source=SOURCE,
+        source=GRASHOF,
         truth="A and C stay mirror images in the line BD, by smooth continuation",
         expected="goes on smoothly: inertia carries it through",
         trial=_kite,
+    ),
+)
+
+
+EXCEL = 'Paper "Phan tich dong hoc co cau tay quay con truot bang phan mem Excel"; carried on to 1'
+
+
+def _short_rod(excess: float) -> Trial:
+    return Trial(slider_crank("short-rod", 0.1, 0.1 * (1.0 + excess), source="L/R runs to 1"))
+
+
+def _isosceles(steps: float) -> Trial:
+    return four_turns(slider_crank("isosceles", 0.1, 0.1, source="L = R"), steps)
+
+
+SLIDER_CRANKS = (
+    Case(
+        name="short-rod",
+        title="Rod hardly longer than the crank",
+        source=EXCEL,
+        truth="closed form; the rod swings past 90 deg faster and faster",
+        expected="stays on its branch",
+        parameter="L/R - 1",
+        values=(0.25, 0.1, 0.05, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6),
+        trial=_short_rod,
+    ),
+    through(
+        name="isosceles",
+        title="Isosceles slider-crank, stroke 4R",
+        source="L = R: the change point of the slider-crank",
+        truth="the pin runs through the crank's pivot, x = 2 R cos(theta), by smooth continuation",
+        expected="goes on smoothly through the pivot",
+        trial=_isosceles,
+    ),
+)
+
+
+CULISSE = 'Lecture "Phan tich dong hoc", example 3 (culisse), with AB carried on to AC'
+CRANK_M = 0.1
+
+
+def _swinging(excess: float) -> Trial:
+    ground_m = CRANK_M * (1.0 + excess)
+    return Trial(slotted_lever("swinging-lever", CRANK_M, ground_m, source="AB/AC to 1"))
+
+
+def _turning(excess: float) -> Trial:
+    crank_m = CRANK_M * (1.0 + excess)
+    return Trial(slotted_lever("turning-lever", crank_m, CRANK_M, source="AB/AC to 1"))
+
+
+def _lever_through(steps: float) -> Trial:
+    return four_turns(
+        slotted_lever("lever-through-pivot", CRANK_M, CRANK_M, source="AB = AC"), steps
+    )
+
+
+_near = partial(
+    Case, source=CULISSE, expected="follows", values=(1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+)
+LEVERS = (
+    _near(
+        name="swinging-lever",
+        title="Slotted lever, AB/AC up to 1",
+        truth="closed form; the lever swings back faster and faster",
+        parameter="AC/AB - 1",
+        trial=_swinging,
+    ),
+    _near(
+        name="turning-lever",
+        title="Whitworth, AB/AC down to 1",
+        truth="closed form; the lever turns fully, nearly all at once",
+        parameter="AB/AC - 1",
+        trial=_turning,
+    ),
+    through(
+        name="lever-through-pivot",
+        title="AB = AC: the block runs through the lever's pivot",
+        source=CULISSE,
+        truth="the lever turns at half the crank's speed, by smooth continuation",
+        expected="goes on smoothly through the pivot",
+        trial=_lever_through,
+    ),
+)
+
+
+DURATION_S = 2.5
+"""The chain turns over once and falls on, four times through flat positions."""
+DT_S = 1e-3
+
+
+def _three_rockers(steps: float) -> Trial:
+    scene = double_parallelogram("double-parallelogram", source="mobility 0 by count, really 1")
+    return four_turns(scene, steps)
+
+
+def _windows(number: float) -> Trial:
+    chain = Chain(round(number))
+    scene = chain.scene()
+    period = scene.driver.law.period_s
+    return Trial(
+        scene,
+        steps_per_turn=period / DT_S,
+        turns=DURATION_S / period,
+        drive="free",
+        start=ChainMotion(chain).motion(np.zeros(1)).state(),
+        chain=chain,
+    )
+
+
+REDUNDANCY = (
+    through(
+        name="double-parallelogram",
+        title="Double parallelogram with three rockers",
+        source="mobility by count 0, really 1",
+        truth="the coupler keeps its direction, by smooth continuation",
+        expected="moves, and passes its flat positions smoothly",
+        trial=_three_rockers,
+    ),
+    Case(
+        name="n-fourbar",
+        title="A chain of windows, falling freely through its flat positions",
+        source=SOURCE,
+        truth="l theta'' [(N+1)/3 + N] = -g cos(theta) [(N+1)/2 + N], in elliptic functions",
+        expected="keeps its energy, and all rods parallel",
+        parameter="windows N",
+        values=(1.0, 2.0, 5.0, 10.0, 20.0, 40.0),
+        trial=_windows,
+        scale="whole",
+        judge="chain",
     ),
 )

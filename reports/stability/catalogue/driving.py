@@ -1,4 +1,4 @@
-"""How the crank is driven: slowly and fast, turned back, from rest, and with a jump."""
+"""How the crank is driven, for how long, and in which steps."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ _ramp = partial(
     parameter="length of the ramp",
     unit="turn",
 )
-CASES = (
+DRIVING = (
     _faster(
         name="speed-same-dt",
         title=f"Faster and faster at the same dt of {SAME_DT_S:g} s",
@@ -85,5 +85,84 @@ CASES = (
         parameter="speed after over speed before",
         values=(1.1, 2.0, 5.0, 10.0, 30.0, 100.0),
         trial=lambda ratio: _changed(SPEED_RAD_S, ratio * SPEED_RAD_S, 0.0),
+    ),
+)
+
+
+def _turns(scene: str, turns: float) -> Trial:
+    return Trial(load_scene(scene), steps_per_turn=90.0, turns=turns, every=9)
+
+
+DURATION = tuple(
+    Case(
+        name=name,
+        title=f"Turn after turn, {scene}",
+        source=scene,
+        truth="closed form; every turn is as the first",
+        expected="no growth with the turns",
+        parameter="turns",
+        values=(10.0, 100.0, 1e3, 1e4),
+        trial=partial(_turns, scene),
+        scale="whole",
+    )
+    for name, scene in (
+        ("long-fourbar", "fourbar-lecture-1"),
+        ("long-slider-crank", "slider-crank-offset"),
+    )
+)
+
+
+SHAPER = "shaper"
+
+
+def _tiny(dt_s: float) -> Trial:
+    scene = load_scene(SOURCE)
+    steps = scene.driver.law.period_s / dt_s
+    return Trial(scene, steps_per_turn=steps, turns=1.0, every=max(round(steps / 720), 1))
+
+
+STEPPING = (
+    Case(
+        name="coarse-step",
+        title="Step too large",
+        source=SOURCE,
+        truth="closed form",
+        expected="errors that grow with the step squared, and no blow-up",
+        parameter="steps in a turn",
+        values=(360.0, 180.0, 90.0, 45.0, 20.0, 10.0, 8.0),
+        trial=lambda steps: Trial(load_scene(SOURCE), steps_per_turn=steps),
+    ),
+    Case(
+        name="tiny-step",
+        title="Step very small",
+        source=SOURCE,
+        truth="closed form; one turn, so up to 600 000 steps",
+        expected="rounding does not add up",
+        parameter="dt",
+        unit="s",
+        values=(1e-3, 1e-4, 1e-5, 1e-6),
+        trial=_tiny,
+    ),
+    Case(
+        name="few-iterations",
+        title="Few iterations of the solver",
+        source=SHAPER,
+        truth="closed form of a six-bar with a heavy ram",
+        expected="says so, or stays closed",
+        parameter="iterations",
+        values=(100.0, 50.0, 20.0, 10.0, 5.0, 2.0, 1.0),
+        trial=lambda number: Trial(load_scene(SHAPER), settings={"iterations": int(number)}),
+        scale="whole",
+    ),
+    Case(
+        name="single-precision",
+        title="Arithmetic in single precision",
+        source=SOURCE,
+        truth="closed form",
+        expected="holds the class, where the engine has it; neither of these two has",
+        parameter="precision",
+        unit="bit",
+        values=(32.0,),
+        trial=lambda _: Trial(load_scene(SOURCE), settings={"precision": "float32"}),
     ),
 )

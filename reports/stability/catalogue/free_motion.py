@@ -1,22 +1,24 @@
-"""Mechanisms that are let go: what a driver would hide shows in where they are, and when."""
+"""Mechanisms that are let go, and four-bars that are thrown at their toggle."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
 from analytic.forces.force_elements import spring_lengths
 from analytic.free.machine import Machine
+from analytic.free.toggle_barrier import ToggleBarrier
+from analytic.mechanism.fourbar import FourBar
 from models.driver import Released
 from models.files.reading import load_scene
 from models.hard import fourbar
 from models.loads import SlideSpring
 from models.scene import Scene
-from reports.stability.case import Case, Trial
+from reports.stability.case import Case, Throw, Trial
 
 SWING, SLIDER_CRANK = "fourbar-swing", "slider-crank-spring"
 DT_S = 1e-3
@@ -80,7 +82,7 @@ def _long(lasts_s: float) -> Trial:
 
 
 _case: Callable[..., Case] = partial(Case, judge="let-go")
-CASES = (
+FREE_MOTION = (
     _case(
         name="free-coarse-step",
         title="Step too large, let go",
@@ -145,4 +147,47 @@ CASES = (
         trial=_long,
         scale="whole",
     ),
+)
+
+
+LENGTHS_M = (0.2, 0.25, 0.3, 0.5)
+BEFORE_RAD = 0.3
+
+
+@lru_cache(maxsize=1)
+def _barrier() -> ToggleBarrier:
+    limit = FourBar(*LENGTHS_M).driver_range_rad[1]
+    return ToggleBarrier.of(
+        fourbar(
+            "triple-rocker-thrown",
+            *LENGTHS_M,
+            source="gravity points to where the toggle is the highest place",
+            start_deg=math.degrees(limit - BEFORE_RAD),
+        )
+    )
+
+
+def _thrown(side: float, margin: float) -> Trial:
+    throw = Throw(_barrier(), side * margin)
+    scene = throw.barrier.thrown(throw.margin)
+    steps = scene.driver.law.period_s / DT_S
+    return Trial(scene, steps_per_turn=steps, turns=1.0, drive="free", throw=throw)
+
+
+TOGGLES = tuple(
+    Case(
+        name=f"toggle-{name}",
+        title=f"Thrown at the toggle with {words}",
+        source="limit position on top of a hill of the potential energy",
+        truth=f"by its energy it {truth}",
+        expected="as its energy says",
+        parameter="energy beside that of the top, over the height of the hill",
+        values=(1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6),
+        trial=partial(_thrown, side),
+        judge="toggle",
+    )
+    for name, words, truth, side in (
+        ("over", "just enough energy", "gets over into the other assembly", 1.0),
+        ("short", "too little energy", "falls back before the toggle", -1.0),
+    )
 )

@@ -2,26 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
-from typing import Any
+import math
+from collections.abc import Collection, Mapping, Sequence, Set
+from typing import Any, NoReturn
 
+import numpy as np
+
+from analytic.forces.kinetostatics import forces
+from analytic.kinematics import solve
+from models.array import Array
+from models.errors import CrankcheckError
+from models.laws import MOST_TURNS
+from models.motion import Forces, Motion, State
 from models.scene import Same, Scene
 from reports.compare.beside import Truth, truth_of
 from reports.compare.errors import DRIVEN
-from reports.plan.forces import refuse_forceless
-from reports.plan.short_tables import refuse_short_tables
-from reports.plan.singular import passage_note, refuse_singular
+from reports.plan.singular import (
+    passage_note,
+    refuse_forceless,
+    refuse_short_tables,
+    refuse_singular,
+)
 from reports.plan.steps import TURNS, counted
 from reports.quantities import named
 from reports.quantities.limits import DEFAULTS
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.result_kind import ResultKind
-from reports.way.way import Parts, StudyLengths
+from reports.way.way import StudyLengths, Way
 from sim.engine import Drive
 
 
-class DrivenWay(Parts):
+class DrivenWay(Way):
     """As of `Way`."""
 
     name = "driven"
@@ -63,29 +75,62 @@ class DrivenWay(Parts):
             refuse_forceless(run.scene, run.duration_s)
         refuse_short_tables(run.scene, run.duration_s)
 
-    def roles_of(self, *, with_forces: bool) -> Set[Role]:
-        return {*self.roles, *(("force",) if with_forces else ())}
-
     def stored(self, row: Mapping[Any, Any]) -> bool:
         return True
 
     def turn_s(self, scene: Scene) -> float:
         return scene.driver.law.period_s
 
-    def every(self, steps: int, steps_per_turn: float) -> int:
-        return 1
-
-    def given(self, scene: Scene, given: GivenAs) -> Scene:
-        return scene
-
-    def moved(self, scene: Scene) -> Scene:
-        return scene
-
     def note(self, scene: Scene, duration_s: float) -> str:
         return passage_note(scene, duration_s)
 
     def truth(self, run: Planned) -> Truth:
         return truth_of(Same(run.scene))
+
+    drives: tuple[Drive, ...] = ("prescribed", "servo", "free")
+    lengths_by: tuple[str, ...] = ("--turns", "--steps-per-turn")
+    over = "over one turn"
+    targets: Collection[str] = DEFAULTS
+    least_judged = 0
+
+    def refuse_length(self, option: str) -> NoReturn:
+        raise CrankcheckError(
+            f"{option}: it is of scenes that are let go; add --free, or leave {option} out"
+        )
+
+    def step(self, scene: Scene, dt_s: float) -> str:
+        return f"{self.turn_s(scene) / dt_s:g} a turn"
+
+    def long(self, scene: Scene, dt_s: float, steps: int) -> str:
+        per_turn = self.turn_s(scene) / dt_s
+        turns = steps / per_turn
+        return f"{per_turn:.6g} steps a turn, {turns:.6g} turn{'s' * (turns != 1.0)}"
+
+    def released(self, scene: Scene) -> Scene:
+        return scene
+
+    def opened(self, scene: Scene) -> tuple[Scene, State]:
+        return scene, solve(scene, np.zeros(1)).state()
+
+    def launch(self, run: Planned) -> Truth | None:
+        return self.truth(run)
+
+    def refuse_made(self, run: Planned) -> None:
+        """Nothing: it was refused before it was run."""
+
+    def motion(self, scene: Scene, time_s: Array) -> Motion:
+        return solve(scene, time_s, bound=False)
+
+    def drawn_forces(self, scene: Scene, time_s: Array) -> Forces:
+        from reports.drawing.shape import clear_of_locking  # for drawings alone
+
+        return clear_of_locking(forces(scene, time_s, bound=False, skip_dead_points=True))
+
+    def drawn_s(self, most_s: float) -> float:
+        return math.inf
+
+    def latest_s(self, scene: Scene) -> float:
+        return MOST_TURNS * self.turn_s(scene)
 
 
 WAY = DrivenWay()

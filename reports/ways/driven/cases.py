@@ -1,31 +1,26 @@
 """Hard cases of driven scenes, by the group of the catalogue."""
 
-from reports.stability.catalogue import (
-    change_points,
-    driving,
-    duration,
-    levers,
-    limits,
-    masses,
-    near_limits,
-    redundancy,
-    scales,
-    slider_cranks,
-    starts,
-    stepping,
+from reports.stability.catalogue.bodies import MASSES, SCALES, STARTS
+from reports.stability.catalogue.change_points import (
+    CHANGE_POINTS,
+    LEVERS,
+    REDUNDANCY,
+    SLIDER_CRANKS,
 )
+from reports.stability.catalogue.driving import DRIVING, DURATION, STEPPING
+from reports.stability.catalogue.limits import AT_LIMITS, NEAR_LIMITS
 
 CASES = {
-    "change points": change_points.CASES,
-    "slider-crank, rod as long as the crank": slider_cranks.CASES,
-    "toggle and locking": limits.CASES,
-    "close to a limit position": near_limits.CASES,
-    "speed and its changes": driving.CASES,
-    "mass ratios": masses.CASES,
-    "scale, place and direction": scales.CASES,
-    "redundancy": redundancy.CASES,
-    "bad starts": starts.CASES,
-    "duration": duration.CASES,
-    "step and solver": stepping.CASES,
-    "slotted lever, crank through the pivot": levers.CASES,
+    "change points": CHANGE_POINTS,
+    "slider-crank, rod as long as the crank": SLIDER_CRANKS,
+    "toggle and locking": AT_LIMITS,
+    "close to a limit position": NEAR_LIMITS,
+    "speed and its changes": DRIVING,
+    "mass ratios": MASSES,
+    "scale, place and direction": SCALES,
+    "redundancy": REDUNDANCY,
+    "bad starts": STARTS,
+    "duration": DURATION,
+    "step and solver": STEPPING,
+    "slotted lever, crank through the pivot": LEVERS,
 }

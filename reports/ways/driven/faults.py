@@ -6,22 +6,11 @@ from collections.abc import Collection, Sequence
 
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.selftest import (
-    clock,
-    engines,
-    forces,
-    handed_back,
-    mechanism,
-    misplaced,
-    missing,
-    requests,
-    values,
-)
-from reports.selftest.fault import PROFILE
-from reports.selftest.fault_runs import STEPS, FaultRuns, FaultSet
+from reports.selftest import engines, forces, handed_back, requests
+from reports.selftest.fault import PROFILE, STEPS, FaultRuns, FaultSet
+from reports.selftest.log_faults import CLOCK, MISSING, VALUES
+from reports.selftest.mechanism import MECHANISM, MISPLACED
 from reports.selftest.unseen import UNSEEN
-
-MOTION = (requests, handed_back, mechanism, engines, clock, values, misplaced, missing)
 
 
 def turn(scene: Scene, engine: str, steps: int, converge: bool, *, forces: bool = False) -> Cell:
@@ -52,7 +41,17 @@ GROUPS = {
     "missing": "something missing from the log",
 }
 FAULTS = FaultSet(
-    tuple(fault for module in (*MOTION, forces) for fault in module.FAULTS),
+    (
+        *requests.FAULTS,
+        *handed_back.FAULTS,
+        *MECHANISM,
+        *engines.FAULTS,
+        *CLOCK,
+        *VALUES,
+        *MISPLACED,
+        *MISSING,
+        *forces.FAULTS,
+    ),
     {
         "motion": FaultRuns(GROUPS, turn, words, SETTINGS, unseen=UNSEEN),
         "forces": FaultRuns({"force": "a right motion with wrong forces"}, loaded, words, SETTINGS),

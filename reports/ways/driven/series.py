@@ -5,12 +5,10 @@ from __future__ import annotations
 from analytic.kinematics import solve
 from models.array import Array
 from models.motion import Motion
-from reports.stability.case import Trial
+from reports.stability.case import Trial, Yardstick
 from reports.stability.error_series import ErrorSeries, error_series
-from reports.stability.falling_chain import falling, freely
-from reports.stability.limit import at_limit, held
 from reports.stability.matrix import PLACE
-from reports.stability.yardstick import Yardstick
+from reports.stability.other_truths import at_limit, falling, freely, held
 from sim.engine import Run
 
 

@@ -4,17 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from models.motion import State
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.plan.elastic import cut_scene, held_steps, logged_every, refuse_unelastic
+from reports.plan.elastic import (
+    SPRINGS,
+    cut_scene,
+    given_as,
+    held_steps,
+    logged_every,
+    refuse_unelastic,
+)
 from reports.quantities.limits import ELASTIC
-from reports.way.length import GivenAs, Length, Planned
+from reports.way.length import SEGMENTS, GivenAs, Length, Planned
 from reports.way.result_kind import ResultKind
-from reports.way.way import StudyLengths
+from reports.way.way import StudyLengths, StudyLinks
 from reports.ways.driven import DrivenWay
 from sim.engine import Drive
+
+if TYPE_CHECKING:
+    from reports.compare.elastic.elastic_truth import ElasticTruth
 
 
 class Bending(DrivenWay):
@@ -49,9 +60,18 @@ class Bending(DrivenWay):
     def given(self, scene: Scene, given: GivenAs) -> Scene:
         return cut_scene(scene, given)
 
-    def refuse(self, run: Planned) -> None:
-        super().refuse(run)
-        refuse_unelastic(run.scene, run.given_as.segments, run.given_as.springs)
+    def held_steps(self, scene: Scene) -> tuple[float, ...]:
+        return (held_steps(scene, SEGMENTS, SPRINGS[0]),)
+
+    def judged_by(self, given: GivenAs) -> list[str] | None:
+        springs = ["--springs", given.springs] * (given.springs != "plain")
+        return ["--segments", str(given.segments), *springs]
+
+    def given_by(self, study: StudyLinks) -> list[GivenAs]:
+        return given_as(study)
+
+    def key(self, given: GivenAs) -> list[object]:
+        return ["elastic", given.segments, given.springs]
 
 
 class ElasticWay(Bending):
@@ -79,6 +99,19 @@ class ElasticWay(Bending):
             return super().lengths(scene, study, given)
         held = held_steps(scene, given.segments, given.springs)
         return [Length(None, times * held, study.turns) for times in study.times_held]
+
+    def refuse(self, run: Planned) -> None:
+        super().refuse(run)
+        refuse_unelastic(self._start_truth, run.scene, run.given_as)
+
+    def opened(self, scene: Scene) -> tuple[Scene, State]:
+        truth = self._start_truth(scene, GivenAs())
+        return truth.given, truth.start
+
+    def _start_truth(self, scene: Scene, given: GivenAs) -> ElasticTruth:
+        from reports.compare.elastic.elastic_truth import elastic_truth  # slow to import
+
+        return elastic_truth(scene, given.segments, given.springs, self.turn_s(scene))
 
     def every(self, steps: int, steps_per_turn: float) -> int:
         return logged_every(steps_per_turn)

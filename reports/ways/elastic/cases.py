@@ -2,6 +2,4 @@
 
 from reports.stability.catalogue import elastic_links
 
-CASES = {
-    "elastic links": elastic_links.CASES,
-}
+CASES = {"elastic links": elastic_links.CASES}

@@ -6,12 +6,10 @@ from collections.abc import Collection, Mapping, Sequence
 
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.selftest import beams, elastic, elastic_released
-from reports.selftest.elastic_runs import BEAM_RUNS, BENT, ELASTIC_RUNS, ElasticRun, elastic_cell
-from reports.selftest.fault import RunKind
-from reports.selftest.fault_runs import STEPS, FaultRuns, FaultSet
-from reports.selftest.unseen import Unseen
-from reports.selftest.unseen_elastic import UNSEEN_ELASTIC
+from reports.selftest import elastic_faults
+from reports.selftest.elastic_changes import BEAM_RUNS, BENT, ELASTIC_RUNS, ElasticRun, elastic_cell
+from reports.selftest.fault import STEPS, FaultRuns, FaultSet, RunKind, Unseen
+from reports.selftest.unseen import UNSEEN_ELASTIC
 
 GROUPS = {
     "segments": "elastic links, as another chain",
@@ -40,7 +38,7 @@ def _runs(
 
 
 FAULTS = FaultSet(
-    tuple(fault for module in (elastic, beams, elastic_released) for fault in module.FAULTS),
+    elastic_faults.FAULTS,
     {
         "elastic": _runs("elastic", GROUPS, ELASTIC_RUNS, UNSEEN_ELASTIC, "beam"),
         "beam": _runs("beam", {"beam": "elastic links, as an engine's own beam"}, BEAM_RUNS, ()),

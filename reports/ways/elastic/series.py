@@ -8,9 +8,8 @@ from models.array import Array
 from models.motion import Motion, State
 from reports.compare.elastic.elastic_truth import ChainTruth, chain_truth
 from reports.compare.tracks import length
-from reports.stability.case import Trial
+from reports.stability.case import Trial, Yardstick
 from reports.stability.error_series import ErrorSeries, lacking, nearest, widest
-from reports.stability.yardstick import Yardstick
 from sim.engine import Run
 
 CHAIN = ("segments",)

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
-from typing import Any
+from collections.abc import Collection, Mapping, Sequence, Set
+from typing import Any, NoReturn
+
+import numpy as np
 
 from analytic.free.free_motion import loosened
+from analytic.kinematics import solve
+from models.array import Array
+from models.driver import LONGEST_S
+from models.errors import CrankcheckError
+from models.motion import Forces, Motion, State
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.compare.free.free_facts import FreeFacts
-from reports.plan.free import refuse_unreleased
+from reports.compare.free.free_truth import kept_motion, released_state
+from reports.plan.free import refuse_unreleased, under_control
 from reports.plan.steps import counted_free
 from reports.quantities import named
 from reports.quantities.limits import FREE
 from reports.quantities.quantity import Role, Tolerance
-from reports.way.length import GivenAs, Length, Planned
+from reports.way.length import LEAST_STEPS, GivenAs, Length, Planned
 from reports.way.result_kind import ResultKind
-from reports.way.way import StudyLengths
-from reports.ways.driven import DrivenWay
+from reports.way.way import StudyLengths, Way
 from sim.engine import Drive
 
 UNITS = (
@@ -28,7 +35,7 @@ UNITS = (
 )
 
 
-class FreeWay(DrivenWay):
+class FreeWay(Way):
     """As of `Way`."""
 
     name = "free"
@@ -72,9 +79,6 @@ class FreeWay(DrivenWay):
     def turn_s(self, scene: Scene) -> float:
         return 1.0
 
-    def moved(self, scene: Scene) -> Scene:
-        return loosened(scene)
-
     def note(self, scene: Scene, duration_s: float) -> str:
         return ""
 
@@ -82,6 +86,52 @@ class FreeWay(DrivenWay):
         from reports.compare.free.free_truth import free_truth  # slow to import
 
         return free_truth(run.scene, run.steps, run.dt_s, run.tolerance)
+
+    drives: tuple[Drive, ...] = ("free",)
+    lengths_by: tuple[str, ...] = ("--duration",)
+    over = "in free motion"
+    targets: Collection[str] = FREE
+    least_judged = LEAST_STEPS
+
+    def refuse_length(self, option: str) -> NoReturn:
+        raise CrankcheckError(
+            f"{option}: what is let go has no turns; give --dt and --duration, in seconds"
+        )
+
+    def step(self, scene: Scene, dt_s: float) -> str:
+        return f"dt {dt_s:g} s"
+
+    def long(self, scene: Scene, dt_s: float, steps: int) -> str:
+        return f"{steps} steps, {steps * dt_s:.6g} s"
+
+    def released(self, scene: Scene) -> Scene:
+        return loosened(under_control(scene))
+
+    def opened(self, scene: Scene) -> tuple[Scene, State]:
+        try:
+            return scene, solve(scene, np.zeros(1)).state()
+        except CrankcheckError:
+            return scene, released_state(scene)  # of several freedoms there is no closed form
+
+    def launch(self, run: Planned) -> Truth | None:
+        return None
+
+    def refuse_made(self, run: Planned) -> None:
+        refuse_unreleased(run.scene, run.duration_s)
+
+    def motion(self, scene: Scene, time_s: Array) -> Motion:
+        return kept_motion(scene, float(np.max(time_s))).at(time_s, bound=False)
+
+    def drawn_forces(self, scene: Scene, time_s: Array) -> Forces:
+        raise CrankcheckError(
+            f"{scene.name}: let go, it is drawn without its forces; leave them out"
+        )
+
+    def drawn_s(self, most_s: float) -> float:
+        return most_s
+
+    def latest_s(self, scene: Scene) -> float:
+        return LONGEST_S
 
 
 WAY = FreeWay()

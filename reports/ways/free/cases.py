@@ -1,8 +1,5 @@
 """Hard cases of free motion, by the group of the catalogue."""
 
-from reports.stability.catalogue import free_motion, toggles
+from reports.stability.catalogue.free_motion import FREE_MOTION, TOGGLES
 
-CASES = {
-    "free motion": free_motion.CASES,
-    "free motion at a toggle": toggles.CASES,
-}
+CASES = {"free motion": FREE_MOTION, "free motion at a toggle": TOGGLES}

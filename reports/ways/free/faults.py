@@ -6,11 +6,9 @@ from collections.abc import Collection, Sequence
 
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.selftest import dynamics, record, stepping
-from reports.selftest.fault import PROFILE
-from reports.selftest.fault_runs import STEPS, FaultRuns, FaultSet
-from reports.selftest.free_runs import FREE_RUNS, SWING
-from reports.selftest.unseen_free import UNSEEN_FREE
+from reports.selftest.fault import PROFILE, STEPS, FaultRuns, FaultSet
+from reports.selftest.free_faults import DYNAMICS, FREE_RUNS, RECORD, STEPPING, SWING
+from reports.selftest.unseen import UNSEEN_FREE
 
 
 def run(scene: Scene, engine: str, steps: int, converge: bool) -> Cell:
@@ -37,6 +35,6 @@ GROUPS = {
 }
 SETTINGS = {scene: {"dt_s": dt_s, "steps": steps} for scene, (dt_s, steps) in FREE_RUNS.items()}
 FAULTS = FaultSet(
-    tuple(fault for module in (dynamics, stepping, record) for fault in module.FAULTS),
+    (*DYNAMICS, *STEPPING, *RECORD),
     {"free": FaultRuns(GROUPS, run, words, {"free": SETTINGS}, SWING, UNSEEN_FREE)},
 )

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from reports.output.numbers import duration
-from reports.page.sections.convergence import drawn
+from reports.page.sections.errors import drawn
 from reports.page.sections.free_courses import FreeCourses, sizes_of
-from reports.page.sections.section import Section, WaySection
-from reports.page.thinning import BUDGET, steps_held
+from reports.page.sections.section import BUDGET, Section, WaySection, steps_held
 from reports.results.lines import Line, lines
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation

@@ -15,10 +15,9 @@ from reports.compare.free.drift import window_means
 from reports.compare.free.free_truth import FreeBeside, FreeTruth, free_truth
 from reports.compare.tracks import Track, length, tracks
 from reports.quantities.free import GEOMETRY, PHASE
-from reports.stability.case import Trial
+from reports.stability.case import Trial, Yardstick
 from reports.stability.error_series import ErrorSeries, lacking, nearest, widest
-from reports.stability.toggle import at_toggle, thrown_motion, thrown_start
-from reports.stability.yardstick import Yardstick
+from reports.stability.other_truths import at_toggle, thrown_motion, thrown_start
 from sim.engine import Run
 
 LOOKS = 1001

@@ -3,17 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from models.motion import State
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.plan.elastic import counted_released, logged_every, shortened_note
+from reports.plan.elastic import (
+    counted_released,
+    logged_every,
+    refuse_unelastic,
+    shortened_note,
+)
+from reports.plan.free import LOOK
 from reports.quantities.limits import FREE_ELASTIC
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
 from reports.ways.elastic import Bending
 from reports.ways.free import FreeWay
 from sim.engine import Drive
+
+if TYPE_CHECKING:
+    from reports.compare.elastic.elastic_truth import ElasticTruth
 
 
 class FreeElasticWay(Bending, FreeWay):
@@ -41,8 +51,31 @@ class FreeElasticWay(Bending, FreeWay):
         lasts_s = held_s * count
         return [Length(held_s / times, duration_s=lasts_s) for times in study.times_held]
 
+    def refuse(self, run: Planned) -> None:
+        super().refuse(run)
+        refuse_unelastic(self._start_truth, run.scene, run.given_as)
+
+    def opened(self, scene: Scene) -> tuple[Scene, State]:
+        truth = self._start_truth(scene, GivenAs())
+        return truth.given, truth.start
+
+    def launch(self, run: Planned) -> Truth | None:
+        return self.truth(run)
+
+    def judged_by(self, given: GivenAs) -> list[str] | None:
+        return None
+
+    def _start_truth(self, scene: Scene, given: GivenAs) -> ElasticTruth:
+        from reports.compare.elastic.released_truth import released_elastic_truth  # slow to import
+
+        look_s = LOOK * scene.driver.law.period_s
+        return released_elastic_truth(scene, given.segments, given.springs, 1, look_s)
+
     def note(self, scene: Scene, duration_s: float) -> str:
         return shortened_note(scene, duration_s)
+
+    def shortened(self, scene: Scene, lasts_s: float) -> str:
+        return shortened_note(scene, lasts_s)
 
     def every(self, steps: int, steps_per_turn: float) -> int:
         return logged_every(min(steps_per_turn, float(steps)))

@@ -12,15 +12,11 @@ import pytest
 from rich.console import Console
 
 from models.files.reading import load_scene
-from reports.advise.advice import Advice, Offer, offers
-from reports.advise.choices import choices
-from reports.advise.demand import demanded
-from reports.advise.document import document
+from reports.advise.advice import Advice, Offer, Price, Prices, offers
+from reports.advise.demand import choices, demanded
 from reports.advise.evidence import MeasuredSteps, MeasuredStudy
-from reports.advise.look import TriedRun
-from reports.advise.prices import Price, Prices
-from reports.advise.search import SearchResult, Worst
-from reports.advise.table import show, word
+from reports.advise.search import SearchResult, TriedRun, Worst
+from reports.advise.table import document, show, word
 from tests.worlds.command_line import flat
 
 DEMAND = demanded(

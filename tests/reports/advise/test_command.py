@@ -41,7 +41,7 @@ LINE = ["advise", "--dt", "0.0166667", "--speed", "10", "--target", "1e-3"]
 def quick() -> Any:
     """All is run in this process, and its times are made up."""
     with in_this_process() as patch:
-        patch.setattr("reports.advise.prices.timed_in_turns", timed)
+        patch.setattr("reports.advise.advice.timed_in_turns", timed)
         yield
 
 

@@ -15,8 +15,7 @@ from models.errors import CrankcheckError
 from models.files.reading import load_scene, parse_scene, scene_texts
 from models.laws import ConstantSpeed
 from models.scene import Scene
-from reports.advise.choices import OWN, Choice, choices
-from reports.advise.demand import MOST_SUBSTEPS, Demand, at_speed, demanded
+from reports.advise.demand import MOST_SUBSTEPS, OWN, Choice, Demand, at_speed, choices, demanded
 from reports.advise.evidence import (
     MeasuredSteps,
     MeasuredStudy,

@@ -11,12 +11,10 @@ import numpy as np
 import pytest
 
 from models.files.reading import load_scene
-from reports.advise.choices import Choice, choices
-from reports.advise.demand import demanded
+from reports.advise.advice import ROUNDS, Prices, prices, timings
+from reports.advise.demand import Choice, choices, demanded
 from reports.advise.evidence import MeasuredSteps, MeasuredStudy
-from reports.advise.look import WORDS, TriedRun, _seen, look
-from reports.advise.prices import ROUNDS, Prices, prices, timings
-from reports.advise.search import SearchResult, Worst, _reached
+from reports.advise.search import WORDS, SearchResult, TriedRun, Worst, _reached, _seen, look
 from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Departure
@@ -267,7 +265,7 @@ def priced(
         return taken
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.advise.prices.timed_in_turns", timed)
+        patch.setattr("reports.advise.advice.timed_in_turns", timed)
         return prices(DEMAND, found), asked
 
 

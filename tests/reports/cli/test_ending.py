@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from reports.cli.broken_package import broken_package
+from reports.cli.application import broken_package
 from reports.output.console import forget_odd_sizes
 from tests.worlds.command import COMMAND, PYTHON, End, ends
 from tests.worlds.command_line import crank, flat, told

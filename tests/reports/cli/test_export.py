@@ -110,7 +110,7 @@ def test_view_with_a_screen_opens_the_assembled_model(monkeypatch: pytest.Monkey
     viewer = pytest.importorskip("sim.mujoco.viewer")
     shown: list[int] = []
     monkeypatch.setattr(viewer.mujoco.viewer, "launch", lambda model, _: shown.append(model.nkey))
-    monkeypatch.setattr("reports.requests.view.has_screen", lambda: True)
+    monkeypatch.setattr("reports.requests.export.has_screen", lambda: True)
     told("view tangent")
     assert shown == [1]
 
@@ -121,7 +121,7 @@ def test_view_without_a_screen_draws_an_animation_that_moves(
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    monkeypatch.setattr("reports.requests.view.sys.platform", "linux")
+    monkeypatch.setattr("reports.requests.export.sys.platform", "linux")
     monkeypatch.setattr(gif, "FRAMES", 4)
     assert "scotch-yoke.gif" in told("view scotch-yoke")
     frames = []

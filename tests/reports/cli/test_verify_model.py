@@ -171,7 +171,7 @@ def test_a_full_disk_costs_the_file_and_not_the_verdict(monkeypatch: pytest.Monk
     def full(path: Path, _: object) -> None:
         raise CrankcheckError(f"{path}: can not be written: no space left")
 
-    monkeypatch.setattr(verify_model, "write", full)
+    monkeypatch.setattr("reports.output.write.write", full)
     result = crank(*ONCE.split(), "--json", "a.json")
     refused(result, "a.json: can not be written")
     assert "OUT OF TOLERANCE as written" in result.stdout

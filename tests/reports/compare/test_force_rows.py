@@ -26,7 +26,7 @@ from reports.compare.hardness import inertia_share, load_slopes, loading
 from reports.compare.whole_errors import NEAR, force_rows, near_jumps
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import Evidence
-from reports.stability.all_cases import CATALOGUE
+from reports.stability.grading import CATALOGUE
 from sim.engine import Run
 from sim.run import run
 from tests.worlds.facts import with_facts

@@ -13,11 +13,9 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.diff.costs import cost_text
 from reports.diff.junit import suite
-from reports.diff.markdown import markdown
-from reports.diff.terminal import show
-from reports.diff.words import left_out, lines
+from reports.diff.terminal import markdown, show
+from reports.diff.words import cost_text, left_out, lines
 from reports.output.junit import junit
 from reports.requests.diff import DiffRequest
 from reports.results.changes.changes import Diff, compare

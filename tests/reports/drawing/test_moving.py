@@ -15,8 +15,14 @@ from models.array import Array
 from models.files.reading import load_scene
 from models.scene import Scene
 from reports.describe.elastic_course import ElasticCourse, elastic_course
-from reports.drawing.magnified import Magnified, magnification
-from reports.drawing.moving import displacements, drawing, instants, moving_points
+from reports.drawing.moving import (
+    Magnified,
+    displacements,
+    drawing,
+    instants,
+    magnification,
+    moving_points,
+)
 
 SCENES = ("fourbar-lecture-1", "slider-crank-offset", "shaper", "scotch-yoke", "sixbar-stephenson")
 FOURBAR = load_scene("fourbar-lecture-1")

@@ -16,8 +16,7 @@ from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
 from reports.plan.elastic import held_steps
-from reports.selftest.beam_changes import in_beam
-from reports.selftest.beam_changes import stiffer as stiffer_beam
+from reports.selftest.elastic_changes import in_beam, stiffer_beam
 from reports.selftest.segment_changes import in_chain, springs, stiffer
 from tests.worlds.tiers import few, slow, slowly
 from tests.worlds.turns import of_turns

@@ -78,7 +78,7 @@ def test_odd_arguments_are_errors_of_ours_told_at_the_call(
     The frames of its traceback are that of this test, and the one where it is told.
     """
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("reports.sweep.whole.swept", lambda *_: pytest.fail("it would run"))
+    monkeypatch.setattr("reports.sweep.running.swept", lambda *_: pytest.fail("it would run"))
     call, right = calls(ran, tmp_path)[name]
     errors = {}
     for argument, (at, odd) in itertools.product(right, enumerate(odds)):

@@ -21,8 +21,8 @@ from models.files.reading import parse_scene
 from reports.drawing.svg import svg
 from reports.own_model.account import read_here
 from reports.requests import verify_model as model_verdict
+from reports.requests.arguments import in_python
 from reports.requests.shown import Shown
-from reports.requests.told import in_python
 from reports.store.manifest import read_manifest
 from tests.reports.page.hostile import Outline
 from tests.worlds.command_line import crank

@@ -23,8 +23,8 @@ from reports.figures.marks import COLOURS, marks
 from reports.figures.mechanism import draw
 from reports.figures.style import cut, styled, width_in
 from reports.results.lines import lines
-from reports.results.looks import label
 from reports.results.overview import Report
+from reports.results.variants import label
 from reports.store.manifest import Manifest
 from reports.store.reader import read_store
 from tests.reports.results.made import cell, stored

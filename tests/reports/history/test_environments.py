@@ -15,7 +15,6 @@ from packaging.version import Version
 
 from models.errors import CrankcheckError
 from reports.history import environments
-from reports.history.cache import alone, cache_folder, user_cache
 from reports.history.environments import (
     COMPLETE,
     EngineVersion,
@@ -25,9 +24,10 @@ from reports.history.environments import (
     place,
     python_of,
     ready,
+    reason,
     wanted,
 )
-from reports.history.install_errors import reason
+from reports.history.verification import alone, cache_folder, user_cache
 from reports.workers.signals import Ended, run_child
 from tests.worlds.programs import ROOT
 
@@ -257,7 +257,7 @@ def test_the_cache_is_where_caches_are(platform: str, env: dict[str, str], endin
 HOLDER = """
 import sys, time
 from pathlib import Path
-from reports.history.cache import alone
+from reports.history.verification import alone
 with alone(Path(sys.argv[1]), lambda: None):
     print("in", flush=True)
     sys.stdin.read()

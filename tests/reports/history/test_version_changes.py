@@ -12,9 +12,8 @@ from packaging.version import Version
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.history.document import page, table_text
 from reports.history.environments import EngineVersion
-from reports.history.table import ranking, show
+from reports.history.table import page, ranking, show, table_text
 from reports.history.version_changes import FollowedChange, headlines, steps
 from reports.history.version_result import VersionResult, errors_of, read_version
 from reports.results.changes.changes import compare

@@ -15,10 +15,9 @@ from reports.drawing.packed import embedded
 from reports.output.numbers import DIGITS, finite
 from reports.page import build
 from reports.page.build import page, stability_page
-from reports.page.heat import SHADES, SIGNS, heat, same, shade
 from reports.page.sections import SECTIONS
-from reports.page.sections.hard import hard
-from reports.page.thinning import fitting
+from reports.page.sections.hard import SHADES, SIGNS, hard, heat, same, shade
+from reports.page.sections.section import fitting
 from reports.stability.critical import command
 from reports.stability.grades import MEANINGS
 from reports.stability.matrix import FILE, OUTCOMES, Matrix, read_matrix, to_json

@@ -19,10 +19,9 @@ from reports.causes.cause import Cause
 from reports.logs.map_file import ChannelTable, Map
 from reports.own_log.judged import JudgedLog
 from reports.page.build import _plotly
-from reports.page.log_page import log_page
-from reports.page.log_sections.curves import curves
-from reports.page.log_sections.motion import stretches
-from reports.page.log_sections.verdict import map_lines
+from reports.page.log_curves import curves
+from reports.page.log_motion import stretches
+from reports.page.log_page import log_page, map_lines
 from tests.reports.page.hostile import EVIL, Outline, embedded_in, stands_alone
 from tests.reports.page.judged_logs import FACTS, SCENE, TURN_S, angles, judged, motion_of, points
 from tests.worlds.command_line import crank

@@ -14,10 +14,9 @@ from models.files.reading import load_scene
 from models.motion import Motion
 from models.scene import Scene
 from reports.logs.map_file import ChannelTable, Map
-from reports.page.extremes import extreme_rows
-from reports.page.log_sections.bodies import LoggedBodies, logged_bodies, truth_of_all
-from reports.page.log_sections.curves import DrawnChannel, curves, turn_s
-from reports.page.log_sections.placing import PlacedBodies
+from reports.page.log_curves import DrawnChannel, curves, extreme_rows, turn_s
+from reports.page.log_motion import LoggedBodies, logged_bodies, truth_of_all
+from reports.page.log_placing import PlacedBodies
 from tests.reports.page.judged_logs import SCENE, TURN_S, angles, judged, motion_of, points
 
 MOTION = motion_of()

@@ -18,7 +18,7 @@ from models.files.reading import load_scene
 from reports.lectures.design.constructions.construction_page import construction_page
 from reports.lectures.drawing.sheets.polygons.polygon_instant import placed_at_time
 from reports.lectures.drawing.sheets.polygons.polygon_page import polygon_page
-from reports.page.scene_sections.elastic import factors
+from reports.page.scene_page import factors
 from reports.requests.scene_report import elastic_page_of, free_page_of, page_of
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.reports.page.conftest import Write

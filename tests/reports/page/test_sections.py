@@ -14,12 +14,12 @@ import pytest
 from models.files.reading import find_scene
 from reports.output.numbers import duration
 from reports.page.build import render
-from reports.page.sections.precision import build as build_precision
-from reports.page.sections.reading_forces import build as build_forces
-from reports.page.sections.recommendation import build as build_recommendation
+from reports.page.sections.copied import reading_forces as build_forces
+from reports.page.sections.copied import recommendation as build_recommendation
+from reports.page.sections.errors import precision as build_precision
+from reports.page.sections.section import chosen, steps_held
 from reports.page.sections.stability import holds
 from reports.page.sections.verdict import build as build_verdict
-from reports.page.thinning import chosen, steps_held
 from reports.results.overview import Report
 from tests.reports.results.made import Row, cell, stored, untimed
 

@@ -10,8 +10,8 @@ import pytest
 
 from models.array import Array
 from reports.page.build import HERE
-from reports.page.heat import SHADES
-from reports.results.looks import FAMILIES, FAMILY
+from reports.page.sections.hard import SHADES
+from reports.results.variants import FAMILIES, FAMILY
 from reports.stability.matrix import OUTCOMES
 
 CSS = (HERE / "assets" / "page.css").read_text(encoding="utf-8")

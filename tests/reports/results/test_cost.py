@@ -13,10 +13,9 @@ from rich.console import Console
 
 from models.files.reading import load_scene
 from reports.judge.cell import Cell
-from reports.results.candidates import candidates
+from reports.results.candidates import candidates, front, front_over_all, performance_profile
 from reports.results.cost import costs_of, equal, noise, reached, time_to
 from reports.results.lines import Line, lines
-from reports.results.pareto import front, front_over_all, performance_profile
 from reports.results.recommend import recommendations
 from reports.results.table import noise_line, recommendation_table
 from reports.sweep.measured import timed

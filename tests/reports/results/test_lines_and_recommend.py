@@ -7,8 +7,7 @@ import math
 
 import pytest
 
-from reports.results.lines import lines
-from reports.results.one_processor import left_out, machine
+from reports.results.lines import left_out, lines, machine
 from reports.results.recommend import Recommendation, recommendations
 from tests.reports.results.made import PERIOD_S, Row, cell, stored, table, untimed
 

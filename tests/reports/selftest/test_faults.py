@@ -13,10 +13,9 @@ from models.files.reading import load_scene
 from models.hard import fourbar
 from reports.judge.rules import RULES
 from reports.selftest import trial
-from reports.selftest.all_faults import FAULTS
-from reports.selftest.elastic_runs import LOOSE
+from reports.selftest.elastic_changes import LOOSE
 from reports.selftest.fault import FOURBAR, INSIDE, SHAPER, SLIDER
-from reports.selftest.trial import FaultTrial, healthy, passed_by, passes, sites, tried
+from reports.selftest.trial import FAULTS, FaultTrial, healthy, passed_by, passes, sites, tried
 from tests.worlds.tiers import few, slow, slowly
 
 ENGINES = ("mujoco", "pymunk")

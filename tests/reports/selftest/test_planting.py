@@ -20,8 +20,7 @@ from models.joints import line_ends, mass_of
 from models.loads import PinSpring
 from reports.compare.free.free_truth import free_truth
 from reports.judge.cell import CellRunner, check, examined
-from reports.selftest.all_faults import FAULTS, RUNS, chosen_faults
-from reports.selftest.elastic_runs import (
+from reports.selftest.elastic_changes import (
     BEAM_RUNS,
     BENT,
     elastic_cell,
@@ -41,7 +40,7 @@ from reports.selftest.free_changes import (
     spring_elsewhere,
     turned_gravity,
 )
-from reports.selftest.free_runs import FREE_RUNS, PRESS, PULSE, SQUEEZER, SWING
+from reports.selftest.free_faults import FREE_RUNS, PRESS, PULSE, SQUEEZER, SWING
 from reports.selftest.logs import WHEN, moved, output, rows
 from reports.selftest.segment_changes import (
     as_corrected,
@@ -50,9 +49,8 @@ from reports.selftest.segment_changes import (
     segments,
     springs,
 )
-from reports.selftest.trial import _passed, passes
-from reports.selftest.unseen_elastic import UNSEEN_ELASTIC
-from reports.selftest.unseen_free import UNSEEN_FREE
+from reports.selftest.trial import FAULTS, RUNS, _passed, chosen_faults, passes
+from reports.selftest.unseen import UNSEEN_ELASTIC, UNSEEN_FREE
 from sim.engine import Run
 from sim.registry import engine
 from sim.run import run

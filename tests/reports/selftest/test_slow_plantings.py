@@ -16,10 +16,10 @@ from analytic.free.release import release
 from models.cut_scenes import SegmentedScene
 from models.files.reading import load_scene
 from models.scene import Link, Scene
-from reports.selftest import free_changes, node_changes, segment_changes
-from reports.selftest.all_faults import FAULTS
-from reports.selftest.elastic_runs import BEAM_RUNS, BENT, LOOSE, elastic_cell
-from reports.selftest.free_runs import SWING
+from reports.selftest import elastic_changes, free_changes, segment_changes
+from reports.selftest.elastic_changes import BEAM_RUNS, BENT, LOOSE, elastic_cell
+from reports.selftest.free_faults import SWING
+from reports.selftest.trial import FAULTS
 
 ENGINE = "mujoco"
 CHAIN = elastic_cell(LOOSE, ENGINE).given
@@ -161,9 +161,9 @@ def test_a_theory_stands_in_the_place_of_the_log(
         theories.append(asked)
         return SimpleNamespace(at=lambda time_s: ("the theory at", time_s))
 
-    monkeypatch.setattr(node_changes, "DrivenElasticMotion", theory)
-    monkeypatch.setattr(node_changes, "sound_run", lambda *_: Logged(logged))
-    monkeypatch.setattr(node_changes, "_given_back", lambda *asked: asked)
+    monkeypatch.setattr(elastic_changes, "DrivenElasticMotion", theory)
+    monkeypatch.setattr(elastic_changes, "sound_run", lambda *_: Logged(logged))
+    monkeypatch.setattr(elastic_changes, "_given_back", lambda *asked: asked)
     done = fault.plant(1.0)(cell.given, "the start", "exudyn", "tuned", dt_s=1.0)
     cut, own, other = done.motion
     assert (cut.given, own, other) == (cell.given, logged, ("the theory at", logged.time_s))

@@ -17,10 +17,9 @@ from typer.testing import Result
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import Evidence, Finding, Level
 from reports.selftest import trial
-from reports.selftest.all_faults import FAULTS
 from reports.selftest.fault import FOURBAR, Fault
 from reports.selftest.table import show
-from reports.selftest.trial import FaultTrial, Verdict, healthy
+from reports.selftest.trial import FAULTS, FaultTrial, Verdict, healthy
 from reports.selftest.unseen import UNSEEN
 from reports.workers.isolated import Lost
 from tests.worlds.command_line import crank, flat, refused

@@ -17,11 +17,10 @@ from models.errors import ReachError
 from models.hard import slider_crank_by_piston, slotted_lever, triad_platform
 from models.laws import Oscillating
 from models.scene import Driver, Scene
-from reports.stability.all_cases import CATALOGUE, GROUPS
 from reports.stability.case import Trial
 from reports.stability.catalogue.change_points import TRIAD_CRANK_M
 from reports.stability.error_series import nearest
-from reports.stability.grading import graded
+from reports.stability.grading import CATALOGUE, GROUPS, graded
 from reports.stability.matrix import Graded
 from tests.worlds.command_line import crank_alone, flat
 from tests.worlds.tiers import few, slow

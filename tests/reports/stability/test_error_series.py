@@ -18,14 +18,12 @@ from models.errors import CrankcheckError
 from models.files.reading import load_scene
 from reports.compare.free.hard_runs import toggle_passage
 from reports.requests.stability import _cases
-from reports.stability.all_cases import CATALOGUE
 from reports.stability.case import Trial
 from reports.stability.catalogue.free_motion import from_rest
 from reports.stability.error_series import ErrorSeries, error_series
 from reports.stability.grades import outcome
-from reports.stability.grading import graded
-from reports.stability.limit import at_limit
-from reports.stability.toggle import at_toggle, thrown_start
+from reports.stability.grading import CATALOGUE, graded
+from reports.stability.other_truths import at_limit, at_toggle, thrown_start
 from reports.ways.free.series import free_error_series, free_start
 from sim.engine import Energy, Run
 from sim.run import run

@@ -13,8 +13,8 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from reports.store.folder import write_part
 from reports.store.manifest import MANIFEST, MOST_BYTES
-from reports.store.part import write_part
 from tests.worlds.tiers import few
 
 Change = Callable[[Path], object]

@@ -19,13 +19,14 @@ from filelock import FileLock
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.plan.key import digest
+from reports.plan.grid import digest
 from reports.requests.report import ReportRequest
-from reports.store import lock, mending, part
-from reports.store.damage import BUSY
+from reports.store import folder as lock
+from reports.store import folder as part
+from reports.store import writer as mending
 from reports.store.examine import examine
-from reports.store.manifest import Manifest, read_manifest
-from reports.store.part import Part, open_part, write_part
+from reports.store.folder import Part, open_part, write_part
+from reports.store.manifest import BUSY, Manifest, read_manifest
 from reports.store.reader import read_store, stored_costs, stored_keys
 from reports.store.schema import NESTED
 from reports.store.writer import Writer

@@ -19,7 +19,7 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.store.reader import read_store
-from reports.sweep import cluster as clusters
+from reports.sweep import measured as clusters
 from reports.sweep.measured import measured
 from reports.workers.isolated import Limits
 from tests.worlds.command import COMMAND, PYTHON

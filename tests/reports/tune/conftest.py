@@ -46,5 +46,5 @@ def path(tmp_path: Path) -> Path:
 def _in_this_process() -> object:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("reports.tune.attempt.Isolated", Remembering)
-        patch.setattr("reports.tune.timing.timed_in_turns", timed)
+        patch.setattr("reports.tune.attempt.timed_in_turns", timed)
         yield

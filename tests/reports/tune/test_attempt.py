@@ -16,8 +16,18 @@ from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.plan.steps import MOST_SEARCHED
 from reports.sweep.measured import Repeats, measured
-from reports.tune.attempt import DEARER, NONE_KNOWN, Attempt, Bench, Goal, LostError, Row, error_of
-from reports.tune.timing import GUESS_US, times
+from reports.tune.attempt import (
+    DEARER,
+    GUESS_US,
+    NONE_KNOWN,
+    Attempt,
+    Bench,
+    Goal,
+    LostError,
+    Row,
+    error_of,
+    times,
+)
 from reports.workers.isolated import Isolated, Limits
 from sim.engine import Settings, SettingValue
 from sim.mujoco.knobs import work
@@ -144,7 +154,7 @@ def test_times_are_sums_over_the_scenes_at_the_step_found(monkeypatch: pytest.Mo
         assert isolated.limits == Limits(7.0)
         return timed(isolated, cells, rounds)
 
-    module = "reports.tune.timing.timed_in_turns"
+    module = "reports.tune.attempt.timed_in_turns"
     monkeypatch.setattr(module, seen_by)
     first, second = times(goal, attempts, Limits(7.0)) or []
     assert seen == [(name, pytest.approx(n), GUESS_US) for n in (100, 300) for name in SCENES]

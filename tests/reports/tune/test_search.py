@@ -18,8 +18,16 @@ from optuna.trial import TrialState
 
 from models.errors import CrankcheckError
 from reports.tune.attempt import Attempt
-from reports.tune.search import Plan, Try, attempts, best_of, plainer, search
-from reports.tune.storage import check_storage, study_in
+from reports.tune.search import (
+    Plan,
+    Try,
+    attempts,
+    best_of,
+    check_storage,
+    plainer,
+    search,
+    study_in,
+)
 from reports.workers.signals import Stopped
 from sim.engine import Settings
 from sim.offers import Knob, SearchSpace

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.selftest.fault import PROFILE, Fault, in_log
-from reports.selftest.fault_runs import STEPS, FaultRuns, FaultSet
+from reports.selftest.fault import PROFILE, STEPS, Fault, FaultRuns, FaultSet, in_log
 from sim.engine import Run
 from tests.worlds.bead.cases import SCENE
 

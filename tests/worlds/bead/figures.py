@@ -9,8 +9,7 @@ from reports.figures.marks import marks
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import PAGE_IN
 from reports.results.lines import named
-from reports.results.origin import notes
-from reports.results.overview import Report
+from reports.results.overview import Report, notes
 
 
 def draw(report: Report, name: str) -> Figure | None:

@@ -7,9 +7,8 @@ import numpy as np
 from models.array import Array
 from models.motion import Motion, State
 from reports.compare.tracks import length
-from reports.stability.case import Trial
+from reports.stability.case import Trial, Yardstick
 from reports.stability.error_series import ErrorSeries, lacking, widest
-from reports.stability.yardstick import Yardstick
 from sim.engine import Run
 from tests.worlds.bead.truth import BeadTruth
 

@@ -16,7 +16,7 @@ from analytic.lectures.synthesis.design import (
 )
 from analytic.lectures.synthesis.examine import Examined
 from models.array import Array
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law
 from reports.drawing.moving import drawing
 from reports.drawing.shape import turn_of
 from reports.lectures.design.constructions.construction_looks import CURVES, curves_of, strokes, xy

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from models.scene import Scene
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law
 from reports.figures.marks import COLOURS, DASHES
 from reports.figures.saving import saved
 from reports.figures.sheet import Panels, sheet

@@ -15,7 +15,8 @@ from reports.lectures.drawing.workbook.scene_family import scene_curves, scene_f
 from reports.lectures.drawing.workbook.scene_family_workbook import scene_family_workbook
 from reports.output.write import write
 from reports.requests.options import given
-from reports.requests.solve_lengths import (
+from reports.requests.solve_options import SolveOptions
+from reports.requests.solving import (
     FAMILY_ENDINGS,
     PAGE,
     WORKBOOK,
@@ -23,7 +24,6 @@ from reports.requests.solve_lengths import (
     instants_of,
     refuse_times,
 )
-from reports.requests.solve_options import SolveOptions
 
 LARGEST = 1e9
 """Of any number of a mechanism [SI]."""

@@ -21,7 +21,7 @@ from reports.compare.compare import compare, places
 from reports.compare.errors import Errors
 from reports.compare.free.drift import drift, kept_about, momentum, window_means, window_s
 from reports.compare.free.free_truth import FreeTruth, free_truth, kept_motion
-from reports.drawing.true_motion import true_motion
+from reports.drawing.shape import true_motion
 from reports.store.reader import read_store
 from sim.engine import Run
 from sim.run import run

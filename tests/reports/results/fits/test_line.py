@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from reports.judge.three_steps import AT_ROUNDING
+from reports.results.fits.curves import interpolate, reach
 from reports.results.fits.line import FitKind, LineFit, fit_line
-from reports.results.fits.reach import interpolate, reach
 from tests.worlds.strategies import examples
 from tests.worlds.tiers import few, slow, slowly
 

@@ -25,7 +25,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
 from models.motion import Motion
-from reports.drawing.true_motion import true_motion
+from reports.drawing.shape import true_motion
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.lectures.drawing.sheets.polygons.polygon_course import polygon_file, turning_file
 from reports.lectures.drawing.sheets.polygons.polygon_instant import (

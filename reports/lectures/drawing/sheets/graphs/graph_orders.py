@@ -22,7 +22,7 @@ from reports.lectures.drawing.sheets.graphs.graph_span import GraphSpan
 from reports.lectures.drawing.sheets.graphs.graph_words import NOTHING, share
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.results.fits.curves import straight
 
 Whose = Literal["reference", "log", "its own part"]

@@ -17,7 +17,7 @@ from reports.figures.style import INK, QUIET, TINY, width_in
 from reports.lectures.drawing.sheets.canvas import line, text
 from reports.lectures.drawing.sheets.graphs.graph_drawing import READ, DrawnGraphs
 from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.numbers import listed
 
 ROW_MM = 2.55

@@ -17,7 +17,7 @@ from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.free.free_truth import kept_motion
-from reports.drawing.free_instants import instants
+from reports.describe.free_motion import instants
 from reports.drawing.shape import turn_of
 from reports.lectures.drawing.sheets.paper import sheet_note
 from reports.lectures.drawing.sheets.polygons.polygon_sheet import (

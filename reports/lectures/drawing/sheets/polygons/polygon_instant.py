@@ -24,8 +24,8 @@ from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.compare.free.free_truth import LOOK, kept_motion
 from reports.compare.tracks import rate, second_rate
-from reports.describe.driver_at import angle_at, driver_at, time_at
-from reports.drawing.true_motion import true_motion
+from reports.describe.facts import angle_at, driver_at, time_at
+from reports.drawing.shape import true_motion
 from reports.lectures.drawing.sheets.sheet_log import SheetLog
 from reports.logs.channel import OwnLog, Reading, logged_motion
 from reports.logs.log_beside import EVEN

@@ -21,7 +21,7 @@ from reports.lectures.drawing.sheets.polygons.polygon_table import (
     drawn_links,
     image_words,
 )
-from reports.output.columns import plain_table
+from reports.output.console import plain_table
 from reports.output.numbers import readable
 
 

@@ -10,7 +10,7 @@ from analytic.lectures.drawings.drawn_polygons import QUANTITIES, DrawnPolygons,
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
 from analytic.lectures.drawings.polygon import UNITS, Polygon, Quantity
 from models.array import Array
-from reports.describe.law import describe_law
+from reports.describe.facts import describe_law
 from reports.drawing.moving import drawing
 from reports.drawing.packed import packed
 from reports.lectures.drawing.sheets.polygons.polygon_course import PolygonCourse
