@@ -7,17 +7,9 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from models.array import Array
-from models.motion import (
-    Bound,
-    ElasticMotion,
-    LinkMotion,
-    Motion,
-    Order,
-    PointMotion,
-    SliderMotion,
-)
+from models.motion import Bound, Motion, Order
 from reports.logs.units import Dimension, si
-from reports.quantities.quantity import MovingKind
+from reports.quantities.quantity import FIELDS, MovingKind
 
 LoggedKind = MovingKind | Literal["elastic"]
 """What may be logged of: an elastic link is a link, and bends and stretches besides."""
@@ -69,9 +61,7 @@ class Kind:
 
     def of(self, motion: Motion, name: str) -> Array:
         """The series (T,) of a body in a motion."""
-        body: LinkMotion | PointMotion | SliderMotion | ElasticMotion
-        body = getattr(motion, self.bodies)[name]
-        series: Array = getattr(body, self.field)
+        series: Array = getattr(getattr(motion, self.bodies)[name], self.field)
         return series if self.axis is None else series[:, self.axis]
 
     def bound(self, bound: Bound, name: str) -> Array:
@@ -87,14 +77,14 @@ def _kinds() -> Iterator[Kind]:
     axes: Sequence[tuple[Literal[0, 1], str]] = ((0, "x"), (1, "y"))
     rates = ("velocity", "acceleration")
     for order in orders:
-        name, field = turning[order], ("theta", "omega", "alpha")[order]
+        name, field = turning[order], FIELDS["link"][order]
         yield Kind(name, "link", name, ("angle", *rates)[order], field, order)
     for order in orders:
-        prefix, field = ("", "v", "a")[order], ("position", *rates)[order]
+        prefix, field = ("", "v", "a")[order], FIELDS["point"][order]
         for axis, letter in axes:
             yield Kind(prefix + letter, "point", moving[order], field, field, order, axis)
     for order in orders:
-        field = ("displacement", "speed", "acceleration")[order]
+        field = FIELDS["slider"][order]
         yield Kind(field, "slider", moving[order], ("displacement", *rates)[order], field, order)
     yield Kind("deflection", "elastic", "length", "deflection", "middle", 0)
     yield Kind("extension", "elastic", "length", "extension", "extension", 0)

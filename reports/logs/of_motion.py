@@ -24,11 +24,8 @@ def log_of_motion(scene: Scene, motion: Motion, source: str = "the motion") -> O
     """The log of a motion; a series that is NaN throughout, as of an engine that does not report
     it, is none.
 
-    Raises
-    ------
-    CrankcheckError
-        Times that do not go on; bodies that the scene has not; series of another shape than the
-        times, or with samples that are not finite; nothing that moves.
+    Raises CrankcheckError for times that do not go on; bodies that the scene has not; series of
+    another shape than the times, or with samples that are not finite; nothing that moves.
     """
     raw = {TIME: samples(motion.time_s, f"{source}: time_s")}
     channels = []
