@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 from models.array import Array
 from models.motion import Bound, Motion, Order
@@ -13,6 +13,18 @@ from reports.quantities.quantity import FIELDS, MovingKind
 
 LoggedKind = MovingKind | Literal["elastic"]
 """What may be logged of: an elastic link is a link, and bends and stretches besides."""
+
+
+_JUDGED: Mapping[str, MovingKind] = {
+    **{kind: kind for kind in get_args(MovingKind)},
+    "elastic": "link",
+}
+"""The kind of body that quantities of one are of."""
+
+
+def plural(body_kind: str) -> str:
+    """What a motion calls the bodies of a kind."""
+    return {"elastic": "elastic"}.get(body_kind, f"{body_kind}s")
 
 
 @dataclass(frozen=True)
@@ -40,12 +52,12 @@ class Kind:
     @property
     def judged_of(self) -> MovingKind:
         """The kind of body that its quantity is of."""
-        return "link" if self.body_kind == "elastic" else self.body_kind
+        return _JUDGED[self.body_kind]
 
     @property
     def bodies(self) -> str:
         """What a motion calls the bodies of its kind."""
-        return "elastic" if self.body_kind == "elastic" else f"{self.body_kind}s"
+        return plural(self.body_kind)
 
     def of(self, motion: Motion, name: str) -> Array:
         """The series (T,) of a body in a motion."""

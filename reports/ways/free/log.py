@@ -225,7 +225,8 @@ class FreeLogBeside(LogBeside, FreeBeside):
         driver = self.scene.driver.link
         if not (self.has_crank and self._says("link", driver, "angle")):
             return f"no geometry: the log has no angle of {driver} at the times of its rows"
-        if self.free.driver_tells or self._holds((0,)):
+        truth = self.free
+        if truth.driver_tells or self._holds((0,)):
             return ""
         return (
             f"no geometry: the angle of {driver} alone does not say where {self.scene.name} is; it "
