@@ -12,10 +12,11 @@ from reports.causes.cause import Cause
 from reports.drawing.moving import goes_round
 from reports.drawing.packed import packed, singles
 from reports.judge.rules import RULES
+from reports.judge.rules.rule import share
 from reports.logs.channel import Channel
 from reports.output.numbers import count, readable
 from reports.own_log.judged import JudgedLog
-from reports.own_log.rows import LogRow, share_of
+from reports.own_log.rows import LogRow
 from reports.own_log.table import (
     fit_text,
     footer,
@@ -122,7 +123,7 @@ def _row(row: LogRow, numbers: dict[str, int]) -> dict[str, object]:
         "maximum": error.maximum / row.per_unit,
         "unit": row.unit,
         "pure": error.pure,
-        "share": share_of(error),
+        "share": share(error),
         "limit": row.limit.number,
         "origin": row.limit.origin,
         "taken": row.taken,
@@ -237,7 +238,7 @@ def _told(judged: JudgedLog, curve: DrawnChannel) -> Iterator[str]:
         error = row.error
         joined = " of both its coordinates together" if len(row.columns) > 1 else ""
         where = {"start": " at the start", "passage": " near a change point"}.get(error.kind, "")
-        of = f"{readable(error.pure)} {share_of(error)}, {taken_text(row.taken)} of the limit"
+        of = f"{readable(error.pure)} {share(error)}, {taken_text(row.taken)} of the limit"
         told = f"The {error.quantity} error{joined}{where} is {of}"
         yield f"{told}, {readable(row.limit.number)} ({row.limit.origin})."
     if curve.turns:

@@ -26,7 +26,7 @@ from reports.describe.elastic_course import (
 )
 from reports.describe.elastic_words import certainty, elastic_facts, elastic_warnings, start_words
 from reports.describe.force_tables import friction_words, largest_of
-from reports.describe.free_motion import free_notes
+from reports.describe.free_motion import free_notes, instants
 from reports.describe.with_forces import (
     cleaned_forces,
     force_certainty,
@@ -34,10 +34,9 @@ from reports.describe.with_forces import (
     turn_with_forces,
 )
 from reports.drawing.force_arrows import force_arrows
-from reports.drawing.moving import INSTANTS, drawing, instants, moving_points
+from reports.drawing.moving import INSTANTS, drawing, magnification, moving_points
 from reports.drawing.packed import packed
 from reports.drawing.shape import size_of_motion, turn_of
-from reports.lectures.drawing.sheets.polygons.polygon_on_paper import magnification
 from reports.output.numbers import count
 from reports.output.provenance import crankcheck_version
 from reports.page.build import Head, assembled

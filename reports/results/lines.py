@@ -18,7 +18,6 @@ from reports.judge.three_steps import AT_ROUNDING
 from reports.plan.study import Study
 from reports.quantities import QUANTITIES
 from reports.results.fits.line import LineFit, fit_line, words
-from reports.results.lines import comparable
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
 from reports.way.clock import clock_of

@@ -19,9 +19,6 @@ from models.scene import Scene
 from reports.judge.cell import Checked, check, examined
 from reports.judge.rules.rule import Finding
 from reports.selftest.fault import PROFILE, STEPS, Fault, FaultRuns, FaultSet, RunKind, Unseen
-from reports.selftest.requests import FAULTS
-from reports.selftest.trial import RUNS
-from reports.selftest.unseen import Unseen
 from reports.way.way import WAYS, way
 from reports.workers.isolated import Limits, Lost, run_all
 from sim.registry import ENGINES, engine

@@ -8,9 +8,8 @@ from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve_driven
 from models.array import Array
 from models.motion import Motion, State
-from reports.compare.driven_errors import compared
 from reports.compare.errors import Departure
-from reports.compare.free.hard_runs import OVER, ChainErrors, toggle_passage
+from reports.compare.free.hard_runs import OVER, ChainErrors, compared, toggle_passage
 from reports.stability.case import Throw, Trial
 from reports.stability.error_series import ErrorSeries, lacking, widest, worst_of
 from sim.engine import Run

@@ -16,7 +16,6 @@ from models.files.inputs import UnreadableError, regular_bytes
 from reports.output.numbers import count
 from reports.output.provenance import crankcheck_version
 from reports.plan.grid import digest
-from reports.store.manifest import command, in_line
 from reports.store.schema import FORMAT
 
 Cure = Literal["sweep", "wait", "nothing"]

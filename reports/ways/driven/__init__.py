@@ -17,7 +17,6 @@ from models.motion import Forces, Motion, State
 from models.scene import Same, Scene
 from reports.compare.beside import Truth, truth_of
 from reports.compare.errors import DRIVEN
-from reports.compare.whole_errors import Parts
 from reports.plan.singular import (
     passage_note,
     refuse_forceless,

@@ -25,7 +25,6 @@ from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import LEAST_STEPS, GivenAs, Length, Planned
 from reports.way.result_kind import ResultKind
 from reports.way.way import StudyLengths, Way
-from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
 UNITS = (
