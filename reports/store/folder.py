@@ -34,9 +34,9 @@ MOST_BYTES = 1_000_000_000
 
 @dataclass(frozen=True)
 class Part:
-    """A file of a table that is as it was written. Its name tells the table, the time of writing, how
-    many rows it has, and the hash of its bytes, so that no byte of it changes unseen, and what is
-    lost with it is known."""
+    """A file of a table that is as it was written. Its name tells the table, the time of writing,
+    how many rows it has, and the hash of its bytes, so that no byte of it changes unseen, and what
+    is lost with it is known."""
 
     path: Path
     file: pq.ParquetFile
