@@ -277,7 +277,8 @@ def fastest_rad_s(scene: Scene, by: Discretisation) -> float:
     dies off the fastest where damping_s makes that faster still."""
     by_place, by_rate = _of_released(scene, by) if scene.is_free else _of_driven(scene, by)
     highest = math.sqrt(float(np.linalg.eigvals(-by_place).real.max()))
-    if not any(own.damping_s for own in scene.elastic.values()):
+    links = scene.elastic.values()
+    if not any(own.damping_s for own in links):
         return highest
     still, one = np.zeros_like(by_place), np.eye(len(by_place))
     whole = np.block([[still, one], [by_place, by_rate]])

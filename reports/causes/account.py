@@ -75,17 +75,10 @@ def chosen(accounts: Sequence[Account], columns: Sequence[str]) -> list[Account]
     for number in sorted(best):
         own = [c for n, c in enumerate(columns) if table.owner(best, worlds, n) == number]
         if own:
-            told.append(_of(accounts[number], own))
+            rests, lefts = accounts[number].rests, accounts[number].lefts
+            rests, lefts = ({c: each[c] for c in own} for each in (rests, lefts))
+            told.append(replace(accounts[number], rests=rests, lefts=lefts))
     return told
-
-
-def _of(account: Account, columns: Sequence[str]) -> Account:
-    """An account of some of its columns."""
-    return replace(
-        account,
-        rests={column: account.rests[column] for column in columns},
-        lefts={column: account.lefts[column] for column in columns},
-    )
 
 
 class _Table:

@@ -18,7 +18,9 @@ from reports.logs.channel import Channel
 from reports.logs.log_beside import AtCrank
 
 Stamps = Callable[[Array], Array]
-Drive = Callable[[Array], tuple[Array, Array, Array]]
+Orders = tuple[Array, Array, Array]
+"""A place and its two rates."""
+Drive = Callable[[Array], Orders]
 
 
 @dataclass(frozen=True)
@@ -34,25 +36,15 @@ class LogFrame:
     def seen(self, motion: Motion) -> Motion:
         """A motion as it looks in this frame."""
         sign, size = (-1.0 if self.mirrored else 1.0), self.size
-        links = {
-            name: LinkMotion(sign * m.theta + self.turn_rad, sign * m.omega, sign * m.alpha)
-            for name, m in motion.links.items()
-        }
         cos, sin = math.cos(self.turn_rad), math.sin(self.turn_rad)
         turned = size * np.array([[cos, sin], [-sign * sin, sign * cos]])
-        points = {
-            name: PointMotion(
-                m.position @ turned + np.array(self.shift_m),
-                m.velocity @ turned,
-                m.acceleration @ turned,
-            )
-            for name, m in motion.points.items()
-        }
-        sliders = {
-            name: SliderMotion(size * m.displacement, size * m.speed, size * m.acceleration)
-            for name, m in motion.sliders.items()
-        }
-        return replace(motion, links=links, points=points, sliders=sliders)
+        shift = np.array(self.shift_m)
+        return _changed(
+            motion,
+            lambda m: (sign * m.theta + self.turn_rad, sign * m.omega, sign * m.alpha),
+            lambda m: (m.position @ turned + shift, m.velocity @ turned, m.acceleration @ turned),
+            lambda m: (size * m.displacement, size * m.speed, size * m.acceleration),
+        )
 
 
 @dataclass(frozen=True)
@@ -74,7 +66,7 @@ class World:
             return World(truth.scene)
         times, angles, law = truth.time_s, truth.crank_rad, truth.scene.driver.law
 
-        def drive(instants: Array) -> tuple[Array, Array, Array]:
+        def drive(instants: Array) -> Orders:
             _, omega, alpha = law.at(instants)
             return np.interp(instants, times, angles), omega, alpha
 
@@ -129,16 +121,24 @@ def _bodies(channels: Iterable[Channel]) -> Bodies:
 
 def _paced(motion: Motion, pace: float) -> Motion:
     """A motion whose rates are taken over a time that runs at another pace."""
-    links = {
-        name: LinkMotion(m.theta, pace * m.omega, pace**2 * m.alpha)
-        for name, m in motion.links.items()
-    }
-    points = {
-        name: PointMotion(m.position, pace * m.velocity, pace**2 * m.acceleration)
-        for name, m in motion.points.items()
-    }
-    sliders = {
-        name: SliderMotion(m.displacement, pace * m.speed, pace**2 * m.acceleration)
-        for name, m in motion.sliders.items()
-    }
-    return replace(motion, links=links, points=points, sliders=sliders)
+    return _changed(
+        motion,
+        lambda m: (m.theta, pace * m.omega, pace**2 * m.alpha),
+        lambda m: (m.position, pace * m.velocity, pace**2 * m.acceleration),
+        lambda m: (m.displacement, pace * m.speed, pace**2 * m.acceleration),
+    )
+
+
+def _changed(
+    motion: Motion,
+    link: Callable[[LinkMotion], Orders],
+    point: Callable[[PointMotion], Orders],
+    slider: Callable[[SliderMotion], Orders],
+) -> Motion:
+    """A motion whose bodies move otherwise."""
+    return replace(
+        motion,
+        links={name: LinkMotion(*link(own)) for name, own in motion.links.items()},
+        points={name: PointMotion(*point(own)) for name, own in motion.points.items()},
+        sliders={name: SliderMotion(*slider(own)) for name, own in motion.sliders.items()},
+    )

@@ -123,7 +123,8 @@ def free_departure(beside: FreeBeside) -> Departure | None:
     links are held to the position that the run's own coordinate has. With several freedoms the
     phase alone tells.
     """
-    if not beside.free.by_dyads or beside.no_geometry:
+    truth = beside.free
+    if not truth.by_dyads or beside.no_geometry:
         return None
     try:
         tracks = beside.tracks((GEOMETRY.name,), beside.at_crank)

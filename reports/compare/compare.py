@@ -36,15 +36,10 @@ class Comparing(Protocol):
 
 
 def compare(beside: Beside | None) -> Errors | None:
-    """The errors of a run, or None where it logged nothing.
+    """The errors of a run, a row per quantity, body, source and kind; None where it logged nothing.
 
     Samples that are not finite, and bodies or pins of the scene that a run lacks, give errors
     that are not finite; what a user's own log lacks gives none.
-
-    Returns
-    -------
-    Errors or None
-        One row per quantity, body, source and kind.
     """
     errors: Errors | None = None
     for module in _modules(beside):
@@ -101,32 +96,22 @@ def _elsewhere(run: Run, scene: Scene, state: State) -> list[str]:
         return []
     first = motion.state()
     size = max(scene.longest_m, *(math.hypot(*place) for place in state.position.values()))
-    turns = {
-        name: abs(math.remainder(first.theta[name] - angle, math.tau))
+    turned = {
+        f"link {name}": abs(math.remainder(first.theta[name] - angle, math.tau))
         for name, angle in state.theta.items()
         if name in first.theta
     }
-    moves = {
-        name: math.dist(first.position[name], place) / size
+    moved = {
+        f"point {name}": math.dist(first.position[name], place) / size
         for name, place in state.position.items()
         if name in first.position
-    }
-    slides = {
-        name: abs(first.displacement[name] - place) / size
+    } | {
+        f"slider {name}": abs(first.displacement[name] - place) / size
         for name, place in state.displacement.items()
         if name in first.displacement
     }
-    far = {
-        f"{kind} {name}": (by, unit)
-        for kind, unit, each in (
-            ("link", "rad", turns),
-            ("point", "L", moves),
-            ("slider", "L", slides),
-        )
-        for name, by in each.items()
-        if by > SAME
-    }
-    return [f"start: {body} begins {by:.2g} {unit} off" for body, (by, unit) in far.items()]
+    far = [*((*each, "rad") for each in turned.items()), *((*each, "L") for each in moved.items())]
+    return [f"start: {body} begins {by:.2g} {unit} off" for body, by, unit in far if by > SAME]
 
 
 def _words(name: str, asked: object, found: object) -> str:

@@ -12,9 +12,8 @@ from reports.compare.beside import Beside
 from reports.compare.branch import departure
 from reports.compare.error_rows import Instants, instants_of, whole_row, whole_rows
 from reports.compare.errors import DRIVEN, Error, Errors
-from reports.compare.force_rows import force_rows
 from reports.compare.hardness import conditioning, loading, uneven
-from reports.compare.whole_errors import Parts, summed, whole_errors
+from reports.compare.whole_errors import Parts, force_rows, summed, whole_errors
 from reports.quantities import named
 from reports.quantities.quantity import Role
 

@@ -1,28 +1,202 @@
-"""The errors of a run put together, from the parts that its kind gives and those of every kind."""
+"""The errors of a run put together, from the parts that its kind gives and those of every kind; and
+those of its forces, at the instants that they act at."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from analytic.forces.late_impulses import jolts
+from models.array import Array, Mask
 from models.joints import mass_ratio
 from models.laws import ConstantSpeed, Law
+from models.motion import Forces, Motion
+from models.scene import Scene
 from reports.compare.beside import Beside
 from reports.compare.error_rows import (
     Instants,
     differenced_rows,
+    instants_of,
+    rate_rows,
     reported_rows,
     uncertain,
     whole_rows,
 )
-from reports.compare.errors import Departure, Error, Errors, MotionFacts, SceneFacts
-from reports.compare.force_rows import ForceErrors
-from reports.compare.hardness import curvature, unevenly_turned
+from reports.compare.errors import (
+    Departure,
+    Error,
+    Errors,
+    ForceFacts,
+    MotionFacts,
+    SceneFacts,
+    Unbalanced,
+)
+from reports.compare.hardness import curvature, inertia_share, load_slopes, unevenly_turned
+from reports.compare.tracks import length
+from reports.output.numbers import count
+from reports.quantities import named
+from reports.quantities.forces import acting, acting_at, largest_reaction, largest_torque, silent
 from reports.quantities.quantity import BodyKind
+from sim.engine import Run
+
+UNSURE = 1e-5
+"""The most that a force of the reference may be wrong by, of its scale: where a load jumps between
+two samples that rounding can not tell apart, it is known to the jump."""
+OF_STEPS = 12
+"""Samples in which forces of steps come to their steady error. What half a step has left undone is
+over with the next; where iterations leave up to half of it from step to step, 2^-12 are left, under
+what soft constraints leave open."""
+
+
+def force_rows(beside: Beside) -> ForceErrors:
+    """The errors of forces, at the instants that they act at; none where none were asked for."""
+    scene, run = beside.scene, beside.run
+    if not run.with_forces:
+        return ForceErrors()
+    known = acting_at(run)
+    time_s = beside.motion.time_s if known is None else known
+    reference = beside.truth.with_forces_at(time_s)
+    assert reference.forces is not None
+    tracks = beside.tracks(named("force"), reference)
+    determined: Mask = np.isfinite(reference.forces.torque) & ~near_jumps(scene, reference)
+    at = instants_of(beside, time_s, reference)
+    if run.forces_of == "steps":
+        at = replace(at, settling=min(at.settling, OF_STEPS))
+    rows, missing, start = list[Error](), list[str](), 0.0
+    left: Mask = ~determined
+    unsure = dict[tuple[str, str], float]()
+    for track in tracks:
+        kept: Mask = determined & (track.bound <= UNSURE * track.scale)
+        if not np.any(kept):  # friction of a joint that never turns may be either way, say
+            unsure[track.quantity, track.body] = float(np.max(track.bound)) / track.scale
+            continue
+        left = left | ~kept
+        start = max(start, float(length(track.truth)[kept][0]) / track.scale)
+        if silent(run) and np.all(np.isnan(track.error)):
+            missing.append(f"{track.quantity} of {track.body_kind} {track.body}")
+            continue
+        judged = beside.judged(track, time_s)
+        sure = replace(judged, error=judged.error[kept], bound=judged.bound[kept])
+        rows += rate_rows(sure, at[kept], "reported")
+    borne = acting(run)
+    force, torque = largest_reaction(scene, reference), largest_torque(scene, reference)
+    return ForceErrors(
+        tuple(rows),
+        tuple(missing),
+        force_notes(run, reference.forces, int(np.sum(left)), int(np.sum(at[~left].passed))),
+        ForceFacts(
+            contradictions=() if borne is None else borne.contradictions,
+            unbalanced=unbalanced(run, force),
+            start_load=start if run.forces_of == "steps" else 0.0,
+            load_slopes=load_slopes(scene, reference, force, torque),
+            inertia_share=inertia_share(scene, force),
+        ),
+        off_stamps(run),
+        unsure,
+    )
+
+
+ROUNDING = 1e-9
+"""A share of a step that stamps may be off by."""
+
+
+@dataclass(frozen=True)
+class ForceErrors:
+    """What came of the forces of a run, in the words of `reports.compare.errors.Errors`."""
+
+    rows: tuple[Error, ...] = ()
+    not_reported: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    facts: ForceFacts = field(default_factory=ForceFacts)
+    incomplete: str = ""
+    unsure: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    """What the reference is wrong by, as a pure number, of forces that it knows at no sample."""
+
+
+def off_stamps(run: Run) -> str:
+    """Which forces are stamped farther than a step from the sample that they are logged with, ""
+    where none are: what acts at another time is no force of that sample."""
+    forces = acting(run)
+    if forces is None or run.motion is None:
+        return ""
+    samples = run.motion.time_s[-forces.time_s.size :]
+    bad = np.flatnonzero(~(np.abs(forces.time_s - samples) <= (1.0 + ROUNDING) * run.dt_s))
+    if not bad.size:
+        return ""
+    first = int(bad[0])
+    return (
+        f"forces of the sample at {samples[first]:.9g} s are stamped {forces.time_s[first]:.9g} s, "
+        f"over a step away ({count(bad.size, 'sample')} of {samples.size})"
+    )
+
+
+def unbalanced(run: Run, largest_n: float) -> Unbalanced | None:
+    """The pin whose forces add up to most, over the largest reaction; what is no number is told
+    elsewhere."""
+    forces = acting(run)
+    sums = dict[str, float]()
+    for point, bodies in (forces.pins if forces else {}).items():
+        off = np.hypot(*np.sum(list(bodies.values()), axis=0).T)
+        if np.any(np.isfinite(off)):
+            sums[point] = float(np.max(off, where=np.isfinite(off), initial=0.0)) / largest_n
+    point = max(sums, key=lambda name: sums[name], default="")
+    return Unbalanced(point, sums[point]) if point else None
+
+
+def force_notes(run: Run, reference: Forces, dead: int, passed: int) -> tuple[str, ...]:
+    """What of the forces is not compared, or not judged, of samples in dead points (``dead``) and
+    near change points (``passed``), and why."""
+    logged = acting(run)
+    notes = [reference.undetermined and f"no reactions: {reference.undetermined}"]
+    if dead:
+        notes.append(
+            f"forces: {count(dead, 'sample')} of {reference.time_s.size} in dead points left out, "
+            "or beside jumps of a load or of friction: there they are not determined"
+        )
+    if passed:
+        notes.append(
+            f"forces: {count(passed, 'sample')} of {reference.time_s.size} near change points "
+            "compared and not judged, as joints may push against each other there"
+        )
+    if logged is not None and logged.undetermined != reference.undetermined:
+        notes.append(logged.undetermined and f"forces: {logged.undetermined}")
+    return tuple(note for note in notes if note)
+
+
+NEAR = 3
+"""Samples to both sides of a jump: MuJoCo's friction, a soft constraint, holds a joint that would
+stand still within its time constant, which profile tuned has at three steps."""
+
+
+def near_jumps(scene: Scene, reference: Motion) -> Mask:
+    """The samples, (T,), beside those between which a force jumps, of a motion with its forces."""
+    jumps = np.zeros(max(reference.time_s.size - 1, 0), dtype=np.bool_)
+    friction = reference.forces.friction if reference.forces is not None else {}
+    for series in friction.values():
+        jumps |= _turns(series)
+    for load in scene.loads.values():
+        if load.stroke == "both" or load.slider is None:
+            continue
+        slid = reference.sliders[load.slider]
+        turns = _turns(slid.speed)
+        if load.over == "displacement":
+            acts = load.characteristic.at(slid.displacement) != 0.0
+            turns &= acts[1:] | acts[:-1]
+        jumps |= turns
+    near = np.zeros(reference.time_s.size, dtype=np.bool_)
+    for by in range(min(NEAR, jumps.size)):
+        near[: jumps.size - by] |= jumps[by:]  # so many samples before the jump
+        near[1 + by :] |= jumps[: jumps.size - by]
+    return near
+
+
+def _turns(series: Array) -> Mask:
+    """Whether a series changes its sign from a sample to the next, (T - 1,)."""
+    sign = np.sign(np.nan_to_num(series))
+    return np.asarray(sign[1:] != sign[:-1])
 
 
 @dataclass(frozen=True)

@@ -197,6 +197,8 @@ def centres(scene: Scene, state: State, duration_s: float, steps: int) -> Mappin
     Runge-Kutta method, without correction of what the joints drift: it is for short motions, and to
     a thousandth.
 
+    Raises CrankcheckError for a freedom without mass, or a start in a change point.
+
     Parameters
     ----------
     scene : Scene
@@ -207,11 +209,6 @@ def centres(scene: Scene, state: State, duration_s: float, steps: int) -> Mappin
         For how long it is free [s].
     steps : int
         Of the integration.
-
-    Raises
-    ------
-    CrankcheckError
-        A freedom without mass, or a start in a change point.
     """
     heavy = replace(scene, loads={}, springs={}, friction={})
     plain = Baumgarte(0.0, 0.0, step_s=duration_s / steps)

@@ -111,11 +111,8 @@ def put_to_all(
 def named(name: str, limits: Limits) -> tuple[str, str]:
     """What an engine calls itself, and its version, looked for in a process apart.
 
-    Raises
-    ------
-    CrankcheckError
-        An engine that is not there, or none; one that hangs, or ends its process, when it is
-        imported.
+    Raises CrankcheckError for an engine that is not there, or none; one that hangs, or ends its
+    process, when it is imported.
     """
     with closing(Isolated[tuple[str, str]](limits)) as child:
         answer = child.call(_name_and_version, name)

@@ -25,6 +25,8 @@ from reports.figures.figure_set import FigureSet, note
 from reports.figures.sheet import ONE, SIDES, Panels, sheet
 from reports.figures.style import COLUMN_IN, INK, PAGE_IN, QUIET, SMALL, Look, shorten
 from reports.output.numbers import readable
+from reports.way.clock import SECONDS, TURNS, clock_of
+from reports.way.way import way_of
 
 ELASTIC: Look = {"color": "#1f5f9e", "linewidth": 1.1}
 RIGID: Look = {"color": "#c04a1d", "linewidth": 0.9, "linestyle": (0, (4.0, 2.0))}
@@ -175,6 +177,13 @@ def _chosen(course: ElasticCourse) -> list[Apart]:
     return [one for one in every if float(np.max(np.abs(one.difference))) >= least][:MOST]
 
 
+BESIDE = {
+    TURNS: ("rigid links", "Displacements from rigid links", 1.0),
+    SECONDS: ("lines between pins", "Deflections", 0.0),
+}
+"""What is thin beside bent links, what is magnified, and turns from which on times are told."""
+
+
 def _positions(course: ElasticCourse) -> Figure | None:
     """The mechanism at six instants, evenly spread over the motion, from its start on, its
     deflection magnified, over the same with rigid links."""
@@ -192,9 +201,8 @@ def _positions(course: ElasticCourse) -> Figure | None:
         (Line2D([], [], color=colour, linewidth=2.0), f"{name}{' (elastic)' * (name in own.bent)}")
         for name, colour in colours.items()
     ]
-    ghost = "lines between pins" if scene.is_free else "rigid links"
+    ghost, what, turns = BESIDE[clock_of(way_of(scene).drive)]
     entries.append((Line2D([], [], **GHOST), ghost))
-    what = "Deflections" if scene.is_free else "Displacements from rigid links"
     title = f"{what}, magnified {factor:g} times: {scene.name}"
     figure, panes = sheet(PAGE_IN, replace(panels, height=height), title, entries, _notes(course))
     last = course.time_s.size - 1
@@ -205,7 +213,7 @@ def _positions(course: ElasticCourse) -> Figure | None:
         axes.set_aspect("equal", adjustable="box")
         degrees = math.degrees(base.links[scene.driver.link].theta[index]) % 360.0
         when = f"{scene.driver.link} {degrees:.0f} deg"
-        if scene.is_free or course.turns > 1.0:
+        if course.turns > turns:
             when += f", {course.time_s[index]:.3g} s"
         axes.set_title(when, fontsize=SMALL, loc="left")
     return figure

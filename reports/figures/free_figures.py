@@ -66,7 +66,7 @@ class FreeCourse:
     def notes_over_time(self) -> list[str]:
         """What stands under a figure over time."""
         dotted = "Dotted: limit positions, in which the driver turns back."
-        return [*self.notes, *([dotted] if self.free.passages else [])]
+        return [*self.notes, *([dotted] * bool(self.free.passages))]
 
 
 def free_course(free: FreeMotion) -> FreeCourse:

@@ -26,11 +26,20 @@ from reports.drawing.shape import PATH_SAMPLES, box_of, clearest, turn_of
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, width_in
 from reports.results.overview import Report, facts_of
+from reports.way.clock import SECONDS, TURNS, Clock, clock_of
+from reports.way.way import way_of
 
 FREE_SAMPLES = 2401
 """Of the paths of what was let go, which are gone along many times."""
 NUMBER_IN = 0.38
 """Room for a number of the horizontal axis [inch]."""
+
+OF_CLOCK = {TURNS: ("closed form", PATH_SAMPLES), SECONDS: ("integrated", FREE_SAMPLES)}
+"""Where a motion comes from, and samples of its paths."""
+
+
+def _clock(scene: Scene) -> Clock:
+    return clock_of(way_of(scene).drive)
 
 
 def draw(report: Report, name: str) -> Figure | None:
@@ -38,7 +47,7 @@ def draw(report: Report, name: str) -> Figure | None:
     scene = report.scenes[name]
     if scene is None:
         return None
-    path = turn_of(scene, FREE_SAMPLES if scene.is_free else PATH_SAMPLES)
+    path = turn_of(scene, OF_CLOCK[_clock(scene)][1])
     at = clearest(path)
     title = f"{name}, {driver_stands(scene, path, at)}"
     under = [f"{scene.source}. {scene.note}", _origin(report, scene)]
@@ -101,5 +110,5 @@ def _origin(report: Report, scene: Scene) -> str:
     """Where the drawing comes from: it is the closed form's, and no engine's."""
     own = facts_of(report).get("crankcheck", "")
     longest = f"longest link L = {scene.longest_m:g} m"
-    truth = "integrated" if scene.is_free else "closed form"
+    truth, _ = OF_CLOCK[_clock(scene)]
     return f"crankcheck {own}, {truth}; driver {describe_law(scene)}; {longest}."

@@ -74,8 +74,13 @@ class Cell:
     @property
     def truth(self) -> Truth:
         """What it is held to. Raises CrankcheckError for a scene that can not be let go."""
+        return self.way.truth(self.planned)
+
+    @property
+    def planned(self) -> Planned:
+        """The run, without its engine."""
         run = self.dt_s, self.steps, self.given_as, self.with_forces, self.tolerance
-        return self.way.truth(Planned(self.scene, *run))
+        return Planned(self.scene, *run)
 
     @property
     def shown_truth(self) -> Truth:

@@ -11,7 +11,7 @@ from models.scene import Scene
 from reports.compare.beside import Truth, incomplete
 from reports.compare.compare import places
 from reports.compare.errors import Error, Errors, largest
-from reports.compare.force_rows import force_rows
+from reports.compare.whole_errors import force_rows
 from reports.judge.rules.reference import too_good
 from reports.judge.three_steps import AT_ROUNDING, Convergence, convergence
 from reports.judge.tolerance import beyond_engine, limits
@@ -82,10 +82,13 @@ def followed(
         )
         return [text for text in texts if text]
 
+    limit = limits(truth.scene, errors, tolerance).get(worst.tolerance)
+    unit = "rad" if worst.unit == "rad" else "of the longest link"
+    unit = "of the largest deflection" if worst.quantity in ELASTIC else unit
     of_places = convergence(
         steps_s,
         pure(worst),
-        _unit_words(worst),
+        unit,
         rounding,
         faults=faults,
         over=over(motion.closing, rounding),
@@ -94,7 +97,7 @@ def followed(
         else (),
         cancels=motion.cancels,
         known=beyond_engine(worst.quantity, errors),
-        solved=motion.solved * _limit(truth.scene, errors, tolerance, worst),
+        solved=motion.solved * (limit.number if limit else 0.0),
     )
     if force is None:
         return Followed(of_places)
@@ -104,19 +107,6 @@ def followed(
         steps_s, pure(force), f"of the largest {share}", exact, over=over(FORCES, exact)
     )
     return Followed(of_places, of_forces)
-
-
-def _limit(scene: Scene, errors: Errors, tolerance: Mapping[str, float], worst: Error) -> float:
-    """That of an error, 0 where it has none."""
-    limit = limits(scene, errors, tolerance).get(worst.tolerance)
-    return limit.number if limit else 0.0
-
-
-def _unit_words(worst: Error) -> str:
-    """What an error of place is in."""
-    if worst.quantity in ELASTIC:
-        return "of the largest deflection"
-    return "rad" if worst.unit == "rad" else "of the longest link"
 
 
 def _finer(

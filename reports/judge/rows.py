@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 
 from reports.compare.errors import Error, ErrorKind, largest
 from reports.judge.cell import Checked
-from reports.judge.tolerance import FORCES, Limit
+from reports.judge.tolerance import Limit
 from reports.quantities import QUANTITIES, named
 from reports.quantities.quantity import BodyKind, Source
 
@@ -81,8 +81,8 @@ def cell_row(checked: Checked) -> dict[str, object]:
         if QUANTITIES[str(key[0])].role in roles:
             worst = largest(e for e in errors if [e.quantity, e.body_kind, e.source, e.kind] == key)
             row[name] = worst.maximum if worst else None
-    wanted = [name for name in cell.way.limits if cell.with_forces or name not in FORCES]
-    for name in wanted:
+    every = ((name, QUANTITIES[name.removesuffix("-differenced")]) for name in cell.way.limits)
+    for name in (name for name, entry in every if entry.role in roles):
         worst = largest(e for e in errors if e.kind == "total" and e.tolerance == name)
         column = name.replace("-", "_")
         row[f"{column}_pure"] = worst.pure if worst else None

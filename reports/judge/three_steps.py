@@ -83,10 +83,7 @@ def convergence(
     engine's: the truth itself, or what it is compared with. One up to ``solved`` that does not
     shrink is as near as the engine solves its joints.
 
-    Raises
-    ------
-    ValueError
-        Not exactly three steps.
+    Raises ValueError for not exactly three steps.
     """
     if len(dt_s) != 3 or len(error) != 3:
         raise ValueError(f"{len(error)} steps: a floor needs three")

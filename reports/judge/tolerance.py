@@ -178,10 +178,8 @@ def parse(texts: Iterable[str], option: str = "--tol", every: str = "") -> dict[
 
     ``every`` is the name that a number by itself is kept under, where it may stand so.
 
-    Raises
-    ------
-    CrankcheckError
-        A text that is not NAME=NUMBER, a name that is no quantity, a number that is not positive.
+    Raises CrankcheckError for a text that is not NAME=NUMBER, a name that is no quantity, a number
+    that is not positive.
     """
     numbers: dict[str, float] = {}
     for text in (part.strip() for whole in texts for part in whole.split(",")):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.logs.force_columns import LogForces
 from reports.logs.kinds import Kind
+
+Moved = TypeVar("Moved", LinkMotion, PointMotion, SliderMotion, ElasticMotion)
 
 
 @dataclass(frozen=True)
@@ -189,26 +192,17 @@ def _as_motion(time_s: Array, bodies: Mapping[str, Mapping[str, Mapping[str, Arr
     """What is known of bodies, as a motion; the rest is NaN."""
     nothing = np.full(time_s.shape, np.nan)
     nowhere = np.full((time_s.size, 2), np.nan)
+
+    def made(kind: str, moved: type[Moved], fields: str, lacking: Array) -> dict[str, Moved]:
+        return {
+            name: moved(*(each.get(field, lacking) for field in fields.split()))
+            for name, each in bodies[kind].items()
+        }
+
     return Motion(
         time_s,
-        {
-            name: LinkMotion(*(each.get(key, nothing) for key in ("theta", "omega", "alpha")))
-            for name, each in bodies["links"].items()
-        },
-        {
-            name: PointMotion(
-                *(each.get(key, nowhere) for key in ("position", "velocity", "acceleration"))
-            )
-            for name, each in bodies["points"].items()
-        },
-        {
-            name: SliderMotion(
-                *(each.get(key, nothing) for key in ("displacement", "speed", "acceleration"))
-            )
-            for name, each in bodies["sliders"].items()
-        },
-        elastic={
-            name: ElasticMotion(*(each.get(key, nothing) for key in ("middle", "extension")))
-            for name, each in bodies["elastic"].items()
-        },
+        made("links", LinkMotion, "theta omega alpha", nothing),
+        made("points", PointMotion, "position velocity acceleration", nowhere),
+        made("sliders", SliderMotion, "displacement speed acceleration", nothing),
+        elastic=made("elastic", ElasticMotion, "middle extension", nothing),
     )

@@ -43,11 +43,8 @@ class Columns:
     def numbers(self, name: str) -> Array:
         """A column as numbers, all of them finite.
 
-        Raises
-        ------
-        CrankcheckError
-            A cell that is empty, NaN, infinite or no number; the message has its row. Durations and
-            dates.
+        Raises CrankcheckError for a cell that is empty, NaN, infinite or no number; the message has
+        its row. Durations and dates.
         """
         values = np.asarray(self.raw[name])
         if values.dtype.kind in "mM":  # which numpy would count in nanoseconds
@@ -113,6 +110,9 @@ def read_columns(
 ) -> Columns:
     """Read the columns of a log.
 
+    Raises CrankcheckError for no plain file, one of another kind or larger than is read, one that
+    is damaged or empty, two columns of one name.
+
     Parameters
     ----------
     path : Path
@@ -121,12 +121,6 @@ def read_columns(
         What the user's map says of the file.
     wanted : Callable
         Which columns of a text are read, by name; of the others there are the names alone.
-
-    Raises
-    ------
-    CrankcheckError
-        No plain file, one of another kind or larger than is read, one that is damaged or empty, two
-        columns of one name.
     """
     layout = layout or Layout()
     ending = path.suffix.lower()

@@ -52,6 +52,8 @@ def log_forces(
 ) -> LogForces:
     """The forces that stand in the columns of a log.
 
+    Raises CrankcheckError for no column of forces, two of one, or cells that are no numbers.
+
     Parameters
     ----------
     time_s : Array
@@ -60,11 +62,6 @@ def log_forces(
         Those that the forces act at, where they are others.
     ignored : set of str
         Columns that the user's map leaves out.
-
-    Raises
-    ------
-    CrankcheckError
-        No column of forces, two of one, or cells that are no numbers.
     """
     found = _found(columns, scene, ignored)
     if not found:
@@ -154,16 +151,11 @@ POUND, INCH = 4.4482216152605, 0.0254
 UNITS: Mapping[str, Mapping[str, float]] = {
     "force": {"n": 1.0, "kn": 1e3, "mN": 1e-3, "MN": 1e6, "lbf": POUND},
     "moment": {
-        "n_m": 1.0,
-        "nm": 1.0,
-        "n_mm": 1e-3,
-        "nmm": 1e-3,
-        "kn_m": 1e3,
-        "knm": 1e3,
-        "mN_m": 1e-3,
-        "mNm": 1e-3,
-        "MN_m": 1e6,
-        "MNm": 1e6,
+        **dict.fromkeys(("n_m", "nm"), 1.0),
+        **dict.fromkeys(("n_mm", "nmm"), 1e-3),
+        **dict.fromkeys(("kn_m", "knm"), 1e3),
+        **dict.fromkeys(("mN_m", "mNm"), 1e-3),
+        **dict.fromkeys(("MN_m", "MNm"), 1e6),
         "lbf_in": POUND * INCH,
         "lbf_ft": POUND * 12 * INCH,
     },

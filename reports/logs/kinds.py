@@ -4,23 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 from models.array import Array
-from models.motion import (
-    Bound,
-    ElasticMotion,
-    LinkMotion,
-    Motion,
-    Order,
-    PointMotion,
-    SliderMotion,
-)
+from models.motion import Bound, Motion, Order
 from reports.logs.units import Dimension, si
-from reports.quantities.quantity import MovingKind
+from reports.quantities.quantity import FIELDS, MovingKind
 
 LoggedKind = MovingKind | Literal["elastic"]
 """What may be logged of: an elastic link is a link, and bends and stretches besides."""
+
+
+_JUDGED: Mapping[str, MovingKind] = {
+    **{kind: kind for kind in get_args(MovingKind)},
+    "elastic": "link",
+}
+"""The kind of body that quantities of one are of."""
+
+
+def plural(body_kind: str) -> str:
+    """What a motion calls the bodies of a kind."""
+    return {"elastic": "elastic"}.get(body_kind, f"{body_kind}s")
 
 
 @dataclass(frozen=True)
@@ -48,18 +52,16 @@ class Kind:
     @property
     def judged_of(self) -> MovingKind:
         """The kind of body that its quantity is of."""
-        return "link" if self.body_kind == "elastic" else self.body_kind
+        return _JUDGED[self.body_kind]
 
     @property
     def bodies(self) -> str:
         """What a motion calls the bodies of its kind."""
-        return "elastic" if self.body_kind == "elastic" else f"{self.body_kind}s"
+        return plural(self.body_kind)
 
     def of(self, motion: Motion, name: str) -> Array:
         """The series (T,) of a body in a motion."""
-        body: LinkMotion | PointMotion | SliderMotion | ElasticMotion
-        body = getattr(motion, self.bodies)[name]
-        series: Array = getattr(body, self.field)
+        series: Array = getattr(getattr(motion, self.bodies)[name], self.field)
         return series if self.axis is None else series[:, self.axis]
 
     def bound(self, bound: Bound, name: str) -> Array:
@@ -75,14 +77,14 @@ def _kinds() -> Iterator[Kind]:
     axes: Sequence[tuple[Literal[0, 1], str]] = ((0, "x"), (1, "y"))
     rates = ("velocity", "acceleration")
     for order in orders:
-        name, field = turning[order], ("theta", "omega", "alpha")[order]
+        name, field = turning[order], FIELDS["link"][order]
         yield Kind(name, "link", name, ("angle", *rates)[order], field, order)
     for order in orders:
-        prefix, field = ("", "v", "a")[order], ("position", *rates)[order]
+        prefix, field = ("", "v", "a")[order], FIELDS["point"][order]
         for axis, letter in axes:
             yield Kind(prefix + letter, "point", moving[order], field, field, order, axis)
     for order in orders:
-        field = ("displacement", "speed", "acceleration")[order]
+        field = FIELDS["slider"][order]
         yield Kind(field, "slider", moving[order], ("displacement", *rates)[order], field, order)
     yield Kind("deflection", "elastic", "length", "deflection", "middle", 0)
     yield Kind("extension", "elastic", "length", "extension", "extension", 0)

@@ -194,8 +194,9 @@ def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
     hold, quantity by quantity."""
     held, there = list[tuple[str, str]](), list[tuple[str, str]]()
     way = way_of(log.scene)
+    roles = way.roles_of(with_forces=beside.run.with_forces)
     for name, entry in QUANTITIES.items():
-        if entry.role not in way.roles_of(with_forces=beside.run.with_forces):
+        if entry.role not in roles:
             continue
         if name == "segments":  # which the same column says as the deflection
             continue

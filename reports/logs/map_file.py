@@ -174,10 +174,14 @@ def map_text(log: OwnLog, file: FileTable) -> str:
         if reason == LEFT_OUT:
             lines += ["", "[[channel]]", f"column = {toml_text(column)}", "ignore = true"]
             continue
-        lines += ["", f"# {' '.join(reason.split())}", "# [[channel]]",
-                  f"# column = {toml_text(column)}"]  # fmt: skip
-        lines += ['# of = ""', '# kind = ""', '# unit = ""']
+        lines += ["", *form_lines(column, reason)]
     return "\n".join(lines) + "\n"
+
+
+def form_lines(column: str, reason: str) -> Sequence[str]:
+    """A form for a column that nothing is made of, for that reason, as remarks."""
+    head = [f"# {' '.join(reason.split())}", "# [[channel]]", f"# column = {toml_text(column)}"]
+    return [*head, '# of = ""', '# kind = ""', '# unit = ""']
 
 
 def file_lines(file: FileTable) -> Sequence[str]:
@@ -230,11 +234,8 @@ def _fault(loc: tuple[int | str, ...], kind: str, message: str, found: object) -
     if kind == "missing":
         return f"{key}: missing; add it"
     if kind == "extra_forbidden":
-        models: dict[str, type[MapTable]] = {
-            "file": FileTable,
-            "time": TimeTable,
-            "channel": ChannelTable,
-        }
+        models: dict[str, type[MapTable]]
+        models = {"file": FileTable, "time": TimeTable, "channel": ChannelTable}
         owner = models.get(str(loc[0]), Map) if len(loc) > 1 else Map
         return f"{key}: unknown key; {suggestion(str(loc[-1]), owner.model_fields, 'known:')}"
     return f"{key}: found {shown(found)}; {message[0].lower()}{message[1:]}"

@@ -18,6 +18,7 @@ from reports.logs.map_file import (
     ChannelTable,
     Map,
     file_lines,
+    form_lines,
     told_lines,
     toml_text,
 )
@@ -39,19 +40,16 @@ def understood(
 ) -> OwnLog:
     """The log of a scene, its ``forces`` as well where that is asked.
 
+    Raises CrankcheckError for no column of times, or one that goes back; nothing that is of the
+    scene; two columns for one quantity; units that contradict their kind; cells that are no
+    numbers; a map that names what is not there.
+
     Parameters
     ----------
     columns : Columns
         What stands in the file.
     map_ : Map or None
         What the user says of columns, in place of their names.
-
-    Raises
-    ------
-    CrankcheckError
-        No column of times, or one that goes back; nothing that is of the scene; two columns for one
-        quantity; units that contradict their kind; cells that are no numbers; a map that names what
-        is not there.
     """
     map_ = map_ or Map()
     times = time_columns(columns, map_)
@@ -221,10 +219,12 @@ def blank_map(columns: Columns, scene: Scene, map_: Map) -> tuple[str, str] | No
         *([] if bodies else ["of at least one column what it is of, in a [[channel]]"]),
     ]
     named = SceneNames(scene)
+    points = (name for name in scene.pins if name not in scene.ground)
+    every = (*scene.links, *points, *scene.sliders)
     lines = [
         *HEAD,
         f"# Still to be filled in: {'; '.join(lacks)}.",
-        f"# The scene has {', '.join(map(toml_text, _bodies(scene)))}.",
+        f"# The scene has {', '.join(map(toml_text, dict.fromkeys(every)))}.",
         "",
         *(file_lines(map_.file) or ["# [file]", '# decimal = ","', ""]),
         *_time_lines(map_, times, columns.raw),
@@ -236,12 +236,7 @@ def blank_map(columns: Columns, scene: Scene, map_: Map) -> tuple[str, str] | No
         elif name in bodies:
             lines.append(f"# {toml_text(name)} is taken as its name says")
         else:
-            lines += [
-                f"# {_why_not(name, named)}",
-                "# [[channel]]",
-                f"# column = {toml_text(name)}",
-            ]
-            lines += ['# of = ""', '# kind = ""', '# unit = ""']
+            lines += form_lines(name, _why_not(name, named))
     return "\n".join(lines) + "\n", "; ".join(lacks)
 
 
@@ -267,17 +262,10 @@ def _time_lines(map_: Map, times: set[str], names: Iterable[str]) -> Sequence[st
     return lines
 
 
-def _bodies(scene: Scene) -> Sequence[str]:
-    """All that a column can be of."""
-    points = (name for name in scene.pins if name not in scene.ground)
-    return list(dict.fromkeys([*scene.links, *points, *scene.sliders]))
-
-
 def _why_not(name: str, named: SceneNames) -> str:
-    """Why nothing is made of a column, in a line."""
+    """Why nothing is made of a column."""
     try:
         found = meaning(name, named)
     except CrankcheckError as error:
-        return " ".join(str(error).split())
-    text = found if isinstance(found, str) else "it is of a point of the ground"
-    return " ".join(text.split())
+        return str(error)
+    return found if isinstance(found, str) else "it is of a point of the ground"

@@ -12,7 +12,7 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.logs.channel import OwnLog
 from reports.logs.columns import Columns
-from reports.logs.kinds import KINDS, OWN, Kind
+from reports.logs.kinds import KINDS, OWN, Kind, plural
 from reports.logs.map_file import ChannelTable, Map, TimeTable
 from reports.logs.meanings import understood
 from reports.logs.units import si
@@ -24,11 +24,8 @@ def log_of_motion(scene: Scene, motion: Motion, source: str = "the motion") -> O
     """The log of a motion; a series that is NaN throughout, as of an engine that does not report
     it, is none.
 
-    Raises
-    ------
-    CrankcheckError
-        Times that do not go on; bodies that the scene has not; series of another shape than the
-        times, or with samples that are not finite; nothing that moves.
+    Raises CrankcheckError for times that do not go on; bodies that the scene has not; series of
+    another shape than the times, or with samples that are not finite; nothing that moves.
     """
     raw = {TIME: samples(motion.time_s, f"{source}: time_s")}
     channels = []
@@ -53,7 +50,7 @@ def _series(scene: Scene, motion: Motion, source: str) -> Iterator[tuple[Kind, s
     there = {"link": [*scene.links], "point": points, "slider": [*scene.sliders]}
     there |= {"elastic": [*scene.elastic]} if scene.elastic else {}
     for body_kind, names in there.items():
-        own = motion.elastic if body_kind == "elastic" else getattr(motion, f"{body_kind}s")
+        own = getattr(motion, plural(body_kind))
         for body, moved in own.items():
             if body not in names:
                 hint = suggestion(str(body), names, "it has") if names else "it has none"

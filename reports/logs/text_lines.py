@@ -35,10 +35,6 @@ class Body:
     text: memoryview
     passed: Array
 
-    def line(self, row: int) -> int:
-        """The number of the line that a row stands in, both from the first row on."""
-        return row_line(self.passed, row)
-
 
 def row_line(passed: Array, row: int) -> int:
     """The line of a row, both counted from the first row on, where some lines are ``passed``."""

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-import pyarrow as pa  # type: ignore[import-untyped]  # ships no types  # type: ignore[import-untyped]  # ships no types
+import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
 import pyarrow.csv as pc  # type: ignore[import-untyped]  # ships no types
 
 from models.array import Array
@@ -22,6 +22,7 @@ from reports.logs.text_lines import (
     fields_of,
     is_number,
     refuse_rows,
+    row_line,
 )
 
 DIGITS = re.compile(r"[-+]?\d+(e[-+]?\d+)?", re.IGNORECASE)
@@ -136,7 +137,7 @@ class RowReader:
 
     def _line(self, row: int) -> int:
         """What a reader would call a row: its line in the file."""
-        return self.header.first + 1 + self.below.line(row)
+        return self.header.first + 1 + row_line(self.below.passed, row)
 
 
 def _refuse_first(found: int, names: int, at: int, separator: str, *, ends: bool) -> None:

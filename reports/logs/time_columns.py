@@ -91,15 +91,13 @@ HOLE = 1.9
 def instants(columns: Columns, column: str, unit: str, *, holes: bool = False) -> Array:
     """The times of all rows [s], (T,).
 
+    Raises CrankcheckError for fewer than 2 rows; times that go back or stand still; a hole in a log
+    that is even else.
+
     Parameters
     ----------
     holes : bool
         A log that is even but for some left-out samples is meant so.
-
-    Raises
-    ------
-    CrankcheckError
-        Fewer than 2 rows; times that go back or stand still; a hole in a log that is even else.
     """
     time_s = columns.numbers(column) * UNITS["time"][unit]
     if time_s.size < 2:

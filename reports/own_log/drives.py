@@ -71,10 +71,8 @@ def chosen_drive(text: str) -> LogDrive:
 def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     """The truth, and the fit that moves it.
 
-    Raises
-    ------
-    CrankcheckError
-        A drive that the log, or the scene's law, does not allow; a crank that leaves its range.
+    Raises CrankcheckError for a drive that the log, or the scene's law, does not allow; a crank
+    that leaves its range.
     """
     links, points = _compared(log)
     if drive == "scene":

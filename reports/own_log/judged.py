@@ -76,12 +76,9 @@ class JudgedLog(Evidence):
 def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     """Compare a log with the closed form, and judge it.
 
-    Raises
-    ------
-    CrankcheckError
-        Neither target nor step for what the log holds; a target of forces that are not judged; a
-        step that is none; a name in ``require`` that the scene has not; a drive that the log does
-        not allow; a range that the mechanism can not be moved in.
+    Raises CrankcheckError for neither target nor step for what the log holds; a target of forces
+    that are not judged; a step that is none; a name in ``require`` that the scene has not; a drive
+    that the log does not allow; a range that the mechanism can not be moved in.
     """
     _check_step(log, request.step_s)
     required = [required_name(log.scene, name) for name in request.require]

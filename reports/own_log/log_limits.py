@@ -68,11 +68,8 @@ def limits_by_column(log: OwnLog, evidence: Evidence, errors: Errors) -> dict[st
             if reading.channel.kind.judged_of == row.body_kind or row.body_kind == "driver":
                 side = under if row.pure <= limit else over
                 # Two coordinates may be off by too much together, though neither is alone.
-                both = (
-                    math.sqrt(2.0)
-                    if side is over and reading.channel.kind.axis is not None
-                    else 1.0
-                )
+                axis = reading.channel.kind.axis
+                both = math.sqrt(2.0) if side is over and axis is not None else 1.0
                 side.setdefault(reading.channel.column, []).append(limit * row.scale / both)
     return {column: max(each) for column, each in under.items()} | {
         column: min(each) for column, each in over.items()

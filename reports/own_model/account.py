@@ -13,7 +13,6 @@ import numpy as np
 from analytic.kinematics import repeats_after, solve
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
-from models.motion import Motion
 from models.scene import Same, Scene
 from reports.compare.beside import Beside, truth_of
 from reports.compare.last_turn import Trace, trace
@@ -142,13 +141,15 @@ def read_here(request: ModelRequest) -> Account:
         for (first, second), share in seen.touching.items()
     ]
     met += [Disturbance("limits", text) for text in seen.passed]
+    note = continued_note(scene, motion)
+    passed = [f"joint {request.joint}: {note}"] if note else []
     return Account(
         request=request,
         scene=scene,
         dt_s=dt_s,
         steps=steps,
         open_m=own.open_m(),
-        notes=[*found.notes, *_passed(scene, motion, request)],
+        notes=[*found.notes, *passed],
         disturbances=[*met, *own.disturbances],
         profiles=list(own.engine(proposals[0].advised).profiles),
         proposals=proposals,
@@ -177,12 +178,6 @@ def _counted(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float,
             )
         given_s = own.dt_s
     return counted(scene, given_s, request.steps_per_turn, request.turns)
-
-
-def _passed(scene: Scene, motion: Motion, request: ModelRequest) -> list[str]:
-    """The change points that a run goes through."""
-    note = continued_note(scene, motion)
-    return [f"joint {request.joint}: {note}"] if note else []
 
 
 def checked_line(line: Line) -> CheckedLine:
@@ -219,15 +214,10 @@ def checked(cell: Cell, adapter: Engine) -> CheckedLine:
     """Run and judge a line in an engine that holds the model."""
     found, run = examined(cell, adapter=adapter)
     if run is None or found.errors is None:
-        return without_run(found)
+        return CheckedLine(**vars(found))
     return CheckedLine(
         **vars(found), last_turn=trace(cell.shown_truth, run), course=course_of(cell, run)
     )
-
-
-def without_run(found: Checked) -> CheckedLine:
-    """A line that has nothing to be drawn."""
-    return CheckedLine(**vars(found))
 
 
 def course_of(cell: Cell, run: Run) -> ErrorCourse | None:

@@ -42,12 +42,9 @@ class Assembled:
 def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
     """The scene of a model, in the assembly that it is drawn in.
 
-    Raises
-    ------
-    CrankcheckError
-        A start many turns away; no closed form; a pose that two assemblies fit as well, or a driver
-        angle that none reaches, with the range in the coordinate of the joint; more choices than
-        are tried; a branch that chooses nothing.
+    Raises CrankcheckError for a start many turns away; no closed form; a pose that two assemblies
+    fit as well, or a driver angle that none reaches, with the range in the coordinate of the joint;
+    more choices than are tried; a branch that chooses nothing.
     """
     if request.start_deg is not None and abs(request.start_deg) > 360.0 * MOST_TURNS:
         raise CrankcheckError(

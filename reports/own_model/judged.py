@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from models.errors import CrankcheckError
@@ -20,7 +20,6 @@ from reports.own_model.account import (
     Proposal,
     checked_line,
     told,
-    without_run,
 )
 from reports.verify.advised import HELPS
 from reports.workers.isolated import Isolated, Limits, Lost
@@ -122,7 +121,14 @@ class JudgedModel:
         """Every joint and loop, the widest as written first."""
         limit = self.own.limits.get("gap")
         most = limit.number * (self.scene.longest_m or 1.0) if limit else math.nan
-        by_line = {one.cell.profile: dict(_gaps(one)) for one in self.three}
+        by_line = {
+            one.cell.profile: {
+                row.body: row.maximum
+                for row in (one.errors.rows if one.errors else ())
+                if (row.quantity, row.source, row.kind) == ("gap", "reported", "total")
+            }
+            for one in self.three
+        }
         own = by_line[self.own.cell.profile]
         found = [
             JointGap(
@@ -134,13 +140,6 @@ class JudgedModel:
             for name, open_m in self.account.open_m.items()
         ]
         return sorted(found, key=lambda joint: -own.get(joint.name, 0.0))
-
-
-def _gaps(one: Checked) -> Iterator[tuple[str, float]]:
-    """The widest gap of each joint of a line [m]."""
-    for row in one.errors.rows if one.errors else ():
-        if (row.quantity, row.source, row.kind) == ("gap", "reported", "total"):
-            yield row.body, row.maximum
 
 
 def errors_of(one: Checked) -> tuple[float, float, float]:
@@ -206,7 +205,7 @@ def run_lines(
             return result
         if isinstance(result.error, CrankcheckError):
             raise result.error
-        return without_run(unfinished(line.cell, result.status, result.reason))
+        return CheckedLine(**vars(unfinished(line.cell, result.status, result.reason)))
 
     try:
         return judged_lines(account, run, done)

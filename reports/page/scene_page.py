@@ -271,8 +271,9 @@ def _moved(course: ElasticCourse) -> Array:
 
 def _bent(course: ElasticCourse) -> dict[str, object]:
     """Links that bend by name: their pins, and deflections at equal parts between them."""
+    bending = [name for name, link in course.scene.elastic.items() if link.bends]
     return {
         name: {"pins": list(line_of(course.scene, name).pins), "rows": packed(each[:, ::EVERY].T)}
         for name, each in course.bent.items()
-        if course.scene.elastic[name].bends
+        if name in bending
     }

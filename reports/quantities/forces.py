@@ -151,21 +151,6 @@ def _torque(scene: Scene, forces: Forces | ForceBound) -> Series:
     return {scene.driver.name: forces.torque}
 
 
-def _bound(scene: Scene, reference: Motion, read: Read) -> Series:
-    forces = reference.forces
-    return read(scene, forces.bound) if forces is not None and forces.bound is not None else {}
-
-
-def _logged(scene: Scene, run: Run, read: Read) -> Series:
-    forces = acting(run)
-    return read(scene, forces) if forces is not None else {}
-
-
-def _truth(scene: Scene, reference: Motion, read: Read) -> Series:
-    """The reference's, of a motion that has forces."""
-    return read(scene, reference.forces) if reference.forces is not None else {}
-
-
 def _force(
     name: str,
     kind: BodyKind,
@@ -176,18 +161,24 @@ def _force(
     criterion: Criterion,
 ) -> Quantity:
     """A quantity of forces, which one kind of bodies has."""
+
+    def seen(scene: Scene, forces: Forces | ForceBound | None) -> Series:
+        return {} if forces is None else read(scene, forces)
+
     measure = Measure(
         body_kind=kind,
         column=f"{name}_error_{unit.lower().replace(' ', '_')}",
         unit=unit,
         share=share,
         scale=scale,
-        truth=lambda scene, reference: _truth(scene, reference, read),
-        logged=lambda scene, run: _logged(scene, run, read),
-        bound=lambda scene, reference: _bound(scene, reference, read),
+        truth=lambda scene, reference: seen(scene, reference.forces),
+        logged=lambda scene, run: seen(scene, acting(run)),
+        bound=lambda scene, reference: seen(
+            scene, own.bound if (own := reference.forces) else None
+        ),
     )
-    head = f"{criterion.short}\n/ {share}"
-    return Quantity(name, "force", (measure,), (criterion,), head, acting_at, silent)
+    head, held = f"{criterion.short}\n/ {share}", replace(criterion, free_motion=FREE_FORCE)
+    return Quantity(name, "force", (measure,), (held,), head, acting_at, silent)
 
 
 CURE = (
@@ -210,7 +201,6 @@ REACTION = _force(
         "react.",
         TAKEN_UP,
         diagram="reactions in pins",
-        free_motion=FREE_FORCE,
     ),
 )
 NORMAL = _force(
@@ -228,7 +218,6 @@ NORMAL = _force(
         "normal",
         TAKEN_UP,
         diagram="normal forces of sliders",
-        free_motion=FREE_FORCE,
     ),
 )
 MOMENT = _force(
@@ -246,7 +235,6 @@ MOMENT = _force(
         "moment",
         TAKEN_UP,
         diagram="moments of sliders",
-        free_motion=FREE_FORCE,
     ),
 )
 TORQUE = _force(
@@ -268,6 +256,5 @@ TORQUE = _force(
             slope="torque",
         ),
         diagram="driving torque",
-        free_motion=FREE_FORCE,
     ),
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from reports.quantities import QUANTITIES
+from reports.quantities import MOVES, QUANTITIES
 from reports.quantities.quantity import Tolerance, tolerance_name
 
 _OWN = {
@@ -12,8 +12,9 @@ _OWN = {
     for name, entry in QUANTITIES.items()
     for each in entry.criteria
 }
+DRIVEN = (*MOVES, "force")
 DEFAULTS: Mapping[str, Tolerance] = {
-    name: each.tolerance for name, (role, each) in _OWN.items() if role not in ("free", "elastic")
+    name: each.tolerance for name, (role, each) in _OWN.items() if role in DRIVEN
 }
 """Of a mechanism that is driven."""
 BENDING: Mapping[str, Tolerance] = {

@@ -53,10 +53,6 @@ def _commanded(scene: Scene, reference: Motion) -> Series:
     return {scene.driver.name: commanded / scene.driver_arm_m}
 
 
-def _rounded(scene: Scene, reference: Motion) -> Series:
-    return {n: 2 * EPSILON * np.abs(each) for n, each in _commanded(scene, reference).items()}
-
-
 def _crank(scene: Scene, run: Run) -> Series:
     course = driver_place(scene, run.motion) if run.motion else None
     return {} if course is None else {scene.driver.name: course / scene.driver_arm_m}
@@ -74,7 +70,9 @@ DRIVE = Quantity(
             scale=lambda scene, reference: 1.0,
             truth=_commanded,
             logged=_crank,
-            bound=_rounded,
+            bound=lambda scene, reference: {
+                n: 2 * EPSILON * np.abs(each) for n, each in _commanded(scene, reference).items()
+            },
         ),
     ),
     criteria=(

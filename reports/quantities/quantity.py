@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -177,14 +177,15 @@ def every_place(kind: MovingKind, column: str) -> Measure:
     return replace(moving(kind, 0, column), truth=truth)
 
 
+FIELDS: Mapping[MovingKind, Sequence[str]] = {
+    "link": ("theta", "omega", "alpha"),
+    "slider": ("displacement", "speed", "acceleration"),
+    "point": ("position", "velocity", "acceleration"),
+}
+"""What a motion calls a place, and its rates."""
+
+
 def _read(motion: Motion | Bound | None, kind: MovingKind, order: Order) -> Series:
     """The series of a motion, or of a bound, if it is there."""
-    if motion is None:
-        return {}
-    if kind == "link":
-        return {n: (m.theta, m.omega, m.alpha)[order] for n, m in motion.links.items()}
-    if kind == "slider":
-        sliders = motion.sliders.items()
-        return {n: (m.displacement, m.speed, m.acceleration)[order] for n, m in sliders}
-    points = motion.points.items()
-    return {n: (m.position, m.velocity, m.acceleration)[order] for n, m in points}
+    bodies = () if motion is None else getattr(motion, f"{kind}s").items()
+    return {name: getattr(body, FIELDS[kind][order]) for name, body in bodies}

@@ -24,6 +24,7 @@ from reports.plan.chosen import left_out_note
 from reports.requests.options import Duration, Jobs, StepS, StepsPerTurn, argument, option
 from reports.requests.verify import IN_FOLDER, VerifyRequest, plan
 from reports.results.changes.reading import scene_digests
+from reports.way.clock import clock_of
 from reports.workers.signals import run_child
 from sim.registry import ENGINES, engine
 
@@ -188,9 +189,7 @@ def _footer(
 ) -> str:
     """Units, settings and versions; the result's place where no -o was given."""
     first = cells[0]
-    step, long = f"{first.steps_per_turn:.4g} steps a turn", f"{first.turns:.4g} turns"
-    if first.drive == "free":
-        step, long = f"dt {first.dt_s:.4g} s", f"let go for {first.turns:.4g} s"
+    step, long = clock_of(first.drive).words(first.dt_s, first.steps_per_turn, first.turns)
     if len({round(cell.steps_per_turn, 3) for cell in cells}) > 1:
         step = f"dt {first.dt_s:.4g} s"
     measured = [result for result in results if result.folder]

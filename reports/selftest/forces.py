@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from models.moved_scene import scaled
-from reports.compare.force_rows import OF_STEPS
+from reports.compare.whole_errors import OF_STEPS
 from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, in_log
 from reports.selftest.force_changes import (
     about_another_point,

@@ -15,7 +15,7 @@ from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
-from reports.compare.force_rows import force_rows
+from reports.compare.whole_errors import force_rows
 from reports.drawing.moving import INSTANTS, displacements, drawing, drawn_links, moving_points
 from reports.output.numbers import DIGITS, finite
 from reports.stability.case import Case, Trial, Yardstick, yardsticks

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import State
@@ -119,11 +118,8 @@ def timed(cell: Cell, us_per_step: float) -> Repeats:
 
 def _start(cell: Cell) -> State:
     """What a cell starts from, without the truth of all of it. Raises CrankcheckError."""
-    if cell.scene.elastic:
-        return cell.truth.start
-    if cell.drive == "free":
-        return released_state(cell.scene)
-    return solve(cell.scene, np.zeros(1)).state()
+    truth = cell.way.launch(cell.planned)
+    return truth.start if truth else released_state(cell.scene)
 
 
 def timing_row(cell: Cell, a: Sequence[float], b: Sequence[float]) -> dict[str, object]:

@@ -26,6 +26,10 @@ class Clock:
         """How long a run is, in words behind its name."""
         return f", {turns:g} turn{'' if turns == 1.0 else 's'}"
 
+    def words(self, dt_s: float, steps_per_turn: float, turns: float) -> tuple[str, str]:
+        """The step of a run and how long it is, in words."""
+        return f"{steps_per_turn:.4g} steps a turn", f"{turns:.4g} turns"
+
     def period_s(self, driver_s: float) -> float:
         """The period [s], where the driver has one of ``driver_s``."""
         return driver_s
@@ -39,6 +43,9 @@ class Seconds(Clock):
 
     def lasts(self, turns: float) -> str:
         return f" for {turns:g} s"
+
+    def words(self, dt_s: float, steps_per_turn: float, turns: float) -> tuple[str, str]:
+        return f"dt {dt_s:.4g} s", f"let go for {turns:.4g} s"
 
     def period_s(self, driver_s: float) -> float:
         return 1.0

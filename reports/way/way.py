@@ -54,9 +54,9 @@ class Way(Protocol):
     columns    the columns of its cells, a `reports.judge.rows.ColumnsOf`
     table      the table of its cells, a `reports.verify.cell_table.CellTable`
     footer     the lines under the table, `reports.verify.cell_table.Part` each, also there
-    faults     the faults that are planted in its runs, a `reports.selftest.fault_runs.FaultSet`
+    faults     the faults that are planted in its runs, a `reports.selftest.fault.FaultSet`
     cases      the hard cases of its scenes, by group (`reports.stability.case.Case`)
-    series     what hard runs are compared with, by name (`reports.stability.yardstick.Yardstick`)
+    series     what hard runs are compared with, by name (`reports.stability.case.Yardstick`)
     figures    its figures of a store, by name (`reports.figures.drawing.Drawing`)
     section    its section of the page (`reports.page.sections.section.WaySection`)
     log        how its logs are judged, a `reports.own_log.log_kind.LogKind`

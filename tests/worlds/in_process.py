@@ -12,8 +12,7 @@ from reports.workers.isolated import Limits
 
 Answer = TypeVar("Answer")
 STARTED_IN = (
-    "advise.prices", "stability.running", "sweep.running", "tune.attempt", "tune.timing",
-    "workers.isolated",
+    "advise.advice", "stability.running", "sweep.running", "tune.attempt", "workers.isolated",
 )  # fmt: skip
 """The modules that start children."""
 

@@ -16,7 +16,8 @@ from models.array import Array
 from models.files.reading import load_scene
 from models.motion import Motion
 from models.scene import Scene
-from reports.causes import Case, Cause, causes
+from reports.causes.cause import Case, Cause
+from reports.causes.find import causes
 from reports.compare.beside import Truth
 from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.kinds import KINDS

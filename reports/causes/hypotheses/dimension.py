@@ -69,10 +69,8 @@ def dimensions(scene: Scene) -> list[Dimension]:
     found: list[Dimension] = []
     for point, place in scene.ground.items():
         for axis in (0, 1):
-            name = f"{'xy'[axis]} of the ground pivot {point}"
-            found.append(
-                Dimension(name, place[axis], _ground(point, axis), point=f"ground {point}")
-            )
+            name, where = f"{'xy'[axis]} of the ground pivot {point}", f"ground {point}"
+            found.append(Dimension(name, place[axis], _ground(point, axis), point=where))
     for link in scene.links.values():
         found += _of_link(link)
     for slider in scene.sliders.values():
@@ -88,23 +86,21 @@ def _ground(point: str, axis: int) -> Callable[[Scene, float], Scene]:
     return changed
 
 
-def _of_link(link: Link) -> list[Dimension]:
+def _of_link(link: Link) -> Iterator[Dimension]:
     """The distance between the first two points of a link, and the places of the others."""
     names = list(link.points)
-    found = []
     if len(names) > 1:
         (x0, y0), (x1, y1) = (link.points[name] for name in names[:2])
         length = math.hypot(x1 - x0, y1 - y0)
         words = f"length {names[0]}{names[1]} of {link.name}"
         if length > 0.0:
-            found.append(Dimension(words, length, _length(link.name, names[0], names[1])))
+            yield Dimension(words, length, _length(link.name, names[0], names[1]))
     for point in names[2:]:
         for axis in (0, 1):
             words = f"{'xy'[axis]} of {point} in the frame of {link.name}"
             place = f"{link.name} {point}"
             value = link.points[point][axis]
-            found.append(Dimension(words, value, _place(link.name, point, axis), point=place))
-    return found
+            yield Dimension(words, value, _place(link.name, point, axis), point=place)
 
 
 def _length(name: str, first: str, second: str) -> Callable[[Scene, float], Scene]:
@@ -134,7 +130,7 @@ def _moved(scene: Scene, name: str, point: str, place: tuple[float, float]) -> S
     return replace(scene, links={**scene.links, name: link})
 
 
-def _of_slider(slider: Slider) -> list[Dimension]:
+def _of_slider(slider: Slider) -> Iterator[Dimension]:
     """How far the line lies to its left of where it is in the scene, and its directions."""
     line = f"the line of slider {slider.name}"
     sine, cosine = math.sin(slider.direction_rad), math.cos(slider.direction_rad)
@@ -150,15 +146,10 @@ def _of_slider(slider: Slider) -> list[Dimension]:
         return _slid(scene, replace(slider, angle_rad=value))
 
     where = "" if slider.on == GROUND else f" on {slider.on}"
-    found = [
-        Dimension(f"distance of {line}{where} to its left", 0.0, beside),
-        Dimension(f"direction of {line}{where}", slider.direction_rad, turned, "rad"),
-    ]
+    yield Dimension(f"distance of {line}{where} to its left", 0.0, beside)
+    yield Dimension(f"direction of {line}{where}", slider.direction_rad, turned, "rad")
     if slider.link is not None:
-        found.append(
-            Dimension(f"angle of {slider.link} to {line}", slider.angle_rad, tilted, "rad")
-        )
-    return found
+        yield Dimension(f"angle of {slider.link} to {line}", slider.angle_rad, tilted, "rad")
 
 
 def _slid(scene: Scene, slider: Slider) -> Scene:

@@ -101,9 +101,8 @@ def _told(
     """The account of a meaning."""
     own, channel = excerpt.channel, other.channel
     expected = channel.expected(motion)
-    if Size.of(expected).largest <= excerpt.nothing or (
-        other.name != "misnamed" and not _moves(expected)
-    ):
+    moves = np.ptp(expected) > 1e-9 * np.max(np.abs(expected))
+    if Size.of(expected).largest <= excerpt.nothing or (other.name != "misnamed" and not moves):
         return None  # a number that stays is in many places
     values = excerpt.values * (own.sign * channel.sign)
     error = channel.error(values, expected)
@@ -124,11 +123,6 @@ def _told(
         corrections={own.column: meaning(own, instead)},
         expected={own.column: expected},
     )
-
-
-def _moves(expected: Array) -> bool:
-    """Whether a series does more than stay."""
-    return bool(np.ptp(expected) > 1e-9 * np.max(np.abs(expected)))
 
 
 def _phrase(own: Channel, other: OtherMeaning, zero: float) -> str:

@@ -116,8 +116,7 @@ def places_text(inquiry: Inquiry, stretches: Rows, verb: str = "") -> str:
     for first, last in stretches[:SHOWN]:
         at = f"(t = {times[first]:.6g} s)"
         one = first == last
-        where = f"sample {first} {at}" if one else f"samples {first} to {last} {at}"
-        each.append(where)
+        each.append(f"sample {first} {at}" if one else f"samples {first} to {last} {at}")
     more = len(stretches) - len(each)
     if more:
         each.append(f"{more} more")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
@@ -13,7 +12,7 @@ from reports.compare.beside import Beside
 from reports.compare.elastic.elastic_facts import ElasticFacts
 from reports.compare.elastic.elastic_truth import ElasticBeside
 from reports.compare.error_rows import instants_of, whole_row
-from reports.compare.errors import Error, ErrorKind, Errors
+from reports.compare.errors import Error, Errors
 from reports.compare.tracks import length
 from reports.quantities import QUANTITIES, named
 
@@ -37,16 +36,10 @@ def places(beside: Beside) -> list[Error]:
     exact = beside.exact
     if exact is not None:
         rows += [whole_row(track, at) for track in beside.tracks(CHAIN, exact)]
-        rows += _theory_rows(beside, exact, "chain")
+        theirs = replace(beside, run=replace(beside.run, motion=exact), motion=exact, _own={})
+        chain = theirs.tracks(BEAM, beside.reference)
+        rows += [whole_row(track, at, kind="chain") for track in chain]
     return rows
-
-
-def _theory_rows(beside: ElasticBeside, other: Motion, kind: ErrorKind) -> Iterator[Error]:
-    """Another theory's motion in place of the run."""
-    at = instants_of(beside, beside.motion.time_s, beside.reference)
-    theirs = replace(beside, run=replace(beside.run, motion=other), motion=other, _own={})
-    for track in theirs.tracks(BEAM, beside.reference):
-        yield whole_row(track, at, kind=kind)
 
 
 def elastic_facts(beside: ElasticBeside) -> ElasticFacts:

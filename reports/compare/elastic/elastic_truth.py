@@ -265,7 +265,8 @@ class ElasticBeside(Beside):
     @cached_property
     def exact(self) -> Motion | None:
         """The exact chain at the logged instants, None where it takes too long to be found."""
-        return self.elastic.exact_at(self.motion.time_s) if self.elastic.is_exact else None
+        truth = self.elastic
+        return truth.exact_at(self.motion.time_s) if truth.is_exact else None
 
     @property
     def has_crank(self) -> bool:

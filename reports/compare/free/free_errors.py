@@ -17,13 +17,12 @@ from reports.compare.beside import Beside
 from reports.compare.branch import free_departure
 from reports.compare.error_rows import Instants, instants_of, whole_row, whole_rows
 from reports.compare.errors import Error, Errors
-from reports.compare.force_rows import force_rows
 from reports.compare.free.drift import energy_rows, momentum_rows, window_s
 from reports.compare.free.free_facts import FreeFacts
 from reports.compare.free.free_truth import FreeBeside
 from reports.compare.hardness import conditioning, uneven
 from reports.compare.tracks import Track, length
-from reports.compare.whole_errors import TWICE, Parts, whole_errors
+from reports.compare.whole_errors import TWICE, Parts, force_rows, whole_errors
 from reports.quantities.free import GEOMETRY, PHASE
 
 COURSE = 400
@@ -45,13 +44,14 @@ def compared(beside: Beside, errors: Errors | None) -> Errors:
     facts = _facts(beside, same_time)
     borne = force_rows(beside)
     least = LEAST_SINE if facts.passages else 0.0
+    farthest = float(np.max(np.abs(at.driver_rad)))
     parts = Parts(
         placed=[*_phase_and_places(beside, same_time, at), *geometry],
         notes=(*notes, *_notes(beside, facts)),
         borne=replace(borne, facts=replace(borne.facts, load_slopes={}), unsure={}),
         departure=free_departure(beside),
         conditioning=max(conditioning(reference, at.driver_rad), least),
-        summed_rad=_summed(at, beside.run.steps),
+        summed_rad=TWICE * beside.run.steps * sys.float_info.epsilon / 2.0 * farthest,
         # In an open chain joint coordinates are as good as their integrator: nothing is too near.
         far=uneven(scene, reference, at.driver_rad) if has_loops(scene) else {},
         motion=facts,
@@ -107,12 +107,6 @@ def _drifted(beside: FreeBeside) -> float:
     speed, time_s = np.abs(beside.driver_speed), beside.motion.time_s
     turned = np.cumsum(np.diff(time_s, prepend=time_s[0]) * speed)
     return float(np.max(turned / beside.growth))
-
-
-def _summed(at: Instants, steps: int) -> float:
-    """The most that rounding makes of an angle that is added up twice in so many steps [rad]."""
-    farthest = float(np.max(np.abs(at.driver_rad)))
-    return TWICE * steps * sys.float_info.epsilon / 2.0 * farthest
 
 
 def _facts(beside: FreeBeside, same_time: Iterable[Track]) -> FreeFacts:

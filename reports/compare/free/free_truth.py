@@ -221,16 +221,12 @@ def released_state(scene: Scene) -> State:
 
 def long_enough_s(scene: Scene, lasts_s: float) -> float:
     """Until when a motion is integrated that a run of so long is compared with [s]."""
-    return max(lasts_s, _told_s(scene, BEYOND * lasts_s))
-
-
-def _told_s(scene: Scene, until_s: float) -> float:
-    """Until when the loads over time are given, and a motion may last, up to a time [s]."""
+    until_s = BEYOND * lasts_s
     ends = [
         load.characteristic.nearest(until_s) for load in scene.loads.values() if load.over == "time"
     ]
     # Without its rounding it is one for all steps of a sweep.
-    return min(float(f"{until_s:.9g}"), LONGEST_S, *ends)
+    return max(lasts_s, min(float(f"{until_s:.9g}"), LONGEST_S, *ends))
 
 
 @lru_cache(maxsize=4)

@@ -18,7 +18,7 @@ CLAUSES: dict[str, Clause] = {
     clause.id: clause
     for clauses in (
         *(declared.CLAUSES, start.CLAUSES, sessions.CLAUSES, rates.CLAUSES, physics.CLAUSES),
-        *(physics.ELSEWHERE, start.REFUSALS, reactions.CLAUSES, felt.CLAUSES, freed.CLAUSES),
+        *(start.REFUSALS, reactions.CLAUSES, felt.CLAUSES, freed.CLAUSES),
     )
     for clause in clauses
 }

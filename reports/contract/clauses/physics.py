@@ -181,6 +181,24 @@ def _centres(scene: Scene, poses: Poses, sample: int) -> Array:
     return np.array(rows)
 
 
+CHANGES: Mapping[str, Callable[[Scene], Scene]] = {
+    "turned by 0.7 rad": lambda scene: rotated(scene, 0.7),
+    "moved by (3, -2) m": lambda scene: moved(scene, (3.0, -2.0)),
+    "mirrored": lambda scene: mirrored(scene, sides_of(scene)),
+    "ten times as large": lambda scene: scaled(scene, 10.0),
+    "a tenth as large": lambda scene: scaled(scene, 0.1),
+}
+
+
+def _elsewhere(subject: Subject) -> Iterator[str]:
+    plain = pure_errors(subject)
+    for words, change in CHANGES.items():
+        try:
+            yield from unlike(plain, pure_errors(subject.in_scene(change(subject.scene))), words)
+        except NotTriedError as refused:
+            yield f"{words}, it is refused: {refused}"
+
+
 CLAUSES = (
     Clause(
         "EC51",
@@ -221,28 +239,6 @@ CLAUSES = (
         "and inertia, and take no speed away; or refuse drive free with EngineError.",
         _gravity,
     ),
-)
-
-
-CHANGES: Mapping[str, Callable[[Scene], Scene]] = {
-    "turned by 0.7 rad": lambda scene: rotated(scene, 0.7),
-    "moved by (3, -2) m": lambda scene: moved(scene, (3.0, -2.0)),
-    "mirrored": lambda scene: mirrored(scene, sides_of(scene)),
-    "ten times as large": lambda scene: scaled(scene, 10.0),
-    "a tenth as large": lambda scene: scaled(scene, 0.1),
-}
-
-
-def _elsewhere(subject: Subject) -> Iterator[str]:
-    plain = pure_errors(subject)
-    for words, change in CHANGES.items():
-        try:
-            yield from unlike(plain, pure_errors(subject.in_scene(change(subject.scene))), words)
-        except NotTriedError as refused:
-            yield f"{words}, it is refused: {refused}"
-
-
-ELSEWHERE = (
     Clause(
         "EC61",
         "a scene that is turned, moved, mirrored or scaled errs as much",

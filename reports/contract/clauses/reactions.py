@@ -53,7 +53,10 @@ def _declared(subject: Subject) -> Iterator[str]:
     if list(forces.sliders) != list(scene.sliders):
         yield f"sliders are {list(forces.sliders)}, and the scene has {list(scene.sliders)}"
         return
-    given = {name: _all(np.isfinite(each)) for name, each in named(forces)}
+    given = {
+        name: np.asarray(np.isfinite(each).reshape(len(each), -1).all(axis=1))
+        for name, each in named(forces)
+    }
     if not any(there.any() for there in given.values()):
         yield f"forces_of is {subject.engine.forces_of}, and all forces are NaN"
     first = 0 if subject.engine.forces_of == "states" else 1
@@ -67,11 +70,6 @@ def _declared(subject: Subject) -> Iterator[str]:
         size = largest(forces)
         if np.isfinite(total).all() and not total.max() <= CLOSED * size:
             yield f"the forces of pin {point} add up to {total.max():.2g} N, of {size:.2g} N"
-
-
-def _all(there: Array) -> Array:
-    """Whether all numbers of a sample are there, (T,)."""
-    return np.asarray(there.reshape(len(there), -1).all(axis=1))
 
 
 def named(forces: Forces) -> Iterator[tuple[str, Array]]:

@@ -24,7 +24,7 @@ from reports.plan.singular import (
     refuse_singular,
 )
 from reports.plan.steps import TURNS, counted
-from reports.quantities import named
+from reports.quantities import MOVES, named
 from reports.quantities.limits import DEFAULTS
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
@@ -41,7 +41,7 @@ class DrivenWay(Way):
     kinds: Sequence[str] = ("driven",)
     closed_form = True
     limits: Mapping[str, Tolerance] = DEFAULTS
-    roles: Set[Role] = frozenset(("drive", "place", "closure", "derived"))
+    roles: Set[Role] = frozenset(MOVES)
     placed: Sequence[str] = named("place")
     unlogged: Sequence[str] = ()
     noted = False

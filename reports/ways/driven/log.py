@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from models.array import Array
-from models.errors import CrankcheckError, cut, harmless
+from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.causes.cause import Case, Cause, Excerpt
 from reports.causes.find import causes
@@ -20,6 +20,7 @@ from reports.output.numbers import error_text, listed
 from reports.own_log.drives import DriveFit, truth_of_log
 from reports.own_log.log_kind import HeldLog, LogRequest
 from reports.own_log.log_limits import limits_by_column
+from reports.own_log.rows import column_text
 from reports.quantities import named
 from sim.engine import Run
 
@@ -69,8 +70,6 @@ TOLD = 0.1
 WORDS = ("stays the same", "grows or falls evenly", "comes back every turn", "does none of these")
 SMALL, MOST = 0.1, 0.7
 """A part of an error at the logged angle of the driver that is little of it, and most of it."""
-LONGEST = 60
-"""Characters of a column's name that are shown."""
 
 
 def of_no_cause(case: Case, causes: Sequence[Cause], errors: Errors) -> tuple[str, ...]:
@@ -108,9 +107,9 @@ def seldom(case: Case) -> Iterator[str]:
         within = float(np.ptp(excerpt.reading.values)) < math.tau + 1e-2
         if excerpt.out and channel.of == scene.driver.link and channel.kind.turns and within:
             yield (
-                f"{_text(column)}: {channel.of} turns by {turns:.3g} turns from row to row, and of "
-                "an angle within one turn it can not be told how often it went round in between; "
-                "log it more than twice a turn, or without jumps"
+                f"{column_text(column)}: {channel.of} turns by {turns:.3g} turns from row to row, "
+                "and of an angle within one turn it can not be told how often it went round in "
+                "between; log it more than twice a turn, or without jumps"
             )
 
 
@@ -160,7 +159,7 @@ def _shape(scene: Scene, excerpt: Excerpt) -> str:
     parts = [
         f"{share:.0%} {word}" for share, word in zip(shares, WORDS, strict=True) if share > TOLD
     ]
-    return f"{_text(excerpt.channel.column)} {listed(parts)}"
+    return f"{column_text(excerpt.channel.column)} {listed(parts)}"
 
 
 def _shares(time_s: Array, angle_rad: Array, error: Array) -> tuple[float, float, float, float]:
@@ -177,7 +176,3 @@ def _shares(time_s: Array, angle_rad: Array, error: Array) -> tuple[float, float
 
 def _size(error: Error) -> str:
     return f"{error_text(error.maximum)} {error.unit}"
-
-
-def _text(column: str) -> str:
-    return cut(harmless(column[:LONGEST]), LONGEST)

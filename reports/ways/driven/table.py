@@ -6,14 +6,14 @@ from collections.abc import Sequence
 
 from reports.compare.errors import largest
 from reports.judge.cell import Checked
-from reports.quantities import QUANTITIES
+from reports.quantities import MOVES, QUANTITIES
 from reports.verify.cell_table import STEPS, UNITS, CellTable, span
 
 ANGLE, GAP = QUANTITIES["angle"].head, QUANTITIES["gap"].head
 NUMBERS = {
     entry.head: [name for name, each in QUANTITIES.items() if each.head == entry.head]
     for entry in QUANTITIES.values()
-    if entry.head and entry.role not in ("force", "free", "elastic")
+    if entry.head and entry.role in MOVES
 }
 """The columns of numbers: head, and the quantities that it shows the worst of."""
 TABLE = CellTable(

@@ -25,11 +25,8 @@ NO_CAUSE = "causes are not looked for where links bend"
 def bent_truth(log: OwnLog, segments: int, springs: Springs, drive: str) -> ElasticTruth:
     """The truth of a log of so many segments.
 
-    Raises
-    ------
-    CrankcheckError
-        A scene that is let go; another drive than that of the scene; times before 0, where its
-        links do not come back after a period.
+    Raises CrankcheckError for a scene that is let go; another drive than that of the scene; times
+    before 0, where its links do not come back after a period.
     """
     name, law = log.scene.name, log.scene.driver.law
     if isinstance(law, Released | Controlled):
@@ -57,12 +54,6 @@ def bent_truth(log: OwnLog, segments: int, springs: Springs, drive: str) -> Elas
 class ElasticLogBeside(LogBeside, ElasticBeside):
     """A log of as many segments as were told of it."""
 
-    @staticmethod
-    def of_log(truth: ElasticTruth, run: Run) -> ElasticLogBeside:
-        """The log beside the truth, and the run that it amounts to."""
-        assert run.motion is not None
-        return ElasticLogBeside(truth, run, run.motion, step_s=run.dt_s, elastic=truth)
-
     @property
     def has_crank(self) -> bool:
         return False
@@ -78,7 +69,8 @@ class ElasticLog(DrivenLog):
 
     def beside(self, log: OwnLog, truth: Truth, run: Run) -> LogBeside:
         assert isinstance(truth, ElasticTruth)
-        return ElasticLogBeside.of_log(truth, run)
+        assert run.motion is not None
+        return ElasticLogBeside(truth, run, run.motion, step_s=run.dt_s, elastic=truth)
 
     def judged_as(self, scene: Scene, channel: Channel) -> tuple[str, ...]:
         bent = channel.kind.quantity == "deflection"

@@ -47,11 +47,8 @@ def known_log(log: OwnLog, step_s: float, target: Mapping[str, float]) -> tuple[
 
     ``target`` has limits as pure numbers by quantity, that of all others under `EVERY`.
 
-    Raises
-    ------
-    CrankcheckError
-        Times before 0, at which the scene is let go, or long after its end; a scene
-        that can not be let go; a truth that is lost before the second row.
+    Raises CrankcheckError for times before 0, at which the scene is let go, or long after its end;
+    a scene that can not be let go; a truth that is lost before the second row.
     """
     scene, lasts_s = log.scene, _lasts_s(log)
     refuse_unreleased(scene, lasts_s)
@@ -88,15 +85,6 @@ def _lasts_s(log: OwnLog) -> float:
         )
     latest = max(float(each.instants[-1]) for each in log.readings) if log.readings else last
     return last if latest <= BEYOND * last else latest
-
-
-def refuse_drives(scene_name: str, drive: str) -> None:
-    """Refuse a drive of what nothing drives. Raises CrankcheckError."""
-    if drive != "scene":
-        raise CrankcheckError(
-            f"--drive {drive}: {scene_name} is let go, and nothing drives it; leave --drive out: "
-            "the geometry at its own angle is judged beside the motion in time"
-        )
 
 
 def told_of_start(log: OwnLog, truth: FreeTruth) -> Iterator[str]:
@@ -175,12 +163,25 @@ class FreeLog:
     driver_angle = "phase"
 
     def truth(self, log: OwnLog, request: LogRequest) -> tuple[OwnLog, Truth, DriveFit | None]:
-        refuse_drives(log.scene.name, request.drive)
+        if request.drive != "scene":
+            raise CrankcheckError(
+                f"--drive {request.drive}: {log.scene.name} is let go, and nothing drives it; "
+                "leave --drive out: the geometry at its own angle is judged beside the motion in "
+                "time"
+            )
         return *known_log(log, request.step_s, request.target), None
 
     def beside(self, log: OwnLog, truth: Truth, run: Run) -> LogBeside:
         assert isinstance(truth, FreeTruth)
-        return FreeLogBeside.of_log(log, truth, run)
+        assert run.motion is not None
+        return FreeLogBeside(
+            *(truth, run, run.motion),
+            step_s=run.dt_s,
+            whole_run=run,
+            free=truth.free,
+            log=log,
+            unknown=log.left_out,
+        )
 
     def judged_as(self, scene: Scene, channel: Channel) -> tuple[str, ...]:
         """Places at the same time and at the log's own angle."""
@@ -215,21 +216,6 @@ class FreeLogBeside(LogBeside, FreeBeside):
     log: OwnLog = field(kw_only=True)
     unknown: int = field(kw_only=True)
 
-    @staticmethod
-    def of_log(log: OwnLog, truth: FreeTruth, run: Run) -> FreeLogBeside:
-        """The log beside the truth, and the run that it amounts to."""
-        assert run.motion is not None
-        return FreeLogBeside(
-            truth,
-            run,
-            run.motion,
-            step_s=run.dt_s,
-            whole_run=run,
-            free=truth.free,
-            log=log,
-            unknown=log.left_out,
-        )
-
     @property
     def left_out(self) -> int:
         return self.unknown
@@ -239,7 +225,8 @@ class FreeLogBeside(LogBeside, FreeBeside):
         driver = self.scene.driver.link
         if not (self.has_crank and self._says("link", driver, "angle")):
             return f"no geometry: the log has no angle of {driver} at the times of its rows"
-        if self.free.driver_tells or self._holds((0,)):
+        truth = self.free
+        if truth.driver_tells or self._holds((0,)):
             return ""
         return (
             f"no geometry: the angle of {driver} alone does not say where {self.scene.name} is; it "

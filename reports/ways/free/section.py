@@ -86,7 +86,11 @@ def _rows(report: Report, line: Line) -> list[dict[str, object]]:
     return [
         {"scene": line.scene, "look": look, "variant": line.variant}
         | {name: cell.get(name) for name in SHOWN}
-        | {f"{name}_told": _horizon(cell[f"horizon_{name}_s"]) for name in ("1e-1", "1e-3")}
+        | {
+            f"{name}_told": "not at all" if held == 0.0 else duration(held)
+            for name in ("1e-1", "1e-3")
+            for held in (cell[f"horizon_{name}_s"],)
+        }
         for cell in line.cells.to_dict("records")
     ]
 
@@ -110,11 +114,6 @@ def cost_row(one: Recommendation, period_s: float = 1.0) -> dict[str, object]:
         "error": best.worst_error,
         "scene": best.worst_scene,
     }
-
-
-def _horizon(time_s: float | None) -> str:
-    """The time to which something holds."""
-    return "not at all" if time_s == 0.0 else duration(time_s)
 
 
 def fits_of(

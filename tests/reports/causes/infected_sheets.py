@@ -8,7 +8,8 @@ from itertools import cycle
 import numpy as np
 
 from models.files.reading import load_scene
-from reports.causes import Cause, causes
+from reports.causes.cause import Cause
+from reports.causes.find import causes
 from tests.worlds.plantings import PLANTINGS
 from tests.worlds.sheets import Sheet, sheet
 

@@ -18,7 +18,8 @@ import pytest
 import crankcheck
 from analytic.kinematics import solve, solve_driven
 from models.files.reading import load_scene
-from reports.causes import Cause, causes
+from reports.causes.cause import Cause
+from reports.causes.find import causes
 from reports.logs.channel import Channel
 from reports.logs.kinds import KINDS as KINDS_OF
 from tests.reports.causes.infected_sheets import CLEAR, FAULTS, SCENES, diagnosed, infected

@@ -13,8 +13,8 @@ import pytest
 from analytic.kinematics import solve
 from models.array import Array
 from models.scene import Scene
-from reports.causes import causes
 from reports.causes.account import Account, chosen
+from reports.causes.find import causes
 from reports.causes.world import World
 from reports.logs.channel import Channel
 from reports.logs.kinds import KINDS

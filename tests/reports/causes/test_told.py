@@ -18,8 +18,9 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.files.reading import load_scene
 from models.motion import Motion
-from reports.causes import Case, Cause, causes
 from reports.causes.account import change
+from reports.causes.cause import Case, Cause
+from reports.causes.find import causes
 from reports.compare.beside import Truth
 from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.kinds import KINDS

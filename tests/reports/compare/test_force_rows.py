@@ -22,8 +22,8 @@ from models.tabulated import Tabulated
 from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Errors
-from reports.compare.force_rows import NEAR, force_rows, near_jumps
 from reports.compare.hardness import inertia_share, load_slopes, loading
+from reports.compare.whole_errors import NEAR, force_rows, near_jumps
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import Evidence
 from reports.stability.grading import CATALOGUE

@@ -18,8 +18,7 @@ from models.scene import Scene
 from reports.compare.beside import SETTLING, Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Errors, SceneFacts
-from reports.compare.force_rows import OF_STEPS
-from reports.compare.whole_errors import summed
+from reports.compare.whole_errors import OF_STEPS, summed
 from reports.judge.cell import check
 from reports.judge.rules.limits import allowance
 from reports.judge.tolerance import check_names, limits, parse

@@ -12,7 +12,7 @@ from rich.console import Console
 from reports.judge.cell import unfinished
 from reports.output.numbers import short
 from reports.own_model import account, sentences
-from reports.own_model.account import without_run
+from reports.own_model.account import CheckedLine
 from reports.own_model.judged import JudgedModel, errors_of, judged_model
 from reports.own_model.table import show
 from tests.worlds.own_models import ACTUATORS, CROWDED, FACTS, SLIDER_CRANK, judged
@@ -43,7 +43,7 @@ def place(lines: list[str], words: str) -> int:
 
 def with_own(one: JudgedModel, status: str) -> JudgedModel:
     """The same, but that nothing came of it as written."""
-    lost = without_run(unfinished(one.own.cell, status, "it [red]fell[/] apart"))
+    lost = CheckedLine(**vars(unfinished(one.own.cell, status, "it [red]fell[/] apart")))
     return judged_model(one.account, [lost, *one.lines[1:]])
 
 

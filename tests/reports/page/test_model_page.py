@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from reports.judge.cell import unfinished
-from reports.own_model.account import without_run
+from reports.own_model.account import CheckedLine
 from reports.own_model.judged import JudgedModel, judged_model
 from reports.page.build import _plotly
 from reports.page.model_page import model_page
@@ -38,7 +38,7 @@ def text(rubbing: JudgedModel) -> str:
 
 def lost(one: JudgedModel) -> JudgedModel:
     """The same, with no line that logged anything."""
-    lines = [without_run(unfinished(line.cell, "crashed", NASTY)) for line in one.lines]
+    lines = [CheckedLine(**vars(unfinished(line.cell, "crashed", NASTY))) for line in one.lines]
     return judged_model(one.account, lines)
 
 

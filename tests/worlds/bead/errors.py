@@ -12,8 +12,7 @@ import numpy as np
 from reports.compare.beside import Beside
 from reports.compare.error_rows import instants_of, whole_row
 from reports.compare.errors import Error, Errors, MotionFacts
-from reports.compare.force_rows import force_rows
-from reports.compare.whole_errors import Parts, whole_errors
+from reports.compare.whole_errors import Parts, force_rows, whole_errors
 from reports.quantities import named
 from reports.quantities.quantity import Tolerance
 from tests.worlds.bead.limits import LIMITS

@@ -24,6 +24,7 @@ from reports.requests.solving import (
     instants_of,
     refuse_times,
 )
+from reports.way.way import way_of
 
 LARGEST = 1e9
 """Of any number of a mechanism [SI]."""
@@ -77,12 +78,15 @@ def _drawn(scene: Scene, path: Path, curves: FamilyCurves) -> bytes | str:
     return family_drawing(scene, curves, ending[1:])
 
 
+NO_FAMILY = {"elastic": "has elastic links", "let go": "is let go"}
+"""Kinds of scenes that have no family, and why."""
+
+
 def _check(scene: Scene, request: SolveOptions) -> None:
     """Refuse a family of what has none, or of a single position. Raises CrankcheckError."""
-    if scene.elastic or scene.is_free:
-        bends = "has elastic links" if scene.elastic else "is let go"
+    if why := NO_FAMILY.get(way_of(scene).kinds[0]):
         raise CrankcheckError(
-            f"--family {request.family}: {scene.name} {bends}; members of a family have rigid "
+            f"--family {request.family}: {scene.name} {why}; members of a family have rigid "
             "links, and follow a law of motion"
         )
     for option in given(request, "at_deg", "at_m", "clockwise", "along", "forces", "figures"):
