@@ -48,7 +48,8 @@ class Way(Protocol):
     """How scenes of a kind are run and compared.
 
     Its parts are modules in its folder, or in one of a way that it builds on, each loaded where it
-    is needed; the value of a module has its name, in capitals.
+    is needed; the value of a module has its name, in capitals, and the footer is one more of the
+    table's module. A way without columns of its own has those of all cells alone.
 
     ========== ===============================================================================
     columns    the columns of its cells, a `reports.judge.rows.ColumnsOf`
@@ -94,7 +95,8 @@ class Way(Protocol):
 
     def part(self, name: str) -> object:
         """The part of that name."""
-        return _part(type(self).__mro__[:-1], name)
+        classes = type(self).__mro__
+        return _part(classes[: classes.index(Way)], name)
 
     def own_part(self, name: str, default: object = ()) -> object:
         """The part of that name of the way alone, and of none that it builds on."""
@@ -226,13 +228,20 @@ class Way(Protocol):
 
 @cache
 def _part(classes: tuple[type, ...], name: str) -> object:
-    found = (_module(cls, name) for cls in classes if cls is not Way)
-    return getattr(next(module for module in found if module), name.upper())
+    found = (getattr(_module(cls, name), name.upper(), None) for cls in classes)
+    return next(filter(None, found), None) or _OF_ALL[name]
+
+
+def _no_columns(checked: object) -> dict[str, object]:
+    return {}
+
+
+_OF_ALL = {"columns": _no_columns}
 
 
 def _module(cls: type, name: str) -> ModuleType | None:
-    """The module of that name in the folder of a class, None where there is none."""
-    whole = f"{cls.__module__}.{name}"
+    """The module of a part in the folder of a class, None where there is none."""
+    whole = f"{cls.__module__}.{'table' if name == 'footer' else name}"
     return import_module(whole) if find_spec(whole) else None
 
 
