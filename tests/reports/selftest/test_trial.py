@@ -144,7 +144,8 @@ def test_a_fault_that_plants_nothing_fails_and_says_so(planted: Plant) -> None:
 
 def test_what_need_not_be_seen_and_plants_nothing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     idle = replace(UNSEEN[0], plant=lambda _: UNSEEN[0].plant(0.0))
-    monkeypatch.setattr(trial, "UNSEEN", (UNSEEN[0], idle))
+    both = replace(trial.RUNS["motion"], unseen=(UNSEEN[0], idle))
+    monkeypatch.setitem(trial.RUNS, "motion", both)
     planted_, nothing = trial.passed_by(("mujoco",))
     assert (planted_.nothing, nothing.nothing) == ((), ("mujoco",))
 
