@@ -24,7 +24,8 @@ from reports.quantities.limits import FREE
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import LEAST_STEPS, GivenAs, Length, Planned
 from reports.way.result_kind import ResultKind
-from reports.way.way import StudyLengths, Way
+from reports.way.way import StudyLengths
+from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
 UNITS = (
@@ -35,7 +36,7 @@ UNITS = (
 )
 
 
-class FreeWay(Way):
+class FreeWay(DrivenWay):
     """As of `Way`."""
 
     name = "free"

@@ -4,30 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, cast
 
 import pytest
 
 from reports.judge.cell import Cell
 from reports.workers.isolated import Lost
-from tests.worlds.in_process import Here
+from tests.worlds.in_process import Answer, Here
 
 TOO_SHORT_S = 1e-3
 """A limit that no run keeps."""
 
 
-class Remembering(Here[object]):
+class Remembering(Here[Answer]):
     """Answers once for all tests: that an engine does the same twice is tested elsewhere."""
 
     answers: ClassVar[dict[str, object]] = {}
 
-    def call(self, function: Callable[..., object], *arguments: object) -> object:
+    def call(self, function: Callable[..., Answer], *arguments: object) -> Answer:
         if self.limits.time_s < TOO_SHORT_S:
-            return Lost("timeout", f"no end within {self.limits.time_s:g} s")
+            return cast(Answer, Lost("timeout", f"no end within {self.limits.time_s:g} s"))
         key = f"{function.__name__} {arguments}"
         if key not in self.answers:
             self.answers[key] = function(*arguments)
-        return self.answers[key]
+        return cast(Answer, self.answers[key])
 
 
 def timed(_: object, cells: Sequence[tuple[Cell, float]], rounds: int) -> list[object]:
