@@ -270,7 +270,7 @@ def _still(samples: int) -> BodyPose:
 
 
 def spring_lengths(scene: Scene, poses: Poses) -> Mapping[str, Array]:
-    """The q (T,) [m or rad] of each spring at the positions of the poses; see `models.springs`.
+    """The q (T,) [m or rad] of each spring at the positions of the poses; see `models.loads`.
 
     The first sample is taken as the start, from which whole turns in pins are counted.
     """
