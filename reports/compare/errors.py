@@ -22,13 +22,14 @@ class SceneFacts:
     ``conditioning`` its smallest sine of a transmission angle, away from the change points that it
     goes through. ``step_rad`` is the driver's peak speed times the time between two steps.
     ``summed_rad`` is the most that rounding makes of the driver's angle in an engine that adds it
-    up step by step: it grows with the number of steps (`reports.compare.whole_errors`). ``jolt``
-    is how much an engine may make up for at its start, over a step, as a pure number
+    up step by step: it grows with the number of steps (`reports.compare.whole_errors`). ``jolt`` is
+    how much an engine may make up for at its start, over a step, as a pure number
     (`analytic.forces.late_impulses`), ``worst_jolt`` the most of it over the run, and
-    ``mass_ratio`` the mass of the heaviest body over that of the lightest. ``drives_within`` says that the driver
-    moves two moving bodies against each other, and ``starts_in_passage`` that one of the first
-    samples is near a change point. ``uneven`` is how far bodies depart from moving evenly with the
-    driver, ``uneven_rates`` those of them whose rates do too (`reports.compare.hardness`).
+    ``mass_ratio`` the mass of the heaviest body over that of the lightest. ``drives_within`` says
+    that the driver moves two moving bodies against each other, and ``starts_in_passage`` that one
+    of the first samples is near a change point. ``uneven`` is how far bodies depart from moving
+    evenly with the driver, ``uneven_rates`` those of them whose rates do too
+    (`reports.compare.hardness`).
     """
 
     curvature: float

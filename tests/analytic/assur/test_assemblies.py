@@ -141,7 +141,8 @@ def test_they_come_by_increasing_angle_whatever_the_order_of_the_legs() -> None:
 
 def test_a_mechanism_of_class_ii_loads_no_python_flint() -> None:
     say = (
-        "import sys, numpy; from analytic.kinematics import solve; from models.files.reading import load_scene;"
+        "import sys, numpy; from analytic.kinematics import solve;"
+        "from models.files.reading import load_scene;"
         "solve(load_scene('fourbar-swing'), numpy.zeros(1)); sys.exit('flint' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", say], check=False).returncode == 0
