@@ -27,12 +27,43 @@ BEFORE = "c015253c"
 AROUND = 8
 """Lines before and after one by which it is told from others that read the same."""
 CHANGED = {
+    1: (
+        'turned = load.direction_rad - lean if load.frame == "body" else load.direction_rad',
+        "load.direction_rad - lean",
+        "(load.direction_rad + lean)",
+    ),
+    62: (
+        "say(console, f\"{document['scene']}: the branch that it is on alone\")",
+        "say(console, f\"{document['scene']}: the branch that it is on alone\")",
+        "pass",
+    ),
     63: ("if self.folder is not None:", "self.folder is not None", "(self.folder is None)"),
     64: (
         'return GivenAs(chosen_segments(segments), chosen_springs(springs or "plain"))',
         'springs or "plain"',
         "(springs and 'plain')",
     ),
+    65: (
+        'keep_trajectories: Annotated[bool, "Keep the whole motion of every cell."] = False',
+        "False",
+        "True",
+    ),
+    66: (
+        "if left is None or not _elsewhere(beside, far):",
+        "left is None or not _elsewhere(beside, far)",
+        "(not (left is None or not _elsewhere(beside, far)))",
+    ),
+    101: (
+        "return SECONDS if {clock_of(drive) for drive in drives} <= {SECONDS} else TURNS",
+        "{clock_of(drive) for drive in drives} <= {SECONDS}",
+        "(not ({clock_of(drive) for drive in drives} <= {SECONDS}))",
+    ),
+    102: (
+        '_beam("beam-modulus", "the modulus is too large", in_beam(stiffer_beam), 1e-2, "of it"),',
+        "1e-2",
+        "0.0125",
+    ),
+    106: ("return omega * 30.0 / np.pi", "omega * 30.0 / np.pi", "(omega * 30.0 * np.pi)"),
 }
 """Lines that read otherwise since then, and the piece of each before and after the fault."""
 SEED = 37

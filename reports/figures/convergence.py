@@ -23,9 +23,8 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
 
 from reports.figures.drawing import around, ends, fitted, measured
-from reports.figures.grids import grid
 from reports.figures.marks import Mark, marks
-from reports.figures.sheet import Panels, sheet
+from reports.figures.sheet import Panels, grid, sheet
 from reports.figures.style import COLUMN_IN, SMALL, logarithmic, width_in
 from reports.output.numbers import duration
 from reports.results.lines import Line, Named, named

@@ -20,7 +20,7 @@ from models.driver import driver_axis
 from models.scene import Scene
 from reports.drawing.moving import told_places
 from reports.figures.drawing import ends
-from reports.figures.grids import corner_words, grid, tenfold
+from reports.figures.sheet import corner_words, grid, tenfold
 from reports.figures.style import INK, Look, power_of_ten
 from reports.output.numbers import short
 from reports.results.error_parts import Parts, Split, split, worst_body

@@ -17,9 +17,8 @@ from reports.compare.last_turn import Trace
 from reports.describe.facts import describe_law
 from reports.drawing.shape import true_motion
 from reports.figures.drawing import around
-from reports.figures.grids import corner_words, grid, tenfold
 from reports.figures.marks import Mark, marks
-from reports.figures.sheet import Panels, sheet
+from reports.figures.sheet import Panels, corner_words, grid, sheet, tenfold
 from reports.figures.style import INK, PAGE_IN, Look, logarithmic, mark_zero, power_of_ten, shorten
 from reports.output.numbers import duration, short
 from reports.results.lines import named

@@ -1,1 +1,1 @@
-"""The report page: one HTML file with everything in it, made of sections of one file each."""
+"""The report page: one HTML file with everything in it, made of sections."""

@@ -1,4 +1,5 @@
-"""Plant a fault, see which rules fail, and find the size from which on its own rule does.
+"""The faults by name: plant one, see which rules fail, and find the size from which on its own rule
+does.
 
 The runs are short: one turn, or a second of free motion; profile tuned. A fault is caught where the
 rule that it names fails at the size planted, while the same run without it, and with it at size 0,

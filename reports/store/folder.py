@@ -1,7 +1,8 @@
 """The files of a store: parts of its tables, which of their rows count, and its lock.
 
-To see it is to take the lock for a moment, so each side has patience: a sweep waits longer for it
-than any reader holds it, and a reader longer than another reader does.
+One sweep at a time writes to a store, and a reader can see whether one does. To see it is to take
+the lock for a moment, so each side has patience: a sweep waits longer for it than any reader holds
+it, and a reader longer than another reader does.
 """
 
 from __future__ import annotations
@@ -33,7 +34,9 @@ MOST_BYTES = 1_000_000_000
 
 @dataclass(frozen=True)
 class Part:
-    """A part that is as it was written."""
+    """A file of a table that is as it was written. Its name tells the table, the time of writing,
+    how many rows it has, and the hash of its bytes, so that no byte of it changes unseen, and what
+    is lost with it is known."""
 
     path: Path
     file: pq.ParquetFile

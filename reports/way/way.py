@@ -48,7 +48,7 @@ class Way(Protocol):
     """How scenes of a kind are run and compared.
 
     Its parts are modules in its folder, or in one of a way that it builds on, each loaded where it
-    is needed; the value of a module has its name, in capitals, and the footer is one more of the
+    is needed; the value of a module has its name, in capitals; the footer is one more of the
     table's module. A way without columns of its own has those of all cells alone.
 
     ========== ===============================================================================
@@ -95,8 +95,7 @@ class Way(Protocol):
 
     def part(self, name: str) -> object:
         """The part of that name."""
-        classes = type(self).__mro__
-        return _part(classes[: classes.index(Way)], name)
+        return _part(type(self).__mro__, name)
 
     def own_part(self, name: str, default: object = ()) -> object:
         """The part of that name of the way alone, and of none that it builds on."""
@@ -228,7 +227,8 @@ class Way(Protocol):
 
 @cache
 def _part(classes: tuple[type, ...], name: str) -> object:
-    found = (getattr(_module(cls, name), name.upper(), None) for cls in classes)
+    own = classes[: classes.index(Way)]
+    found = (getattr(_module(cls, name), name.upper(), None) for cls in own)
     return next(filter(None, found), None) or _OF_ALL[name]
 
 

@@ -1,7 +1,7 @@
-"""The sections of the page, one file each, in the order in which they stand.
+"""The sections of the page, in the order in which they stand.
 
 A section is built by a function from the `PageReport`; None where the store has nothing for it.
-Another one is another file here, a template beside the others, and a line in `SECTIONS`; that of a
+Another one is another function, a template beside the others, and a line in `SECTIONS`; that of a
 way is its part ``section``.
 """
 

@@ -1,6 +1,6 @@
 """Figures of driven scenes, some of which show others as well."""
 
-from reports.figures import convergence, error_parts, mechanism, profile, work_precision
+from reports.figures import convergence, error_parts, mechanism, work_precision
 from reports.figures.drawing import Drawing
 
 BOTH = ("driven", "let go")
@@ -9,5 +9,5 @@ FIGURES = {
     "convergence": Drawing(convergence.draw, convergence.draw_all, (*BOTH, "elastic")),
     "split": Drawing(error_parts.draw),
     "mechanism": Drawing(mechanism.draw, drives=BOTH),
-    "profile": Drawing(None, profile.draw_all),
+    "profile": Drawing(None, work_precision.draw_profile),
 }

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from reports.compare.elastic.elastic_truth import ElasticTruth
 
 
-class Bending(DrivenWay):
+class Bending:
     """What is particular to links that bend, whatever drives them; before the way of rigid ones."""
 
     kinds: Sequence[str] = ("elastic",)
@@ -74,7 +74,7 @@ class Bending(DrivenWay):
         return ["elastic", given.segments, given.springs]
 
 
-class ElasticWay(Bending):
+class ElasticWay(Bending, DrivenWay):
     """As of `Way`."""
 
     name = "elastic"
