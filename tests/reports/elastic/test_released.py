@@ -21,6 +21,7 @@ from reports.requests.judge import judge
 from reports.requests.run import run as simulated
 from reports.selftest.segment_changes import in_chain, springs, stiffer
 from reports.verify.cell_table import footer
+from reports.way.way import way_of
 from tests.worlds.facts import with_facts
 from tests.worlds.tiers import slowly
 
@@ -169,7 +170,8 @@ def test_what_rings_is_let_go_for_a_few_swings_of_it_unless_more_is_asked_for() 
     assert "let go for 1 s of its 5 s, 5 swings" in shortened_note(own, dt_s * steps)
     assert counted_released(own, 1e-4, 2.0, 16, "plain") == (1e-4, 20_000)
     assert shortened_note(own, 2.0) == shortened_note(own, 0.3) == ""
-    assert shortened_note(load_scene("fourbar-pulse"), 1.0) == ""
+    rigid = load_scene("fourbar-pulse")
+    assert way_of(rigid).shortened(rigid, 1.0) == ""
 
 
 def test_what_starts_straight_is_off_by_its_fast_waves_too(checked: Checked) -> None:
