@@ -21,6 +21,7 @@ from reports.judge.cell import Cell
 from reports.requests.sweep import SweepRequest
 from reports.store.reader import read_store
 from reports.sweep import measured
+from reports.ways.elastic import ElasticWay
 from reports.workers.isolated import Isolated, Limits, Lost
 from sim import registry
 from tests.worlds.command import shadows
@@ -214,6 +215,7 @@ def test_a_cell_is_timed_from_its_own_start(
         return SimpleNamespace(walls_s=())
 
     monkeypatch.setattr(measured, "time_run", time_run)
-    monkeypatch.setattr(Cell, "truth", SimpleNamespace(start="that of the truth"))
+    truth = SimpleNamespace(start="that of the truth")
+    monkeypatch.setattr(ElasticWay, "truth", lambda way, run: truth)
     assert measured.timed(one, 50.0) == ()
     assert repr(states) == repr([start(one.scene)])
