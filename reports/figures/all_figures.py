@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from typing import cast
 
 from reports.figures.drawing import Drawing
-from reports.way.way import WAYS, way
+from reports.way.way import own_parts
 
-_PARTS = (way(name).own_part("figures", {}) for name in reversed(WAYS))
 FIGURES: Mapping[str, Drawing] = {
-    name: drawing for part in _PARTS for name, drawing in cast(Mapping[str, Drawing], part).items()
+    name: drawing
+    for part in own_parts("figures").values()
+    for name, drawing in cast(Mapping[str, Drawing], part).items()
 }

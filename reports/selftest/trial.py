@@ -20,12 +20,12 @@ from models.scene import Scene
 from reports.judge.cell import Checked, check, examined
 from reports.judge.rules.rule import Finding
 from reports.selftest.fault import PROFILE, STEPS, Fault, FaultRuns, FaultSet, RunKind, Unseen
-from reports.way.way import WAYS, way
+from reports.way.way import own_parts
 from reports.workers.isolated import Limits, Lost, run_all
 from sim.registry import ENGINES, engine
 from sim.settings import profile_of, resolved
 
-_SETS = [cast(FaultSet, way(name).own_part("faults", FaultSet((), {}))) for name in reversed(WAYS)]
+_SETS = [cast(FaultSet, each) for each in own_parts("faults").values()]
 RUNS: dict[RunKind, FaultRuns] = {kind: runs for each in _SETS for kind, runs in each.runs.items()}
 """By kind."""
 GROUPS = {group: title for runs in RUNS.values() for group, title in runs.groups.items()}

@@ -19,7 +19,7 @@ from models.motion import Motion, State
 from models.scene import Scene
 from reports.stability.error_series import ErrorSeries
 from reports.stability.matrix import CaseFacts, Outcome
-from reports.way.way import WAYS, way
+from reports.way.way import own_parts
 from sim.engine import Drive, Run, SettingValue
 
 WITHIN = 1e-2
@@ -146,7 +146,8 @@ class Yardstick:
 
 def yardsticks() -> dict[Judge, tuple[str, Yardstick]]:
     """All, by name, each with the name of its way."""
-    series = {
-        name: cast(Mapping[Judge, Yardstick], way(name).own_part("series", {})) for name in WAYS
+    return {
+        judge: (name, each)
+        for name, own in own_parts("series").items()
+        for judge, each in cast(Mapping[Judge, Yardstick], own).items()
     }
-    return {judge: (name, each) for name, own in series.items() for judge, each in own.items()}

@@ -21,17 +21,16 @@ from reports.output.numbers import DIGITS, finite
 from reports.stability.case import Case, Trial, Yardstick, yardsticks
 from reports.stability.grades import outcome
 from reports.stability.matrix import Graded, Outcome, Picture, label
-from reports.way.way import WAYS, way
+from reports.way.way import own_parts
 from sim.engine import Run
 from sim.registry import engine as engine_of
 from sim.run import run
 from sim.settings import SettingError
 
 YARDSTICKS = yardsticks()
-_PARTS = (way(name).own_part("cases", {}) for name in reversed(WAYS))
 GROUPS = {
     group: cases
-    for part in _PARTS
+    for part in own_parts("cases").values()
     for group, cases in cast(Mapping[str, tuple[Case, ...]], part).items()
 }
 CATALOGUE: dict[str, Case] = {

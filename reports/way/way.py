@@ -97,11 +97,6 @@ class Way(Protocol):
         """The part of that name."""
         return _part(type(self).__mro__, name)
 
-    def own_part(self, name: str, default: object = ()) -> object:
-        """The part of that name of the way alone, and of none that it builds on."""
-        module = _module(type(self), name)
-        return getattr(module, name.upper()) if module else default
-
     def roles_of(self, *, with_forces: bool) -> Set[Role]:
         """The roles of the quantities of a run."""
         return {*self.roles, *(("force",) if with_forces else ())}
@@ -249,6 +244,12 @@ def _module(cls: type, name: str) -> ModuleType | None:
 def way(name: str) -> Way:
     """The way of that name."""
     return cast(Way, import_module(name if "." in name else f"..ways.{name}", __package__).WAY)
+
+
+def own_parts(name: str) -> dict[str, object]:
+    """The parts of that name by way, the most general first, of ways with one of their own."""
+    modules = {each: _module(type(way(each)), name) for each in reversed(WAYS)}
+    return {each: getattr(module, name.upper()) for each, module in modules.items() if module}
 
 
 def way_of(scene: Scene, drive: Drive | None = None) -> Way:

@@ -19,7 +19,7 @@ from reports.page.sections.section import PageReport, Section, WaySection
 from reports.page.sections.stability import build as stability
 from reports.page.sections.verdict import build as verdict
 from reports.results.overview import Report
-from reports.way.way import WAYS, way
+from reports.way.way import own_parts
 
 Build = Callable[[PageReport], Section | None]
 
@@ -29,8 +29,7 @@ def _of_driven(build: Callable[[Report], Section | None]) -> Build:
     return lambda report: None if report.driven is None else build(report.driven)
 
 
-_OWN = {name: way(name).own_part("section", None) for name in reversed(WAYS)}
-OF_WAYS = {name: cast(WaySection, own) for name, own in _OWN.items() if own}
+OF_WAYS = {name: cast(WaySection, own) for name, own in own_parts("section").items()}
 """The sections of ways, by the name of the way."""
 SECTIONS: dict[str, Build] = {
     "verdict": verdict,
