@@ -25,7 +25,7 @@ from reports.figures.figure_set import FigureSet, note
 from reports.figures.sheet import ONE, SIDES, Panels, sheet
 from reports.figures.style import COLUMN_IN, INK, PAGE_IN, QUIET, SMALL, Look, shorten
 from reports.output.numbers import readable
-from reports.way.clock import SECONDS, TURNS, clock_of
+from reports.way.clock import SECONDS, TURNS
 from reports.way.way import way_of
 
 ELASTIC: Look = {"color": "#1f5f9e", "linewidth": 1.1}
@@ -201,7 +201,7 @@ def _positions(course: ElasticCourse) -> Figure | None:
         (Line2D([], [], color=colour, linewidth=2.0), f"{name}{' (elastic)' * (name in own.bent)}")
         for name, colour in colours.items()
     ]
-    ghost, what, turns = BESIDE[clock_of(way_of(scene).drive)]
+    ghost, what, turns = BESIDE[way_of(scene).clock]
     entries.append((Line2D([], [], **GHOST), ghost))
     title = f"{what}, magnified {factor:g} times: {scene.name}"
     figure, panes = sheet(PAGE_IN, replace(panels, height=height), title, entries, _notes(course))

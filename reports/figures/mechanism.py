@@ -26,7 +26,7 @@ from reports.drawing.shape import PATH_SAMPLES, box_of, clearest, turn_of
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, width_in
 from reports.results.overview import Report, facts_of
-from reports.way.clock import SECONDS, TURNS, Clock, clock_of
+from reports.way.clock import SECONDS, TURNS
 from reports.way.way import way_of
 
 FREE_SAMPLES = 2401
@@ -38,16 +38,12 @@ OF_CLOCK = {TURNS: ("closed form", PATH_SAMPLES), SECONDS: ("integrated", FREE_S
 """Where a motion comes from, and samples of its paths."""
 
 
-def _clock(scene: Scene) -> Clock:
-    return clock_of(way_of(scene).drive)
-
-
 def draw(report: Report, name: str) -> Figure | None:
     """The drawing; None for a scene whose text in the store can not be read."""
     scene = report.scenes[name]
     if scene is None:
         return None
-    path = turn_of(scene, OF_CLOCK[_clock(scene)][1])
+    path = turn_of(scene, OF_CLOCK[way_of(scene).clock][1])
     at = clearest(path)
     title = f"{name}, {driver_stands(scene, path, at)}"
     under = [f"{scene.source}. {scene.note}", _origin(report, scene)]
@@ -110,5 +106,5 @@ def _origin(report: Report, scene: Scene) -> str:
     """Where the drawing comes from: it is the closed form's, and no engine's."""
     own = facts_of(report).get("crankcheck", "")
     longest = f"longest link L = {scene.longest_m:g} m"
-    truth, _ = OF_CLOCK[_clock(scene)]
+    truth, _ = OF_CLOCK[way_of(scene).clock]
     return f"crankcheck {own}, {truth}; driver {describe_law(scene)}; {longest}."

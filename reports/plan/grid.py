@@ -50,7 +50,7 @@ class Task:
     @property
     def label(self) -> str:
         cell = self.cell
-        step = cell.way.step(cell.scene, cell.dt_s)
+        step = cell.way.clock.short(cell.dt_s, cell.steps_per_turn)
         return f"{cell.scene.name}, {cell.engine} {self.variant}, {step}"
 
 

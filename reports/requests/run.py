@@ -103,7 +103,9 @@ class Simulation(Shown, Run):
 
     def _length(self) -> str:
         """How long it is: in turns of what drives it, or in time."""
-        return way_of(self.mechanism).long(self.mechanism, self.dt_s, self.steps)
+        way = way_of(self.mechanism)
+        per_turn = way.turn_s(self.mechanism) / self.dt_s
+        return way.clock.long(self.dt_s, self.steps, per_turn)
 
     def ending(self) -> str:
         """What came of it, in a line."""

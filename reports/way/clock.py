@@ -18,6 +18,15 @@ class Clock:
     per: str
     unit: str
 
+    def short(self, dt_s: float, steps_per_turn: float) -> str:
+        """The step of a run, in a few words."""
+        return f"{steps_per_turn:g} a turn"
+
+    def long(self, dt_s: float, steps: int, steps_per_turn: float) -> str:
+        """How long a run of so many steps is, in words."""
+        turns = steps / steps_per_turn
+        return f"{steps_per_turn:.6g} steps a turn, {turns:.6g} turn{'s' * (turns != 1.0)}"
+
     def step(self, row: Mapping[Any, Any]) -> str:
         """The step of a stored cell, in words: so many in a turn."""
         return f"{row['steps_per_turn']:g}"
@@ -37,6 +46,12 @@ class Clock:
 
 class Seconds(Clock):
     """As of `Clock`: what nothing drives has no turns."""
+
+    def short(self, dt_s: float, steps_per_turn: float) -> str:
+        return f"dt {dt_s:g} s"
+
+    def long(self, dt_s: float, steps: int, steps_per_turn: float) -> str:
+        return f"{steps} steps, {steps * dt_s:.6g} s"
 
     def step(self, row: Mapping[Any, Any]) -> str:
         return duration(row["dt_s"])

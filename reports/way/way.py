@@ -18,6 +18,7 @@ from models.motion import Forces, Motion, State
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.quantities.quantity import Role, Tolerance
+from reports.way.clock import Clock, clock_of
 from reports.way.length import GivenAs, Length, Planned, Springs
 from reports.way.result_kind import ResultKind
 from sim.engine import Drive
@@ -122,9 +123,14 @@ class Way(Protocol):
         """Refuse a run that has no reference. Raises CrankcheckError."""
         ...
 
+    @property
+    def clock(self) -> Clock:
+        """What steps and lengths of its runs are counted over."""
+        return clock_of(self.drive)
+
     def turn_s(self, scene: Scene) -> float:
         """What lengths of runs are multiples of [s]: a turn of the driver, or a second."""
-        ...
+        return self.clock.period_s(scene.driver.law.period_s)
 
     def every(self, steps: int, steps_per_turn: float) -> int:
         """How many steps are taken from sample to sample of the log."""
@@ -155,14 +161,6 @@ class Way(Protocol):
 
     def refuse_length(self, option: str) -> NoReturn:
         """Refuse an option of a length that says nothing of it. Raises CrankcheckError."""
-        ...
-
-    def step(self, scene: Scene, dt_s: float) -> str:
-        """A step, in words."""
-        ...
-
-    def long(self, scene: Scene, dt_s: float, steps: int) -> str:
-        """How long a run of so many steps is, in words."""
         ...
 
     def released(self, scene: Scene) -> Scene:

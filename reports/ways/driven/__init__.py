@@ -78,9 +78,6 @@ class DrivenWay(Way):
     def stored(self, row: Mapping[Any, Any]) -> bool:
         return True
 
-    def turn_s(self, scene: Scene) -> float:
-        return scene.driver.law.period_s
-
     def note(self, scene: Scene, duration_s: float) -> str:
         return passage_note(scene, duration_s)
 
@@ -97,14 +94,6 @@ class DrivenWay(Way):
         raise CrankcheckError(
             f"{option}: it is of scenes that are let go; add --free, or leave {option} out"
         )
-
-    def step(self, scene: Scene, dt_s: float) -> str:
-        return f"{self.turn_s(scene) / dt_s:g} a turn"
-
-    def long(self, scene: Scene, dt_s: float, steps: int) -> str:
-        per_turn = self.turn_s(scene) / dt_s
-        turns = steps / per_turn
-        return f"{per_turn:.6g} steps a turn, {turns:.6g} turn{'s' * (turns != 1.0)}"
 
     def released(self, scene: Scene) -> Scene:
         return scene

@@ -77,9 +77,6 @@ class FreeWay(DrivenWay):
     def stored(self, row: Mapping[Any, Any]) -> bool:
         return str(row["drive"]) == "free"
 
-    def turn_s(self, scene: Scene) -> float:
-        return 1.0
-
     def note(self, scene: Scene, duration_s: float) -> str:
         return ""
 
@@ -98,12 +95,6 @@ class FreeWay(DrivenWay):
         raise CrankcheckError(
             f"{option}: what is let go has no turns; give --dt and --duration, in seconds"
         )
-
-    def step(self, scene: Scene, dt_s: float) -> str:
-        return f"dt {dt_s:g} s"
-
-    def long(self, scene: Scene, dt_s: float, steps: int) -> str:
-        return f"{steps} steps, {steps * dt_s:.6g} s"
 
     def released(self, scene: Scene) -> Scene:
         return loosened(under_control(scene))
