@@ -24,9 +24,9 @@ from analytic.turns.count import Counter
 from models.array import Array, beside, samples
 from models.errors import CrankcheckError, ReachError, StructureError
 from models.files.names import MOST_ASSEMBLIES
-from models.laws import ConstantSpeed, Law
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed, Law
 
 
 def solve(

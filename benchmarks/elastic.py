@@ -27,10 +27,10 @@ from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.engine_start import segment_start
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
-from models.cut_scenes import SegmentedScene
-from models.elastic import Shape
 from models.files.reading import load_scene, names_of_scenes
 from models.scene import Scene
+from models.scene.cut_scenes import SegmentedScene
+from models.scene.elastic import Shape
 from reports.output.provenance import processor
 from sim.run import run
 

@@ -26,8 +26,8 @@ from typing import NamedTuple
 import numpy as np
 
 from models.files.reading import load_scene
-from models.laws import ConstantSpeed
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
 from reports.judge.cell import Cell, examined
 from reports.plan.elastic import SPRINGS, held_steps
 from reports.way.length import Springs

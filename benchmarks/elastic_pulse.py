@@ -24,11 +24,11 @@ from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.released import release_elastic
 from analytic.free.release import release
 from models.array import Array
-from models.driver import Controlled
-from models.elastic import Shape
 from models.files.reading import load_scene
-from models.laws import ConstantSpeed
 from models.scene import Scene
+from models.scene.driver import Controlled
+from models.scene.elastic import Shape
+from models.scene.laws import ConstantSpeed
 
 PULSE, CONTROLLED = load_scene("fourbar-elastic-pulse"), load_scene("fourbar-elastic-controlled")
 LINK = "coupler"

@@ -41,9 +41,9 @@ from analytic.elastic.periodic import (
 from analytic.elastic.reduced import ReducedForm
 from analytic.lectures.vibration.steady_vibration import at_speed
 from models.array import Array
-from models.cut_scenes import BeamedScene
 from models.files.reading import load_scene
 from models.scene import Scene
+from models.scene.cut_scenes import BeamedScene
 from sim.run import run
 
 RATIOS = (3.5, 5.5, 8.5, 10.5, 14.5, 20.5)

@@ -24,8 +24,8 @@ if __name__ == "__main__":  # run as a file: the packages are beside this folder
     sys.path[0] = str(Path(__file__).resolve().parents[1])
 
 import crankcheck
-from models.hard import fourbar
 from models.scene import Scene
+from models.scene.hard import fourbar
 from reports.output.provenance import processor
 from sim.engine import SettingValue
 from sim.registry import engine

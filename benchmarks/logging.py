@@ -26,8 +26,8 @@ from analytic.kinematics import solve
 from models.files.reading import load_scene
 from reports.output.provenance import processor
 from sim.engine import Engine, Session
+from sim.engine.settings import resolved
 from sim.registry import engine
-from sim.settings import resolved
 
 SCENE, DT_S, STEPS, REPEATS = "fourbar-lecture-1", 1e-3, 2000, 41
 NOISE = 0.05

@@ -1,4 +1,4 @@
-"""Measure what the models of `sim.offers` need: ``python -m benchmarks.step_cost``.
+"""Measure what the models of `sim.registry.offers` need: ``python -m benchmarks.step_cost``.
 
 Every shipped scene at constant speed is timed in all engines, with settings that differ in what
 they ask for; each is timed in several rounds, far apart, and the least time counts. Takes some
@@ -15,9 +15,9 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.files.reading import load_scene, shipped
-from models.laws import ConstantSpeed
 from models.motion import State
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
 from reports.judge.cell import Cell
 from reports.sweep.measured import Repeats, timed_in_turns
 from reports.tune.attempt import GUESS_US

@@ -30,7 +30,7 @@ from analytic.free.release import release
 from analytic.free.toggle_barrier import ToggleBarrier
 from analytic.mechanism.fourbar import FourBar
 from models.errors import CrankcheckError
-from models.hard import fourbar
+from models.scene.hard import fourbar
 from reports.compare.free.hard_runs import toggle_passage
 from sim.registry import engine
 from sim.run import run

@@ -1,7 +1,7 @@
 """Chains of windows left free: how well the engines hold the benchmark A02, and at what cost.
 
 `python benchmarks/window_chain.py [accuracy] [thousandth] [timings]` prints three tables, or those
-that are named. `accuracy` holds N = 40 windows for 20 s (problem A02, see `models.hard`) to
+that are named. `accuracy` holds N = 40 windows for 20 s (problem A02, see `models.scene.hard`) to
 the closed form: energy drift over what a turn exchanges, error of B0 up to several times, the
 largest gap of a pin, and whether and where the rods ceased to be parallel. `thousandth` has the
 steps and settings tried to hold place and velocity of B0 for 10 s to a thousandth, with N = 2 and
@@ -31,7 +31,7 @@ from concurrent.futures import ProcessPoolExecutor
 
 from analytic.free.window_chain import ChainMotion
 from models.errors import EngineError
-from models.hard import Chain
+from models.scene.hard import Chain
 from reports.compare.free.hard_runs import ChainErrors, hold
 from reports.output.provenance import processor
 from sim.engine import SettingValue

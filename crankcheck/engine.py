@@ -15,10 +15,12 @@ What stands here is public. ``drive`` says what the crank is to be told at each 
 for an engine with joint coordinates, whose motion `body_poses` turns into poses.
 """
 
-from models import tree
-from models.elastic import Beam
 from models.errors import EngineError
-from models.joints import (
+from models.mjcf import tree
+from models.motion import Forces, SliderForces, State
+from models.scene import GROUND, Point, Scene, Slider
+from models.scene.elastic import Beam
+from models.scene.joints import (
     Frame,
     Joints,
     Pin,
@@ -38,10 +40,7 @@ from models.joints import (
     sliding_angle,
     whole_turns,
 )
-from models.loads import ConstantFriction, LineSpring, Load, PinSpring, SlideSpring, Spring
-from models.motion import Forces, SliderForces, State
-from models.scene import GROUND, Point, Scene, Slider
-from sim import drive, load_magnitudes
+from models.scene.loads import ConstantFriction, LineSpring, Load, PinSpring, SlideSpring, Spring
 from sim.engine import (
     BodyPose,
     Drive,
@@ -57,9 +56,11 @@ from sim.engine import (
     Setting,
     Settings,
     SettingValue,
+    drive,
+    load_magnitudes,
 )
-from sim.settings import SettingError, check_choices, check_ranges
-from sim.tree_poses import body_poses
+from sim.engine.settings import SettingError, check_choices, check_ranges
+from sim.engine.tree_poses import body_poses
 
 __all__ = [
     "GROUND",

@@ -57,24 +57,22 @@ FLOORS: Mapping[str, str] = {
     """,
     "sim": f"""
         {" ".join(ENGINES)}
-        spoil
-        run offers own_models
-        check registry momentum_balance
-        measure drive tree_poses settings own_engine load_magnitudes
+        run
+        registry
+        own_engine
         engine
     """,
 }
-"""A file that stands in a package itself is a room of its own; of `reports` there is none."""
-LOOSE = {"analytic", "sim"}
+"""A file that stands in `analytic` itself is a room of its own; elsewhere there is none."""
+LOOSE = {"analytic"}
 LECTURES = "lectures"
 """The room of each package on top of all others: no other room imports it, a table names it."""
 HOMES = {declaration(name).package: f"sim.{name}" for name in ENGINES}
 """Each engine's package, and the one room that imports it."""
-NAMING = ("sim/registry.py", "models/mjcf", *(f"sim/{name}/" for name in ENGINES))
+NAMING = ("sim/registry/__init__.py", "models/mjcf/", *(f"sim/{name}/" for name in ENGINES))
 """Where engines are named: the line of each, MuJoCo's own format, which others read too, and each
 engine's folder."""
 MENTIONING: Mapping[str, str] = {
-    "models/tree.py": "why a massless block is refused, whose cure is a mass",
     "reports/judge/rules": "what to turn in which engine, as a cure",
     "reports/quantities": "as in the rules",
     "reports/selftest/engines.py": "what a fault is called that one engine has by default",
@@ -272,7 +270,7 @@ def house(tmp_path: Path) -> Path:
         ("reports/page/a.py", "from reports.figures.marks import marks"),
         ("reports/store/a.py", "if TYPE_CHECKING:\n    import reports.cli"),
         ("analytic/structure/a.py", "import analytic.dyads.rrr"),
-        ("sim/measure/a.py", "from sim import run"),
+        ("sim/engine/a.py", "from sim import run"),
         ("reports/judge/a.py", "import reports.unplanned"),
         ("models/a.py", "import models.lectures.scheme"),
         ("sim/mujoco/a.py", "from tests.worlds import driven"),

@@ -25,8 +25,8 @@ from analytic.dyads.plane import (
     rounding_of_angles,
 )
 from analytic.structure.groups import Compound
-from models.joints import less, local_point, sliding_angle
 from models.scene import Point, Scene
+from models.scene.joints import less, local_point, sliding_angle
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,8 +33,8 @@ from analytic.dyads.riding import Placed
 from analytic.structure.groups import Compound, Group, JointKey, Triad, as_triad
 from analytic.structure.groups import Leg as LegOfGroup
 from models.errors import StructureError
-from models.joints import local_point
 from models.scene import Point, Scene, span
+from models.scene.joints import local_point
 
 
 class Mounting:

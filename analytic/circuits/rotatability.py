@@ -23,8 +23,8 @@ from analytic.prepared import prepared
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError, StructureError
-from models.joints import block_name, joined_at
 from models.scene import GROUND, Scene
+from models.scene.joints import block_name, joined_at
 
 LOOKS = 2880
 ZOOMS, FINER = 8, 33

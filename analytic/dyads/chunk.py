@@ -26,8 +26,8 @@ from analytic.dyads.plane import (
     rounding_of_angles,
 )
 from models.array import Array
-from models.joints import local_point, sliding_angle
 from models.scene import GROUND, Point, Scene, span
+from models.scene.joints import local_point, sliding_angle
 
 
 class Passage(Protocol):

@@ -24,8 +24,8 @@ from analytic.dyads.plane import (
     rounding_of_angles,
 )
 from analytic.structure.mobility import Structure
-from models.joints import less, local_point, sliding_body, turned
 from models.scene import Point, Scene
+from models.scene.joints import less, local_point, sliding_body, turned
 
 
 def total(*points: Point) -> Point:

@@ -25,9 +25,9 @@ from analytic.dyads.riding import (
 )
 from analytic.structure.groups import Group
 from models.array import Array
-from models.joints import less, sliding_body, turned
 from models.motion import Crossing
 from models.scene import Scene
+from models.scene.joints import less, sliding_body, turned
 
 
 class Step(Protocol):

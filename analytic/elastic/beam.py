@@ -23,10 +23,10 @@ import numpy as np
 from analytic.elastic.shapes import Shapes, places, shortening
 from analytic.multibody.bodies import Marker, Markers
 from models.array import Array
-from models.cut_links import Line
-from models.elastic import ElasticLink
-from models.joints import turned
 from models.scene import Point
+from models.scene.cut_links import Line
+from models.scene.elastic import ElasticLink
+from models.scene.joints import turned
 
 
 @dataclass(frozen=True)

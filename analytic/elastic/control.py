@@ -1,4 +1,4 @@
-"""Elastic links of a mechanism whose driver is controlled (`models.driver`).
+"""Elastic links of a mechanism whose driver is controlled (`models.scene.driver`).
 
 Nothing tells the driver's angle: it is one of the freedoms, as in what is let go, with the torque
 of the controller on it. What the rigid mechanism needs comes from its kinetostatics.
@@ -19,12 +19,12 @@ from analytic.multibody.assembly import Assembly
 from analytic.multibody.bodies import Configuration
 from analytic.multibody.generalised_forces import GeneralisedForces, Strokes
 from models.array import Array
-from models.characteristics import FourierSum
-from models.cut_links import with_rigid_links
-from models.driver import Controlled, Released, check_duration, let_go
-from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.scene import Same, Scene
+from models.scene.characteristics import FourierSum
+from models.scene.cut_links import with_rigid_links
+from models.scene.driver import Controlled, Released, check_duration, let_go
+from models.scene.elastic import Shape
 
 
 def elastic_history(

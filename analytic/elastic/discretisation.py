@@ -12,14 +12,14 @@ from analytic.elastic.beam import ElasticBody
 from analytic.elastic.shapes import HermiteElements, LegendrePolynomials, Shapes, SineModes
 from analytic.multibody.bodies import Marker, Markers
 from models.array import Array
-from models.cut_links import Line, line_of
-from models.cut_scenes import segment_spring
-from models.elastic import ElasticLink
 from models.errors import CrankcheckError
 from models.files.elastic_table import SLENDER
-from models.joints import turned
 from models.motion import Motion
 from models.scene import Point, Scene
+from models.scene.cut_links import Line, line_of
+from models.scene.cut_scenes import segment_spring
+from models.scene.elastic import ElasticLink
+from models.scene.joints import turned
 
 
 @dataclass(frozen=True)
@@ -199,9 +199,9 @@ class SegmentedBody:
 
         A o--1--@--2--@--3--@ ... --n--o B        @ a pin with a spring, n - 1 of them
 
-    The chain that `models.cut_scenes` makes of an elastic link, as a body of the multibody form: so
-    an engine's chain has an exact one beside it. Its coordinates are those of the first segment,
-    then the angle of each segment against the one before it.
+    The chain that `models.scene.cut_scenes` makes of an elastic link, as a body of the multibody
+    form: so an engine's chain has an exact one beside it. Its coordinates are those of the first
+    segment, then the angle of each segment against the one before it.
     """
 
     link: ElasticLink

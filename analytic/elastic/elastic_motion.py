@@ -29,11 +29,11 @@ from analytic.multibody.dynamics import joint_forces
 from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.structure.mobility import refuse_other_than_cranked
 from models.array import Array, samples
-from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.motion import ElasticMotion as LinkShape
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.elastic import Shape
 
 PER_TURN, PER_CYCLE = 24, 6
 """Windows of the integration in a turn of the driver, and in a cycle of the first mode across: 10

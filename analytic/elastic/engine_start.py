@@ -14,10 +14,10 @@ from analytic.elastic.elastic_motion import DrivenElasticMotion, ElasticHistory
 from analytic.elastic.released import ENOUGH
 from analytic.multibody.as_motion import as_motion
 from models.array import Array
-from models.cut_links import line_of
-from models.cut_scenes import BeamedScene, SegmentedScene
-from models.elastic import Shape
 from models.motion import State
+from models.scene.cut_links import line_of
+from models.scene.cut_scenes import BeamedScene, SegmentedScene
+from models.scene.elastic import Shape
 
 
 def chain_motion(own: SegmentedScene, start: Shape, until_s: float = 1.0) -> ElasticHistory:

@@ -15,10 +15,10 @@ import numpy as np
 
 from analytic.elastic.reduced import ReducedForm
 from models.array import Array
-from models.cut_links import line_of
-from models.elastic import ElasticLink
-from models.laws import ConstantSpeed
 from models.scene import Scene
+from models.scene.cut_links import line_of
+from models.scene.elastic import ElasticLink
+from models.scene.laws import ConstantSpeed
 
 SHOWN = 3
 """Modes of a link, of each kind, that are told."""

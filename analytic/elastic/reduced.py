@@ -25,12 +25,12 @@ from analytic.multibody.assembly import Assembly
 from analytic.multibody.bodies import Configuration, FlexibleBody
 from analytic.multibody.generalised_forces import GeneralisedForces
 from models.array import Array
-from models.driver import Controlled
 from models.errors import CrankcheckError
-from models.joints import block_name, sliding_angle
-from models.laws import Law
 from models.motion import Motion
 from models.scene import GROUND
+from models.scene.driver import Controlled
+from models.scene.joints import block_name, sliding_angle
+from models.scene.laws import Law
 
 MOST_STEPS = 20
 CLOSED = 1e-13

@@ -31,10 +31,10 @@ from analytic.multibody.dynamics import Dynamics, joint_forces
 from analytic.multibody.generalised_forces import GeneralisedForces, edges
 from analytic.multibody.release_multibody import Acting, ready
 from models.array import Array, samples
-from models.driver import check_duration, check_within
 from models.errors import StructureError
 from models.motion import Motion, State
 from models.scene import Scene
+from models.scene.driver import check_duration, check_within
 
 Method = Literal["collocation", "library"]
 PieceInstants = tuple[Array, FreePiece, FreeInstant, Array]

@@ -18,8 +18,8 @@ from analytic.dyads.plane import Vec
 from analytic.forces.bounded import NOUGHT, NOWHERE, Bounded, BoundedVec, Three, solved_three
 from analytic.forces.free_body import Balance, PrismaticPair
 from analytic.structure.groups import Group, JointKey, Leg, Triad, as_triad
-from models.joints import local_point
 from models.scene import Point
+from models.scene.joints import local_point
 
 ONE = Bounded(1.0)
 

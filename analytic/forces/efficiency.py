@@ -13,12 +13,12 @@ from analytic.forces.virtual_power import reduced_machine
 from analytic.kinematics import repeats_after, solve
 from analytic.structure.mobility import analyse
 from models.array import Array
-from models.driver import driver_course
 from models.errors import CrankcheckError
-from models.joints import block_name
-from models.laws import ConstantSpeed, Oscillating
 from models.motion import Forces, Motion
 from models.scene import GROUND, Scene
+from models.scene.driver import driver_course
+from models.scene.joints import block_name
+from models.scene.laws import ConstantSpeed, Oscillating
 
 LOOKS = 720
 """Looks at a cycle; what is shorter than one of its parts is missed."""

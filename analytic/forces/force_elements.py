@@ -22,9 +22,16 @@ from analytic.prepared import prepared
 from analytic.structure.mobility import Structure
 from models.array import Array
 from models.errors import CrankcheckError, few
-from models.joints import block_name, local_point, whole_turns
-from models.loads import ConstantFriction, Friction, LineSpring, PinSpring, SlideSpring, Spring
 from models.scene import GROUND, KEPT, Same, Scene
+from models.scene.joints import block_name, local_point, whole_turns
+from models.scene.loads import (
+    ConstantFriction,
+    Friction,
+    LineSpring,
+    PinSpring,
+    SlideSpring,
+    Spring,
+)
 
 Stretch = tuple[Bounded, Bounded]
 """The q of a spring [m or rad] and its rate q' [m/s or rad/s]."""

@@ -31,9 +31,9 @@ from analytic.structure.groups import Group
 from analytic.structure.mobility import Structure
 from models.array import Array
 from models.errors import CrankcheckError, few
-from models.joints import block_name, local_point, sliding_body
-from models.loads import Load
 from models.scene import GROUND, Point, Scene, Slider
+from models.scene.joints import block_name, local_point, sliding_body
+from models.scene.loads import Load
 
 ROUGH = 4 * EPS
 """What turning a vector of a body rounds off, over its length."""

@@ -28,8 +28,8 @@ from analytic.forces.force_elements import Rubbing
 from analytic.forces.free_body import Balance, Displaced, FreeBody
 from analytic.structure.mobility import Structure
 from models.array import Array, Mask
-from models.loads import CoulombFriction
 from models.scene import Scene
+from models.scene.loads import CoulombFriction
 
 
 @dataclass(frozen=True)

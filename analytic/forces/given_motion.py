@@ -20,11 +20,11 @@ from analytic.dyads.plane import (
     rounding_of_angles,
 )
 from analytic.prepared import CHUNK
-from models.driver import driver_course
 from models.errors import CrankcheckError
-from models.joints import block_name
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
+from models.scene.driver import driver_course
+from models.scene.joints import block_name
 
 
 def chunks_of(scene: Scene, motion: Motion, *, bound: bool) -> Iterator[tuple[slice, Chunk]]:

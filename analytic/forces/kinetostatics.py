@@ -30,9 +30,9 @@ from analytic.kinematics import chunks, unit_chunk
 from analytic.structure.mobility import Structure, analyse
 from models.array import Array, Mask, samples
 from models.errors import CrankcheckError, few
-from models.loads import ConstantFriction, CoulombFriction, Friction
 from models.motion import ForceBound, Forces, FrictionSolution, Motion, SliderForces
 from models.scene import Scene
+from models.scene.loads import ConstantFriction, CoulombFriction, Friction
 
 
 def forces(

@@ -22,9 +22,9 @@ import numpy as np
 
 from analytic.forces.given_motion import chunks_of
 from models.array import Array
-from models.joints import bodies, centre_of, mass_of
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
+from models.scene.joints import bodies, centre_of, mass_of
 
 
 @dataclass(frozen=True)

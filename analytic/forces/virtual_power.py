@@ -24,8 +24,8 @@ from analytic.forces.force_elements import apply_springs
 from analytic.forces.free_body import FreeBody, apply_loads
 from analytic.kinematics import chunks, unit_chunk
 from models.array import Array, samples
-from models.joints import block_name
 from models.scene import GROUND, Point, Scene
+from models.scene.joints import block_name
 
 
 def torque_by_power(free: Mapping[str, FreeBody], unit: Chunk, chunk: Chunk) -> Bounded:

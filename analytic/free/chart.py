@@ -21,9 +21,9 @@ from analytic.free.limit_position import LimitPosition
 from analytic.kinematics import solve_driven
 from analytic.prepared import Prepared, prepared, ranges
 from models.array import Array
-from models.driver import Released
 from models.errors import CrankcheckError
 from models.scene import Scene
+from models.scene.driver import Released
 
 BEYOND = (1e-9, 1e-6, 1e-4, 1e-2)
 """How far beyond a limit is looked which dyad is open there [rad]."""

@@ -11,11 +11,11 @@ import numpy as np
 from analytic.kinematics import in_assembly, solve
 from analytic.multibody.bodies import EnergyBalance
 from models.array import Array
-from models.driver import Released, let_go
 from models.errors import CrankcheckError
-from models.laws import ConstantSpeed, Law
 from models.motion import Motion
 from models.scene import Driver, Scene
+from models.scene.driver import Released, let_go
+from models.scene.laws import ConstantSpeed, Law
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ STILL = 1e-9
 
 
 def loosened(scene: Scene, duration_s: float | None = None) -> Scene:
-    """The scene let go, as `models.driver.let_go` has it, of whatever joint its driver is.
+    """The scene let go, as `models.scene.driver.let_go` has it, of whatever joint its driver is.
 
     Raises
     ------

@@ -23,8 +23,8 @@ from analytic.free.machine import Machine
 from analytic.free.window import Gauss, WindowSolution, gauss
 from models.array import Array
 from models.errors import CrankcheckError
-from models.loads import LineSpring, Spring
 from models.scene import Scene
+from models.scene.loads import LineSpring, Spring
 
 
 def heeds_direction(scene: Scene) -> bool:

@@ -27,9 +27,9 @@ from analytic.free.chart import Arc, Chart
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
-from models.joints import block_name
-from models.loads import ConstantFriction, PinSpring, Spring
 from models.scene import Scene
+from models.scene.joints import block_name
+from models.scene.loads import ConstantFriction, PinSpring, Spring
 
 Wound = Mapping[str, Real]
 """Of each spring in a pin an angle q that its own is within half a turn of [rad]."""

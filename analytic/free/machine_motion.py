@@ -17,9 +17,9 @@ from analytic.free.window import gauss, sums
 from analytic.kinematics import solve_driven
 from analytic.multibody.bodies import EnergyBalance
 from models.array import Array, from_end, samples
-from models.driver import check_within
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.driver import check_within
 
 
 @dataclass(frozen=True, eq=False)

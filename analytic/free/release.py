@@ -22,11 +22,11 @@ from analytic.kinematics import solve_driven
 from analytic.multibody.release_multibody import release_multibody
 from analytic.prepared import prepared
 from analytic.structure.mobility import analyse
-from models.driver import Released, check_duration
 from models.errors import CrankcheckError, SceneError, StructureError
-from models.loads import LineSpring
 from models.motion import Motion
 from models.scene import KEPT, Same, Scene
+from models.scene.driver import Released, check_duration
+from models.scene.loads import LineSpring
 
 NODES, OTHERS = 20, 16
 """Of a window, and of a window of the integration that it is compared with."""
@@ -38,7 +38,7 @@ def release(scene: Scene, until_s: float) -> FreeMotion:
     Parameters
     ----------
     scene : Scene
-        A mechanism whose driver is let go (`models.driver`), with its masses. With another
+        A mechanism whose driver is let go (`models.scene.driver`), with its masses. With another
         mobility than 1, or a group without a closed form, the start names the links' angles.
     until_s : float
         For how long [s].

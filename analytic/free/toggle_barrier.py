@@ -24,10 +24,10 @@ from analytic.free.free_motion import LimitPassage
 from analytic.free.machine import Machine
 from analytic.kinematics import solve_driven
 from models.array import Array
-from models.driver import Released
 from models.errors import CrankcheckError
 from models.motion import State
 from models.scene import Scene
+from models.scene.driver import Released
 
 GRAVITY_M_S2 = 9.81
 REACH = 0.25

@@ -1,4 +1,4 @@
-"""Free motion of a chain of windows, in closed form: the truth of `models.hard`.
+"""Free motion of a chain of windows, in closed form: the truth of `models.scene.hard`.
 
 While all rockers turn together, theta being their angle and l, m length and mass of a rod, the
 N + 1 rockers have the kinetic energy (N + 1) m l^2 theta'^2 / 6, and the N couplers, which only
@@ -22,8 +22,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array, samples
-from models.hard import UPRIGHT, Chain
 from models.motion import LinkMotion, Motion, PointMotion
+from models.scene.hard import UPRIGHT, Chain
 
 
 @dataclass(frozen=True)

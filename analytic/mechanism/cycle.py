@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 from analytic.kinematics import repeats_after, solve_driven
 from models.array import Array
 from models.errors import CrankcheckError
-from models.laws import Oscillating
 from models.motion import Motion, PointMotion
 from models.scene import Scene
+from models.scene.laws import Oscillating
 
 SCAN = 720
 """Looks at a turn."""

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from analytic.multibody.assembly import Assembly
 from analytic.multibody.bodies import Configuration
 from models.array import Array
-from models.joints import sliding_angle, sliding_body
 from models.motion import ElasticMotion, LinkMotion, Motion, PointMotion, SliderMotion
+from models.scene.joints import sliding_angle, sliding_body
 
 
 def as_motion(assembly: Assembly, time_s: Array, now: Configuration, seconds: Array) -> Motion:

@@ -32,8 +32,8 @@ from analytic.multibody.bodies import (
     inertias,
 )
 from models.array import Array
-from models.joints import joined_at, local_point, sliding_angle, sliding_body
 from models.scene import GROUND, Point, Scene, Slider
+from models.scene.joints import joined_at, local_point, sliding_angle, sliding_body
 
 RIGID: Mapping[str, Flexible] = MappingProxyType({})
 """No link is flexible."""

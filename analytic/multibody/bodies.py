@@ -14,8 +14,8 @@ from typing import Protocol
 import numpy as np
 
 from models.array import Array, Mask
-from models.joints import block_name
 from models.scene import Point, Scene
+from models.scene.joints import block_name
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,8 @@ import numpy as np
 from analytic.multibody.assembly import Assembly
 from analytic.multibody.bodies import Configuration
 from models.array import Array
-from models.loads import LineSpring, Load, PinSpring, Spring
 from models.scene import Scene
+from models.scene.loads import LineSpring, Load, PinSpring, Spring
 
 Strokes = Mapping[str, bool]
 """Whether each load that acts on one stroke of a slider does so."""

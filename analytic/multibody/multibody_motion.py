@@ -18,10 +18,10 @@ from analytic.multibody.generalised_forces import edges
 from analytic.multibody.outset import Outset
 from analytic.multibody.steps import FixedSteps, SingularPassage, StateHistory
 from models.array import Array, Mask, from_end, samples
-from models.driver import check_within
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.driver import check_within
 
 TOLERANCE = 1e-13
 NUDGE = 1e-6

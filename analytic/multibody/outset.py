@@ -19,9 +19,9 @@ from analytic.multibody.bodies import Configuration
 from analytic.multibody.generalised_forces import GeneralisedForces
 from models.array import Array
 from models.errors import CrankcheckError, few
-from models.joints import frames, local_point, sliding_angle, sliding_body, turned
 from models.motion import State
 from models.scene import GROUND, Point
+from models.scene.joints import frames, local_point, sliding_angle, sliding_body, turned
 
 ROUGH_RAD, ROUGH = math.radians(1.0), 0.01
 """What a named angle, and a named displacement over the longest link, may be off by where others

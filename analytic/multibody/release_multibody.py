@@ -15,10 +15,10 @@ from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.multibody.multibody_motion import Method, MultibodyMotion, Projection
 from analytic.multibody.outset import INDEPENDENT, Outset
 from models.array import Array
-from models.driver import check_duration
 from models.errors import CrankcheckError, few
 from models.motion import State
 from models.scene import Scene
+from models.scene.driver import check_duration
 
 Acting = Callable[[Assembly, Array], GeneralisedForces]
 PROJECTED = Projection()

@@ -27,8 +27,8 @@ from analytic.structure.groups import (
     decompose,
 )
 from models.errors import CrankcheckError, StructureError, few
-from models.joints import block_name, joined_at, sliding_body
 from models.scene import GROUND, Scene
+from models.scene.joints import block_name, joined_at, sliding_body
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from numbers import Integral
 
-from models.elastic import ElasticLink
 from models.errors import SceneError
 from models.files.driver_table import DriverTable, driver_of, driver_table
 from models.files.elastic_table import (
@@ -28,8 +27,16 @@ from models.files.schema import (
     within_a_turn,
 )
 from models.files.spring_table import springs_of
-from models.loads import ConstantFriction, CoulombFriction, Friction, LineSpring, PinSpring, Spring
 from models.scene import GROUND, Link, Point, Scene, Slider, Start, span
+from models.scene.elastic import ElasticLink
+from models.scene.loads import (
+    ConstantFriction,
+    CoulombFriction,
+    Friction,
+    LineSpring,
+    PinSpring,
+    Spring,
+)
 
 ROD_KG_PER_M = 1.0
 FARTHEST = 1e12

@@ -8,7 +8,6 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, model_validator
 
-from models.driver import Controlled, Released
 from models.errors import CrankcheckError
 from models.files.load_table import in_degrees
 from models.files.schema import (
@@ -23,9 +22,10 @@ from models.files.schema import (
     not_tiny,
     within_a_turn,
 )
-from models.joints import sliding_body
-from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.scene import GROUND, Driver, Link, Point, Slider
+from models.scene.driver import Controlled, Released
+from models.scene.joints import sliding_body
+from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 
 TinyChecked = AfterValidator(not_tiny)
 

@@ -7,14 +7,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from models.cut_links import line_of
-from models.driver import Controlled, Released
-from models.elastic import ElasticLink
 from models.errors import cut, few
 from models.files.schema import ElasticTable, SceneTable, StartTable
-from models.laws import ConstantSpeed, Oscillating
 from models.scene import Scene, Start
-from models.tabulated import Tabulated
+from models.scene.cut_links import line_of
+from models.scene.driver import Controlled, Released
+from models.scene.elastic import ElasticLink
+from models.scene.laws import ConstantSpeed, Oscillating
+from models.scene.tabulated import Tabulated
 
 SAME = 1e-9
 """What masses and lengths that a file says twice agree to."""

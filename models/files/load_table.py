@@ -8,7 +8,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from models.characteristics import (
+from models.errors import CrankcheckError
+from models.files.schema import Degrees, Name, Number, Positive, Table, within_a_turn
+from models.scene import Slider
+from models.scene.characteristics import (
     Characteristic,
     Constant,
     FourierSum,
@@ -17,12 +20,9 @@ from models.characteristics import (
     Sine,
     Staircase,
 )
-from models.errors import CrankcheckError
-from models.files.schema import Degrees, Name, Number, Positive, Table, within_a_turn
-from models.joints import block_name
-from models.loads import Load, Over, Stroke
-from models.scene import Slider
-from models.tabulated import Interpolation, Tabulated
+from models.scene.joints import block_name
+from models.scene.loads import Load, Over, Stroke
+from models.scene.tabulated import Interpolation, Tabulated
 
 UNIT: dict[str, str] = {
     "time": "s",

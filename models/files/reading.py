@@ -9,7 +9,6 @@ from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from models.driver import Controlled, Released
 from models.errors import CrankcheckError, SceneError, cut, few, nearest, shown, suggestion
 from models.files.assemble import scene_from_table
 from models.files.driver_table import DRIVERS, SLIDES, DriverTable
@@ -18,6 +17,7 @@ from models.files.load_table import LOADS, LawOfLoad
 from models.files.names import faults_of_names
 from models.files.schema import ElasticTable, SceneTable
 from models.scene import Scene
+from models.scene.driver import Controlled, Released
 
 SCENE_FOLDER = Path(__file__).parents[1] / "scenes"
 """Of folders of scene files, one for each kind."""

@@ -15,7 +15,7 @@ from pydantic import (
     model_validator,
 )
 
-from models.driver import LONGEST_S
+from models.scene.driver import LONGEST_S
 
 NAME = r"[A-Za-z][A-Za-z0-9_-]{0,39}"
 """What a name is: nothing in it leaves a path, a tag or a cell."""

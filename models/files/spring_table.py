@@ -11,8 +11,8 @@ from typing import Any
 
 from models.errors import cut, few
 from models.files.schema import SceneTable, SpringTable
-from models.loads import LineSpring, PinSpring, SlideSpring, Spring
 from models.scene import GROUND
+from models.scene.loads import LineSpring, PinSpring, SlideSpring, Spring
 
 LISTED = 12
 """Names that a message lists."""

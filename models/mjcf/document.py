@@ -17,9 +17,7 @@ from __future__ import annotations
 
 from xml.sax.saxutils import quoteattr
 
-from models.driver import Controlled, driver_rates
 from models.errors import EngineError
-from models.joints import bodies, centre_of, local_point, mass_of
 from models.mjcf.forces import (
     friction_of,
     load_actuators,
@@ -40,9 +38,11 @@ from models.mjcf.options import (
     exact,
     has_control,
 )
+from models.mjcf.tree import Limb, Tree, driven_freedom
 from models.motion import State
 from models.scene import GROUND, Scene
-from models.tree import Limb, Tree, driven_freedom
+from models.scene.driver import Controlled, driver_rates
+from models.scene.joints import bodies, centre_of, local_point, mass_of
 
 LEAST_MASS = 1e-15
 """MuJoCo refuses moving bodies with a mass [kg] or inertia [kg m^2] below this (mjMINVAL)."""

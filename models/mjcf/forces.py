@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from models.characteristics import Constant
-from models.driver import driver_place_in
 from models.errors import EngineError
-from models.joints import (
+from models.mjcf.options import AttributeRow, Writing, attributes, commentable
+from models.mjcf.tree import Freedom, Limb, Tree, closings, plan
+from models.motion import State
+from models.scene import GROUND, Point, Scene
+from models.scene.characteristics import Constant
+from models.scene.driver import driver_place_in
+from models.scene.joints import (
     Slot,
     block_name,
     centre_of,
@@ -18,11 +22,7 @@ from models.joints import (
     turned,
     whole_turns,
 )
-from models.loads import ConstantFriction, LineSpring, Load, PinSpring, Spring
-from models.mjcf.options import AttributeRow, Writing, attributes, commentable
-from models.motion import State
-from models.scene import GROUND, Point, Scene
-from models.tree import Freedom, Limb, Tree, closings, plan
+from models.scene.loads import ConstantFriction, LineSpring, Load, PinSpring, Spring
 
 AXES = "ground axes"
 """The site that stands still, along whose axes forces in the ground's frame act."""
@@ -273,7 +273,7 @@ def planned(scene: Scene, state: State, writing: Writing) -> Tree:
     Raises
     ------
     EngineError
-        As `models.tree.plan`; where each way to close the loops closes one at a pin that rubs.
+        As `models.mjcf.tree.plan`; where each way to close the loops closes one at a pin that rubs.
 
     MuJoCo has friction that is constant (``frictionloss``), in hinges and slides of the tree; a
     connect, which closes a loop, has none. So loops close at pins that do not rub.

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from xml.sax.saxutils import quoteattr
 
-from models.joints import inertia_scale
-from models.laws import ConstantSpeed
 from models.scene import Scene
+from models.scene.joints import inertia_scale
+from models.scene.laws import ConstantSpeed
 
 FLYWHEEL_RATIO = 1e12
 """Armature of the driven joint over the inertia scale of the scene."""

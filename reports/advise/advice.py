@@ -14,8 +14,8 @@ from reports.output.numbers import count, short
 from reports.results.cost import apart, equal, noise_of
 from reports.sweep.measured import Repeats, timed_in_turns
 from reports.workers.isolated import Isolated
-from sim.offers import Stepping, frame_snippet
 from sim.registry import engine, offering
+from sim.registry.offers import Stepping, frame_snippet
 
 ROUNDS = 10
 """How often each is timed, one after the other: a slow minute then slows all."""

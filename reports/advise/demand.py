@@ -9,8 +9,8 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 from models.errors import CrankcheckError, EngineError
-from models.laws import ConstantSpeed
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
 from reports.judge.cell import Cell
 from reports.judge.three_steps import AT_ROUNDING
 from reports.plan.singular import refuse_singular
@@ -18,8 +18,8 @@ from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
 from reports.plan.study import load_study
 from reports.results.variants import OWN, value_text
 from sim.engine import SettingValue
+from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
-from sim.settings import profile_of, resolved
 
 MOST_SUBSTEPS = 4096
 """Of a frame; who needs more has the wrong settings."""

@@ -11,16 +11,16 @@ from pathlib import Path
 
 from models.errors import EngineError
 from models.files.reading import parse_scene
-from models.laws import ConstantSpeed
-from models.loads import ConstantFriction
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
+from models.scene.loads import ConstantFriction
 from reports.advise.demand import Choice, Demand, key_of
 from reports.plan.grid import shape_digest
 from reports.results.fits.curves import interpolate
 from reports.results.lines import Line
 from reports.store.reader import Stored
+from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
-from sim.settings import profile_of, resolved
 
 SAME_SPEED = 1e-9
 """Relative difference of two speeds that are one."""

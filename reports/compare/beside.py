@@ -12,9 +12,9 @@ import numpy as np
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve, solve_driven
 from models.array import Array
-from models.driver import driver_place
 from models.motion import Motion, State
 from models.scene import Same, Scene
+from models.scene.driver import driver_place
 from reports.compare.tracks import Track, angle_error, fitting, lacking, tracks
 from reports.quantities import named
 from sim.engine import Energy, Run

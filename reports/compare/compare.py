@@ -19,8 +19,8 @@ from models.motion import State
 from models.scene import Scene
 from reports.compare.beside import Beside
 from reports.compare.errors import Error, Errors
-from sim.check import SAME
 from sim.engine import Run, Settings, SettingValue, Setup
+from sim.run.check import SAME
 
 
 class Comparing(Protocol):

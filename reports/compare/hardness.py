@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.array import Array, Mask
-from models.driver import driver_course
 from models.errors import CrankcheckError
-from models.joints import block_name, blocks, local_point
-from models.loads import Load
 from models.motion import Crossing, Motion
 from models.scene import Scene
+from models.scene.driver import driver_course
+from models.scene.joints import block_name, blocks, local_point
+from models.scene.loads import Load
 from reports.compare.tracks import length
 from reports.quantities.quantity import BodyKind
 

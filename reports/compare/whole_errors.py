@@ -11,10 +11,10 @@ import numpy as np
 
 from analytic.forces.late_impulses import jolts
 from models.array import Array, Mask
-from models.joints import mass_ratio
-from models.laws import ConstantSpeed, Law
 from models.motion import Forces, Motion
 from models.scene import Scene
+from models.scene.joints import mass_ratio
+from models.scene.laws import ConstantSpeed, Law
 from reports.compare.beside import Beside
 from reports.compare.error_rows import (
     Instants,

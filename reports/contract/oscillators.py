@@ -21,13 +21,13 @@ import numpy as np
 from analytic.multibody.multibody_motion import Baumgarte
 from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
-from models.driver import Released
-from models.joints import bodies, centre_of, frames
-from models.loads import LineSpring, PinSpring, SlideSpring, Spring
 from models.motion import State
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
+from models.scene.driver import Released
+from models.scene.joints import bodies, centre_of, frames
+from models.scene.loads import LineSpring, PinSpring, SlideSpring, Spring
 from sim.engine import Poses
-from sim.measure import motion
+from sim.engine.measure import motion
 
 PACE, DECAY = 10.0, 0.5
 """Of all of them, in rad/s and 1/s."""

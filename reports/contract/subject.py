@@ -11,16 +11,16 @@ import numpy as np
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import EngineError
-from models.laws import Law
 from models.motion import Forces, State
 from models.scene import Same, Scene
+from models.scene.laws import Law
 from reports.compare.beside import Beside, truth_of
 from reports.compare.compare import compare
 from reports.compare.errors import Errors
 from sim.engine import Drive, Engine, ForceSession, Poses, Run, Session, Settings
+from sim.engine.settings import SettingError, profile_of, resolved
 from sim.own_engine.watched import BrokenContractError
 from sim.run import run
-from sim.settings import SettingError, profile_of, resolved
 
 STEPS = 600
 """Steps in a period, where a clause says nothing else."""

@@ -17,11 +17,11 @@ from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
 from analytic.kinematics import solve
 from models.array import Array
-from models.cut_links import line_of, with_rigid_links
-from models.driver import Controlled
-from models.elastic import Shape
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.cut_links import line_of, with_rigid_links
+from models.scene.driver import Controlled
+from models.scene.elastic import Shape
 from reports.describe.elastic_words import described
 from reports.describe.tables import Columns, tables_over_time
 from reports.output.console import plain_table

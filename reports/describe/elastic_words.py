@@ -21,11 +21,11 @@ from analytic.elastic.discretisation import (
 from analytic.elastic.elastic_motion import ElasticHistory
 from analytic.elastic.released import ReleasedElasticMotion
 from models.array import Array
-from models.cut_links import line_of
-from models.elastic import ElasticLink, Shape
-from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.cut_links import line_of
+from models.scene.elastic import ElasticLink, Shape
+from models.scene.laws import ConstantSpeed
 from reports.output.numbers import count, error_text, listed, readable
 
 NEAR = 0.1

@@ -12,10 +12,10 @@ from analytic.mechanism.cycle import Along, Output
 from analytic.mechanism.fourbar import FourBar
 from analytic.mechanism.travel import ExtremeSpeed, Travel, extreme_speeds, travels
 from analytic.structure.mobility import Structure
-from models.driver import Controlled, Released, passing
 from models.errors import CrankcheckError, StructureError
-from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.scene import Scene
+from models.scene.driver import Controlled, Released, passing
+from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from reports.way.way import way_of
 
 FULL_TURN = math.tau - 1e-9
@@ -53,7 +53,7 @@ def speed_facts(
 ) -> SpeedFacts | None:
     """The largest and smallest speeds of links, sliders and points along directions, at the
     driver's angles at which they have no acceleration; None where a cycle of the mechanism has
-    none. ``clockwise`` turns a driver of one speed round, as in `models.driver`."""
+    none. ``clockwise`` turns a driver of one speed round, as in `models.scene.driver`."""
     try:
         every = extreme_speeds(scene, _outputs(scene, along))
     except CrankcheckError:

@@ -11,10 +11,10 @@ from rich.table import Table
 from analytic.forces.efficiency import Efficiency, PowerFlow, efficiency, friction_power, power_flow
 from analytic.structure.mobility import analyse
 from models.array import Array
-from models.driver import driver_course, driver_place, driver_shown, driver_unit
 from models.errors import CrankcheckError
 from models.motion import Forces, Motion
 from models.scene import Scene
+from models.scene.driver import driver_course, driver_place, driver_shown, driver_unit
 from reports.describe.frame import acted_on
 from reports.describe.tables import Columns, digits, head_table, tables_over_time
 from reports.output.console import plain_table

@@ -10,9 +10,9 @@ from rich.table import Table
 
 from analytic.mechanism.travel import coriolis
 from models.array import Array
-from models.driver import driver_place
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.driver import driver_place
 from reports.describe.facts import SpeedFacts
 from reports.output.console import plain_table
 

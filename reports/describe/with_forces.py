@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
-from models.characteristics import Constant
-from models.driver import driver_place, driver_shown, driver_unit
 from models.errors import CrankcheckError
 from models.motion import Forces, Motion, SliderForces
 from models.scene import Scene
+from models.scene.characteristics import Constant
+from models.scene.driver import driver_place, driver_shown, driver_unit
 from reports.output.numbers import count, listed
 
 UNCERTAIN = 1e-6

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from models.joints import block_name
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.joints import block_name
 from reports.drawing.packed import packed
 from reports.drawing.shape import MARGIN, box_of, guide_direction, size_of_motion
 

@@ -17,9 +17,9 @@ from matplotlib.patheffects import withStroke
 from PIL import Image
 
 from models.array import Array
-from models.driver import driver_stands
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
+from models.scene.driver import driver_stands
 from reports.drawing.force_arrows import ForceArrows, force_arrows
 from reports.drawing.shape import (
     PATH_SAMPLES,

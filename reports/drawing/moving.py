@@ -18,11 +18,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from models.cut_links import line_of
-from models.driver import driver_axis, driver_course, driver_unit
-from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene
+from models.scene.cut_links import line_of
+from models.scene.driver import driver_axis, driver_course, driver_unit
+from models.scene.laws import Oscillating
 from reports.compare.last_turn import Trace
 from reports.compare.tracks import angle_error
 from reports.drawing.packed import packed

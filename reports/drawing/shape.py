@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from models.array import Array
-from models.laws import Oscillating
 from models.motion import Forces, Motion
 from models.scene import GROUND, Scene, Slider
+from models.scene.laws import Oscillating
 from reports.way.way import way_of
 
 PATH_SAMPLES = 361

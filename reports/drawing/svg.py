@@ -14,9 +14,9 @@ from html import escape
 import numpy as np
 
 from models.array import Array
-from models.driver import driver_stands
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
+from models.scene.driver import driver_stands
 from reports.drawing.force_arrows import Arrow, ForceArrows, force_arrows
 from reports.drawing.names import Name, Sheet, names, rail
 from reports.drawing.shape import box_of, clearest, guide_direction, size_of_motion, turn_of

@@ -14,10 +14,10 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
 from models.array import Array
-from models.cut_links import line_of
-from models.driver import Controlled
-from models.laws import ConstantSpeed
 from models.motion import Motion
+from models.scene.cut_links import line_of
+from models.scene.driver import Controlled
+from models.scene.laws import ConstantSpeed
 from reports.describe.elastic_course import Apart, ElasticCourse
 from reports.drawing.moving import Magnified, magnification
 from reports.drawing.shape import MARGIN, box_of, colours_of, guide_direction, size_of_motion

@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
-from models.driver import driver_axis
 from models.scene import Scene
+from models.scene.driver import driver_axis
 from reports.drawing.moving import told_places
 from reports.figures.drawing import ends
 from reports.figures.sheet import corner_words, grid, tenfold

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from models.array import Array
-from models.driver import driver_course
+from models.scene.driver import driver_course
 from reports.describe.force_tables import cycle_of, cycle_words, flow_of
 from reports.describe.frame import acted_on
 from reports.drawing.shape import colours_of

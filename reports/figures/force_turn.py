@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from analytic.forces.virtual_power import ReducedMachine, reduced_machine
 from models.array import Array
-from models.characteristics import Constant
-from models.driver import driver_axis, driver_shown
-from models.laws import ConstantSpeed
 from models.motion import Forces, Motion
 from models.scene import Scene
+from models.scene.characteristics import Constant
+from models.scene.driver import driver_axis, driver_shown
+from models.scene.laws import ConstantSpeed
 from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_forces
 from reports.drawing.moving import goes_round
 from reports.drawing.shape import clear_of_locking

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
-from models.driver import driver_shown, driver_stands
+from models.scene.driver import driver_shown, driver_stands
 from reports.describe.frame import acted_on
 from reports.drawing.force_arrows import force_arrows
 from reports.drawing.moving import goes_round

@@ -15,9 +15,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
-from models.driver import driver_stands
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.driver import driver_stands
 from reports.describe.facts import describe_law
 from reports.drawing.force_arrows import ForceArrows
 from reports.drawing.gif import draw_arrows, draw_bodies, scale_bar

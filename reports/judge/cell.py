@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from models.driver import place_in_words
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Scene
+from models.scene.driver import place_in_words
 from reports.compare.beside import Truth
 from reports.compare.compare import compare, not_asked_for
 from reports.compare.errors import Departure
@@ -21,9 +21,9 @@ from reports.judge.tolerance import limits
 from reports.way.length import SEGMENTS, GivenAs, Planned, Springs
 from reports.way.way import Way, way_of
 from sim.engine import Drive, Engine, Run, SettingValue
+from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
 from sim.run import run, setup
-from sim.settings import profile_of, resolved
 
 CellRunner = Callable[..., Run]
 """What runs a cell: it takes what `sim.run.run` takes."""

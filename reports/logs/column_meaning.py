@@ -10,8 +10,8 @@ import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError, suggestion
-from models.laws import MOST_TURNS
 from models.scene import Scene
+from models.scene.laws import MOST_TURNS
 from reports.logs.channel import Channel, Gap, Reading
 from reports.logs.columns import Columns
 from reports.logs.kinds import KINDS, Meaning

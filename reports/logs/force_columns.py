@@ -19,9 +19,9 @@ import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError, cut, few
-from models.joints import joined_at
 from models.motion import Forces, SliderForces
 from models.scene import GROUND, Scene
+from models.scene.joints import joined_at
 from reports.output.numbers import listed
 
 if TYPE_CHECKING:

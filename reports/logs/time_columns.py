@@ -8,8 +8,8 @@ import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError, cut, few
-from models.laws import MOST_TURNS
 from models.scene import Scene
+from models.scene.laws import MOST_TURNS
 from reports.logs.columns import Columns
 from reports.logs.map_file import Map
 from reports.logs.units import DIMENSION, UNITS, one_unit, si, spelled_unit, without_unit

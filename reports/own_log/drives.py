@@ -12,8 +12,8 @@ import numpy as np
 from analytic.structure.mobility import refuse_other_than_cranked
 from models.array import Array
 from models.errors import CrankcheckError, shown
-from models.laws import ConstantSpeed
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
 from reports.compare.beside import Truth
 from reports.logs.channel import OwnLog, Reading
 from reports.logs.log_beside import MANY, AtCrank

@@ -24,7 +24,7 @@ from reports.plan.singular import continued_note, refuse_singular
 from reports.plan.steps import counted
 from reports.workers.isolated import Isolated, Limits, Lost
 from sim.engine import Engine, Run
-from sim.own_models import Advised, Disturbance, OwnModel, reader, reading_engine
+from sim.registry.own_models import Advised, Disturbance, OwnModel, reader, reading_engine
 
 NO_MEMORY = "not allocate memory"
 """What an engine says that may have no more memory."""

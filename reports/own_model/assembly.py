@@ -14,11 +14,11 @@ from analytic.kinematics import in_assembly, reach, solve, solve_driven
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, ReachError, few
 from models.files.names import MOST_ASSEMBLIES
-from models.joints import Frame, frames
-from models.laws import ConstantSpeed
 from models.scene import Driver, Scene
+from models.scene.joints import Frame, frames
+from models.scene.laws import ConstantSpeed
 from sim.engine import BodyPose
-from sim.own_models import MOST_TURNS, OwnModel
+from sim.registry.own_models import MOST_TURNS, OwnModel
 
 MOST_CHOICES = 8
 """Assemblies are tried one by one, two to the power of the choices; more of these are asked for."""

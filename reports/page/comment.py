@@ -19,7 +19,7 @@ from reports.results.variants import label
 from reports.store.reader import Stored
 from reports.way.clock import clock_of
 from sim.engine import Drive
-from sim.offers import snippet_writer
+from sim.registry.offers import snippet_writer
 
 ROOM = {
     "damage": 4_000,

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.array import Array
-from models.driver import driver_course, driver_shown
 from models.motion import Motion
+from models.scene.driver import driver_course, driver_shown
 from reports.drawing.moving import goes_round
 from reports.logs.channel import Reading
 from reports.logs.units import UNITS

@@ -6,8 +6,8 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import PurePath
 
-from models.driver import driver_axis
 from models.errors import few
+from models.scene.driver import driver_axis
 from reports.causes.cause import Cause
 from reports.drawing.moving import goes_round
 from reports.drawing.packed import packed, singles

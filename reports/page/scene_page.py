@@ -12,11 +12,11 @@ import numpy as np
 from analytic.elastic.elastic_motion import ElasticHistory
 from analytic.free.free_motion import FreeMotion
 from models.array import Array
-from models.cut_links import line_of
-from models.driver import driver_unit
-from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.cut_links import line_of
+from models.scene.driver import driver_unit
+from models.scene.laws import ConstantSpeed
 from reports.describe.elastic_course import (
     ElasticCourse,
     elastic_course,

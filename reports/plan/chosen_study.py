@@ -10,8 +10,8 @@ from reports.plan.chosen import chosen_engines
 from reports.plan.free import free_names
 from reports.plan.steps import FREE_STEPS_S, TIMES_HELD
 from reports.plan.study import Study, StudyValue, Variant
+from sim.engine.settings import profile_of
 from sim.registry import engine
-from sim.settings import profile_of
 
 Overrides = Mapping[str, Mapping[str, StudyValue | list[StudyValue]]]
 """Values of settings by engine, one or several of each."""

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from analytic.free.free_motion import loosened
-from models.cut_links import with_rigid_links
-from models.driver import Controlled
 from models.errors import CrankcheckError
 from models.files.reading import kinds, shipped
 from models.scene import Scene
+from models.scene.cut_links import with_rigid_links
+from models.scene.driver import Controlled
 from reports.judge.tolerance import check_names
 from reports.plan.chosen import chosen_scenes
 from reports.way.way import way_of

@@ -23,8 +23,8 @@ from reports.plan.study import UNITS, Study, Variant
 from reports.way.length import GivenAs, Planned
 from reports.way.way import driven_by, way_of
 from sim.engine import SettingValue
+from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
-from sim.settings import profile_of, resolved
 
 MOST_CELLS = 100_000
 """A day's work for one machine, and more settings than anybody looks at."""

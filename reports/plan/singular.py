@@ -13,10 +13,10 @@ import numpy as np
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import repeats_after, solve, solve_driven
 from models.array import Array, Mask
-from models.driver import driver_course, driver_unit, place_in_words
 from models.errors import CrankcheckError, few
 from models.motion import Crossing, Motion
 from models.scene import Scene
+from models.scene.driver import driver_course, driver_unit, place_in_words
 from reports.compare.hardness import near
 from sim.registry import engine
 

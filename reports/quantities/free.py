@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from models.driver import driver_place
 from models.motion import Motion
 from models.scene import GROUND, Scene
+from models.scene.driver import driver_place
 from reports.quantities.quantity import Criterion, Measure, Quantity, Series, Tolerance, every_place
 from sim.engine import Run
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from models.driver import driver_place
-from models.joints import joints
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.driver import driver_place
+from models.scene.joints import joints
 from reports.quantities.quantity import (
     BodyKind,
     Criterion,

@@ -22,8 +22,8 @@ from reports.output.numbers import listed
 from reports.plan.steps import positive
 from reports.quantities.limits import EVERY
 from sim.engine import SettingValue
+from sim.engine.settings import profile_of, resolved
 from sim.registry import FIRST, engine
-from sim.settings import profile_of, resolved
 
 if TYPE_CHECKING:
     from reports.judge.cell import Checked

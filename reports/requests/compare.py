@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from models.driver import driver_unit
 from models.errors import CrankcheckError
 from models.scene import Scene
+from models.scene.driver import driver_unit
 from reports.compare import compare as comparing
 from reports.compare.beside import Truth
 from reports.compare.errors import Error, ErrorKind, Errors, largest

@@ -22,10 +22,10 @@ from reports.plan.free import under_control
 from reports.plan.steps import MOST_STEPS
 from reports.requests.options import SceneName, option, output_option
 from reports.way.way import way_of
-from sim.offers import force_recipe, viewer
+from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
+from sim.registry.offers import force_recipe, viewer
 from sim.run import check_steps
-from sim.settings import profile_of, resolved
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class ExportRequest:
         """The MJCF of a scene, assembled at its start, into a file or to the terminal; an elastic
         link is the chain of segments that the engine is given.
 
-        Loops are closed at the pins of ``close``, the others where `models.tree` says.
+        Loops are closed at the pins of ``close``, the others where `models.mjcf.tree` says.
         """
         if self.output is not None:
             check_file(self.output, "-o", (".xml",), inputs=[find_scene(self.scene)])

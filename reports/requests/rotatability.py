@@ -16,10 +16,10 @@ from analytic.circuits.rotatability import Rotation, at_limit, dead_points, rota
 from analytic.dyads.chunk import driver_scale
 from analytic.mechanism.fourbar import grashof_of
 from analytic.structure.mobility import analyse
-from models.driver import driver_unit
 from models.errors import CrankcheckError, StructureError, harmless, shown
 from models.files.reading import load_scene
 from models.scene import Scene
+from models.scene.driver import driver_unit
 from reports.output.console import plain_table, say, say_whole
 from reports.requests.options import SceneName, option
 

@@ -14,10 +14,10 @@ from analytic.forces.efficiency import Efficiency, efficiency
 from analytic.mechanism.cycle import Along
 from analytic.structure.groups import Bridge
 from analytic.structure.mobility import Structure, analyse
-from models.driver import driver_place
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.driver import driver_place
 from reports.describe.facts import describe_law, facts, speed_facts
 from reports.describe.force_tables import (
     friction_words,

@@ -18,9 +18,9 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError, suggestion
 from models.files.reading import find_scene, load_scene
-from models.laws import MOST_TURNS
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.laws import MOST_TURNS
 from reports.describe.facts import MOST_DEG, driver_at
 from reports.describe.with_forces import with_forces
 from reports.output.frame_file import ENDINGS

@@ -14,11 +14,11 @@ from numpy.typing import ArrayLike
 from rich.console import Console
 
 from models.array import Array
-from models.driver import Controlled
-from models.elastic import Shape
 from models.errors import CrankcheckError
-from models.laws import ConstantSpeed, Oscillating
 from models.scene import Scene
+from models.scene.driver import Controlled
+from models.scene.elastic import Shape
+from models.scene.laws import ConstantSpeed, Oscillating
 from reports.output.console import say_whole
 from reports.output.frame_file import SHEET_ROWS, write_frame
 from reports.output.write import check_folder, write

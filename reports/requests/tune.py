@@ -33,9 +33,9 @@ from reports.workers.isolated import Limits
 from reports.workers.progress import progress_bar
 from reports.workers.signals import Stopped
 from sim.engine import Settings
-from sim.offers import SearchSpace, search_space, snippet
+from sim.engine.settings import profile_of, resolved
 from sim.registry import engine, offering
-from sim.settings import profile_of, resolved
+from sim.registry.offers import SearchSpace, search_space, snippet
 
 PROFILE = "tuned"
 """The profile that is searched around, and compared with."""

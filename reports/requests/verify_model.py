@@ -39,8 +39,8 @@ from reports.requests.shown import Shown
 from reports.requests.verify_options import PRESCRIBED, VerifyOptions
 from reports.verify.table import suite
 from reports.workers.isolated import LIMIT_S, MEMORY_GB, checked_limits
-from sim.own_models import reading_engine
 from sim.registry import engine
+from sim.registry.own_models import reading_engine
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -14,8 +14,8 @@ from reports.results.lines import Line, called, lines
 from reports.store.reader import Stored
 from reports.way.clock import clock_of
 from reports.way.way import WAYS
-from sim.offers import PERIOD_S, snippet
 from sim.registry import offering
+from sim.registry.offers import PERIOD_S, snippet
 
 
 @dataclass(frozen=True)

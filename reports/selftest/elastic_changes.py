@@ -14,12 +14,12 @@ from analytic.elastic.discretisation import REFERENCE, Discretisation
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.engine_start import node_start
 from models.array import Array
-from models.cut_links import CutScene
-from models.cut_scenes import BeamedScene
-from models.elastic import Beam, Shape
 from models.files.reading import load_scene
 from models.motion import Motion, State
 from models.scene import Scene
+from models.scene.cut_links import CutScene
+from models.scene.cut_scenes import BeamedScene
+from models.scene.elastic import Beam, Shape
 from reports.compare.elastic.elastic_truth import ChainTruth, ElasticTruth
 from reports.judge.cell import Cell, CellRunner
 from reports.selftest.fault import PROFILE, Items, Plant

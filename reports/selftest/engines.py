@@ -19,7 +19,7 @@ from reports.selftest.logs import last, moved
 from sim.engine import Run, Session
 from sim.registry import engine
 from sim.run import run
-from sim.spoil import Opening, Post, Spoiler, spoilt
+from sim.run.spoil import Opening, Post, Spoiler, spoilt
 
 CLEAR_RAD = 0.01
 """How far beyond the end of its swing a link does not touch what stands there."""

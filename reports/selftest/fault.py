@@ -19,16 +19,16 @@ from reports.judge.cell import Cell, CellRunner
 from reports.way.length import Planned
 from reports.way.way import way_of
 from sim.engine import Run, Session, Settings
+from sim.engine.settings import profile_of, resolved
 from sim.registry import available, engine, offering
 from sim.run import run
-from sim.settings import profile_of, resolved
-from sim.spoil import Opening, Spoiler, WrongSetting, spoiler, spoilt
+from sim.run.spoil import Opening, Spoiler, WrongSetting, spoiler, spoilt
 
 PROFILE = "tuned"
 """The profile of all runs that faults are planted in."""
 FOURBAR, SLIDER, SHAPER = "fourbar-lecture-1", "slider-crank-offset", "shaper"
 REFUSED = "the engine does not hold"
-"""What `sim.check` says where the model in the engine is not the scene."""
+"""What `sim.run.check` says where the model in the engine is not the scene."""
 Plant = Callable[[float], CellRunner]
 Items = tuple[tuple[str, Any], ...]
 RunKind = str

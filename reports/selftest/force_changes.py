@@ -13,10 +13,10 @@ import numpy as np
 
 from analytic.forces.kinetostatics import forces
 from models.array import Array
-from models.characteristics import Sine
-from models.loads import Load
 from models.motion import Forces, SliderForces
 from models.scene import Scene
+from models.scene.characteristics import Sine
+from models.scene.loads import Load
 from reports.selftest.fault import Plant, in_log
 from reports.selftest.logs import last, moved, spoilt
 from sim.engine import Run

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from models.moved_scene import scaled
+from models.scene.moved import scaled
 from reports.compare.whole_errors import OF_STEPS
 from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, in_log
 from reports.selftest.force_changes import (

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from analytic.free.release import release
-from models.characteristics import Constant, Pulse
-from models.driver import Released
-from models.joints import line_ends
-from models.loads import LineSpring, Load, SlideSpring
 from models.scene import Link, Scene
-from models.tabulated import Tabulated
+from models.scene.characteristics import Constant, Pulse
+from models.scene.driver import Released
+from models.scene.joints import line_ends
+from models.scene.loads import LineSpring, Load, SlideSpring
+from models.scene.tabulated import Tabulated
 from reports.judge.cell import CellRunner
 from reports.selftest.fault import Plant
 from sim.engine import Run

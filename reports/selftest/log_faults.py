@@ -29,7 +29,7 @@ from reports.selftest.logs import (
 from sim.engine import Run
 from sim.registry import engine
 from sim.run import run
-from sim.spoil import rounded
+from sim.run.spoil import rounded
 
 
 def late(size: float) -> CellRunner:

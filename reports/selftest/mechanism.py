@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from models.array import Array
-from models.laws import ConstantSpeed, Law
 from models.motion import PointMotion
-from models.moved_scene import scaled
 from models.scene import Link, Scene
+from models.scene.laws import ConstantSpeed, Law
+from models.scene.moved import scaled
 from reports.judge.cell import CellRunner
 from reports.selftest.fault import FOURBAR, SLIDER, Fault, Plant, in_log, in_scene, switched
 from reports.selftest.logs import every_series, last, moved, with_points

@@ -27,7 +27,7 @@ from reports.selftest.logs import moved
 from sim.engine import Run
 from sim.registry import available, engine, offering
 from sim.run import run, setup
-from sim.spoil import WrongSetting, spoiler
+from sim.run.spoil import WrongSetting, spoiler
 
 DEGREES = 10
 """Of a turn, where that is all that is run."""

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from analytic.elastic.engine_start import segment_start
-from models.cut_scenes import SegmentedScene
-from models.elastic import Shape
-from models.loads import PinSpring
 from models.motion import State
 from models.scene import Link, Scene
+from models.scene.cut_scenes import SegmentedScene
+from models.scene.elastic import Shape
+from models.scene.loads import PinSpring
 from reports.judge.cell import CellRunner
 from reports.selftest.elastic_changes import truth_of_chain
 from reports.selftest.fault import Plant

@@ -22,8 +22,8 @@ from reports.judge.rules.rule import Finding
 from reports.selftest.fault import PROFILE, STEPS, Fault, FaultRuns, FaultSet, RunKind, Unseen
 from reports.way.way import own_parts
 from reports.workers.isolated import Limits, Lost, run_all
+from sim.engine.settings import profile_of, resolved
 from sim.registry import ENGINES, engine
-from sim.settings import profile_of, resolved
 
 _SETS = [cast(FaultSet, each) for each in own_parts("faults").values()]
 RUNS: dict[RunKind, FaultRuns] = {kind: runs for each in _SETS for kind, runs in each.runs.items()}

@@ -12,11 +12,11 @@ import numpy as np
 from analytic.free.toggle_barrier import ToggleBarrier
 from analytic.kinematics import solve
 from models.array import Array
-from models.cut_scenes import SegmentedScene
 from models.errors import CrankcheckError
-from models.hard import Chain
 from models.motion import Motion, State
 from models.scene import Scene
+from models.scene.cut_scenes import SegmentedScene
+from models.scene.hard import Chain
 from reports.stability.error_series import ErrorSeries
 from reports.stability.matrix import CaseFacts, Outcome
 from reports.way.way import own_parts

@@ -9,9 +9,9 @@ import numpy as np
 
 from analytic.kinematics import nearness
 from models.array import Array
-from models.joints import joints
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.joints import joints
 from reports.compare.beside import Beside, Truth, incomplete
 from reports.compare.branch import HERE_RAD, departure
 from reports.compare.errors import Departure

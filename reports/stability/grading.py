@@ -23,9 +23,9 @@ from reports.stability.grades import outcome
 from reports.stability.matrix import Graded, Outcome, Picture, label
 from reports.way.way import own_parts
 from sim.engine import Run
+from sim.engine.settings import SettingError
 from sim.registry import engine as engine_of
 from sim.run import run
-from sim.settings import SettingError
 
 YARDSTICKS = yardsticks()
 GROUPS = {

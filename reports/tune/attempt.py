@@ -16,7 +16,7 @@ from reports.sweep.measured import MeasuredCell, Repeats, measured, timed_in_tur
 from reports.way.length import LEAST_STEPS
 from reports.workers.isolated import Isolated, Limits, Lost
 from sim.engine import Settings
-from sim.offers import Work
+from sim.registry.offers import Work
 
 DEARER = 2.0
 """How many times the cost of the best so far settings may take before they are given up."""

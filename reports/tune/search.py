@@ -34,7 +34,7 @@ from reports.output.write import check_file
 from reports.plan.coarsest import RESOLUTION
 from reports.tune.attempt import Attempt
 from sim.engine import Settings, SettingValue
-from sim.offers import Knob, SearchSpace, Values
+from sim.registry.offers import Knob, SearchSpace, Values
 
 FOUND = "found"
 """Where a trial keeps its attempt."""

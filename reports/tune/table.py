@@ -13,7 +13,7 @@ from reports.output.console import plain_table
 from reports.quantities import QUANTITIES, named
 from reports.results.variants import value_text
 from reports.tune.attempt import Attempt, Goal, Row, Taken
-from sim.offers import SearchSpace
+from sim.registry.offers import SearchSpace
 
 OTHERS = {
     f"{name}_pure": f"{name} / {QUANTITIES[name].share}" for name in named("closure", "derived")

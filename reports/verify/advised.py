@@ -10,9 +10,9 @@ from reports.judge.cell import Cell, Checked, check, unfinished
 from reports.judge.rules import FORCES, PLACES, RATES, TUNABLE, judge
 from reports.workers.isolated import Limits, Lost, run_all
 from sim.engine import Settings
-from sim.offers import remedies
+from sim.engine.settings import profile_of, resolved
 from sim.registry import ENGINES, engine
-from sim.settings import profile_of, resolved
+from sim.registry.offers import remedies
 
 HELPS = 3.0
 """How many times less error makes a remedy; less than that may be chance."""

@@ -9,14 +9,13 @@ import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.joints import inertia_scale, turned
-from models.laws import ConstantSpeed, Law
 from models.scene import Scene
-from sim import drive as drives
+from models.scene.joints import inertia_scale, turned
+from models.scene.laws import ConstantSpeed, Law
 from sim.engine import Drive, Poses, Settings
-from sim.exudyn.library import items
+from sim.engine import drive as drives
 from sim.exudyn.solver import Multipliers
-from sim.exudyn.system import Index, PlaneSystem
+from sim.exudyn.system import Index, PlaneSystem, items
 
 
 def speeds(law: Law, start_s: float, dt_s: float, steps: int) -> Array:

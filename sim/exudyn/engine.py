@@ -14,15 +14,25 @@ from models.errors import EngineError
 from models.motion import State
 from models.scene import Point, Scene
 from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings
+from sim.engine.measure import across, arms
 from sim.exudyn.crank_drive import CrankCourse, CrankDrive, refuse_undriven
-from sim.exudyn.library import VERSION, exu, items, plain, quiet
 from sim.exudyn.loads import Applied, Present, apply_loads, follows_rates
 from sim.exudyn.passive import Springs, apply_friction
 from sim.exudyn.reactions import reactions
 from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, of_rigid, placing
 from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_drive, simulation
-from sim.exudyn.system import PlaneSystem, build, held_beams, node_masses, rounding_n
-from sim.measure import across, arms
+from sim.exudyn.system import (
+    VERSION,
+    PlaneSystem,
+    build,
+    exu,
+    held_beams,
+    items,
+    node_masses,
+    plain,
+    quiet,
+    rounding_n,
+)
 
 LEVELS = ("Coordinates", "Coordinates_t", "Coordinates_tt")
 

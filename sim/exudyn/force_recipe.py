@@ -6,7 +6,9 @@ import textwrap
 from typing import Any
 
 from models.errors import EngineError
-from models.joints import (
+from models.motion import State
+from models.scene import GROUND, Point, Scene
+from models.scene.joints import (
     Prism,
     bodies,
     centre_of,
@@ -19,12 +21,10 @@ from models.joints import (
     sliding_angle,
     turned,
 )
-from models.laws import ConstantSpeed
-from models.motion import State
-from models.scene import GROUND, Point, Scene
+from models.scene.laws import ConstantSpeed
 from sim.engine import Settings
 from sim.exudyn.settings import BY_NEED
-from sim.offers import ForceRecipe
+from sim.registry.offers import ForceRecipe
 
 PROGRAM = '''"""{title}"""
 

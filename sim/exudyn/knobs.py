@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-from models.joints import bodies, joints
 from models.motion import State
 from models.scene import Scene
+from models.scene.joints import bodies, joints
 from sim.engine import Settings
 from sim.exudyn.settings import BY_NEED, INTEGRATORS, JACOBIANS
-from sim.offers import Knob, SearchSpace, Work
+from sim.registry.offers import Knob, SearchSpace, Work
 
 STEP_US, ITERATION_US, MATRIX_US = 12.036, 0.074, 0.0188
 DIGITS_PER_ITERATION = 8.0

@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from models.characteristics import Constant, Staircase
 from models.errors import CrankcheckError, EngineError, few
-from models.joints import (
+from models.motion import State
+from models.scene import GROUND, Point, Scene
+from models.scene.characteristics import Constant, Staircase
+from models.scene.joints import (
     Prism,
     Slot,
     block_name,
@@ -20,13 +22,10 @@ from models.joints import (
     riding_body,
     sliding_angle,
 )
-from models.loads import Load
-from models.motion import State
-from models.scene import GROUND, Point, Scene
+from models.scene.loads import Load
 from sim.engine import Drive
-from sim.exudyn.library import exu, items
-from sim.exudyn.system import ANGLE, Index, PlaneSystem
-from sim.load_magnitudes import ahead, known_ahead
+from sim.engine.load_magnitudes import ahead, known_ahead
+from sim.exudyn.system import ANGLE, Index, PlaneSystem, exu, items
 
 KIND = exu.OutputVariableType
 

@@ -9,14 +9,21 @@ import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.joints import frames, joined_at, joints, line_ends, riding_body, turned, whole_turns
-from models.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
 from models.motion import State
 from models.scene import GROUND, Point, Scene
+from models.scene.joints import (
+    frames,
+    joined_at,
+    joints,
+    line_ends,
+    riding_body,
+    turned,
+    whole_turns,
+)
+from models.scene.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
 from sim.engine import Drive
-from sim.exudyn.library import items
 from sim.exudyn.loads import Applied, Present, Size
-from sim.exudyn.system import Index, PlaneSystem
+from sim.exudyn.system import Index, PlaneSystem, items
 
 Held = tuple[float, float, float]
 """Rate, damping, and the length or angle at which it is slack."""

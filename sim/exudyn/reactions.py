@@ -13,15 +13,15 @@ import math
 import numpy as np
 
 from models.array import Array
-from models.joints import Prism, block_name, joined_at, joints, riding_body, sliding_angle
-from models.loads import ConstantFriction, Load, SlideSpring
 from models.motion import Forces, SliderForces
 from models.scene import GROUND, Scene, Slider
+from models.scene.joints import Prism, block_name, joined_at, joints, riding_body, sliding_angle
+from models.scene.loads import ConstantFriction, Load, SlideSpring
 from sim.engine import Poses
+from sim.engine.measure import directions, motion
 from sim.exudyn.passive import against, still_rad_s
 from sim.exudyn.solver import Multipliers
 from sim.exudyn.system import PlaneSystem
-from sim.measure import directions, motion
 
 
 class BlockLoads:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from models.motion import State
 from models.scene import Scene
 from sim.engine import Settings
-from sim.offers import Remedies
+from sim.registry.offers import Remedies
 
 CHOICES: tuple[Settings, ...] = (
     {"jacobian": "each-iteration"},

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sim.engine import Drive, Placing, Profile, Setting, Settings
-from sim.settings import check_choices, check_ranges
+from sim.engine.settings import check_choices, check_ranges
 
 INTEGRATORS = ("GeneralizedAlpha", "TrapezoidalIndex2")
 """The implicit ones; explicit ones take no joints."""

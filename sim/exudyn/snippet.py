@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
 from sim.exudyn.settings import AS_SHIPPED, BY_NEED, MOST_DENSE, of_drive
-from sim.offers import SnippetWriter, Stepping, comment
+from sim.registry.offers import SnippetWriter, Stepping, comment
 
 WIDTH = 96
 DRIVES: Mapping[Drive, str] = {
@@ -28,7 +28,7 @@ def exudyn_snippet(
 
     The integrator and its step, which can only be the whole system's, and how far Newton's method
     goes, never less far than it would. What else differs from exudyn's defaults might spoil the
-    rest of a user's system and stands in a comment; see `sim.offers.snippet`.
+    rest of a user's system and stands in a comment; see `sim.registry.offers.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = of_drive(defaults | dict(settings), drive)

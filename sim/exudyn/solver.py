@@ -10,9 +10,8 @@ import numpy as np
 
 from models.array import Array
 from sim.engine import Settings, SettingValue
-from sim.exudyn.library import exu, quiet
 from sim.exudyn.settings import BY_NEED, MOST_DENSE
-from sim.exudyn.system import Index
+from sim.exudyn.system import Index, exu, quiet
 
 FREE = 1e-9
 """A singular value of the constraints, over the largest, of a motion that they do not hold."""

@@ -5,18 +5,26 @@ All bodies have three coordinates, the driven crank too: what drives it is one c
 pin of k bodies is k - 1 hinges. What runs on a line is a prismatic joint whose second marker, on
 the guide, lies on the line; a massless block is one that leaves the angle free. The nodes of beams
 have a tangent in place of an angle.
+
+Its type stubs leave out ``self`` and its items are untyped, so all of it is `Any` here.
 """
 
 from __future__ import annotations
 
+import contextlib
+import io
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Any
 
-from models.elastic import Beam
 from models.errors import EngineError
-from models.joints import (
+from models.motion import State
+from models.scene import GROUND, Point, Scene
+from models.scene.elastic import Beam
+from models.scene.joints import (
     Frame,
     Prism,
     Slot,
@@ -31,9 +39,34 @@ from models.joints import (
     sliding_angle,
     turned,
 )
-from models.motion import State
-from models.scene import GROUND, Point, Scene
-from sim.exudyn.library import exu, items
+
+SAID = re.compile(r"Python WARNING|Python ERROR")
+"""What begins each of the things that exudyn says of a run."""
+PLACE = re.compile(r"\[(?:Python )?file .*?\]:?")
+"""Where in a Python program a call of exudyn stands, which it adds to all that it says."""
+
+
+@contextlib.contextmanager
+def quiet(heard: list[str]) -> Iterator[None]:
+    """Add to ``heard`` what exudyn prints meanwhile, which it does by way of ``sys.stdout``."""
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(said):
+            yield
+    finally:
+        heard += [text for part in SAID.split(said.getvalue()) if (text := plain(part))]
+
+
+def plain(text: str) -> str:
+    """What exudyn says in one line, without its rules of asterisks."""
+    return " ".join(PLACE.sub("", text).replace("*", "").split())
+
+
+with quiet([]):  # it announces what its environment variables ask of it
+    exu: Any = import_module("exudyn")
+    items: Any = import_module("exudyn.itemInterface")
+VERSION = str(exu.config.Version())
+
 
 ANGLE = 2
 """The coordinate of a node that is its angle."""

@@ -13,11 +13,13 @@ from models.errors import EngineError
 from models.mjcf.document import build
 from models.mjcf.forces import SpringTendon, planned, spring_tendons
 from models.mjcf.options import Writing, has_control
+from models.mjcf.tree import Tree, driven_freedom, plan
 from models.motion import State
 from models.scene import Point, Scene
-from models.tree import Tree, driven_freedom, plan
-from sim import drive as drives
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings, SettingValue
+from sim.engine import drive as drives
+from sim.engine.settings import SettingError
+from sim.engine.tree_poses import body_poses
 from sim.mujoco.loading import Loading
 from sim.mujoco.reactions import JointForces, reactions
 from sim.mujoco.settings import (
@@ -36,8 +38,6 @@ from sim.mujoco.settings import (
     writing,
 )
 from sim.mujoco.stepped import VERSION, SteppedModel, compiled, heard
-from sim.settings import SettingError
-from sim.tree_poses import body_poses
 
 
 class MujocoSession(SteppedModel):

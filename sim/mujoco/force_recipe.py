@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from models.characteristics import Constant
 from models.errors import EngineError
-from models.joints import joined_at
-from models.laws import ConstantSpeed
 from models.mjcf.document import build
 from models.mjcf.forces import planned
+from models.mjcf.tree import Tree, driven_freedom
 from models.motion import State
 from models.scene import Scene
-from models.tree import Tree, driven_freedom
+from models.scene.characteristics import Constant
+from models.scene.joints import joined_at
+from models.scene.laws import ConstantSpeed
 from sim.engine import Settings
 from sim.mujoco.settings import writing
-from sim.offers import ForceRecipe
+from sim.registry.offers import ForceRecipe
 
 PROGRAM = '''"""Reactions and driving torque of {scene} in MuJoCo, over one turn of {driver}."""
 

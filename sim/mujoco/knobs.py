@@ -6,10 +6,10 @@ alone, and save nothing (PGS: 7 % of a step with 1 pass, and -15 % with 10).
 
 from __future__ import annotations
 
+from models.mjcf.tree import plan
 from models.motion import State
 from models.scene import Scene
-from models.tree import plan
-from sim.offers import Knob, SearchSpace, Work, rungs
+from sim.registry.offers import Knob, SearchSpace, Work, rungs
 
 EVALUATIONS = {"Euler": 1.0, "implicitfast": 1.04, "discrete": 1.08, "implicit": 1.24, "RK4": 3.87}
 """The time of an integrator over that of Euler, which works out the accelerations once."""

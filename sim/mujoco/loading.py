@@ -12,12 +12,12 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.array import Array
-from models.characteristics import Characteristic, Constant
-from models.loads import Load
+from models.mjcf.tree import Limb, driven_freedom
 from models.scene import Scene
-from models.tree import Limb, driven_freedom
+from models.scene.characteristics import Characteristic, Constant
+from models.scene.loads import Load
 from sim.engine import Drive
-from sim.load_magnitudes import ahead, known_ahead
+from sim.engine.load_magnitudes import ahead, known_ahead
 
 Parts = tuple[float, float, float]
 """Of a load, at the begin, the middle and the end of a step."""

@@ -11,14 +11,14 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs  # type: ignore[
 import numpy as np
 
 from models.array import Array
-from models.joints import block_name, joined_at, joints, line_ends, local_point, riding_body
-from models.loads import LineSpring, PinSpring, SlideSpring, Spring
 from models.mjcf.forces import SpringTendon, point_of_application, rubbing_freedom
+from models.mjcf.tree import Limb, Tree
 from models.motion import Forces, SliderForces
 from models.scene import GROUND, Point, Scene, Slider
-from models.tree import Limb, Tree
+from models.scene.joints import block_name, joined_at, joints, line_ends, local_point, riding_body
+from models.scene.loads import LineSpring, PinSpring, SlideSpring, Spring
 from sim.engine import Poses
-from sim.measure import arms, directions
+from sim.engine.measure import arms, directions
 
 
 @dataclass(frozen=True)

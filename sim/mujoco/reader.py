@@ -17,7 +17,8 @@ from models.errors import EngineError, suggestion
 from models.motion import State
 from models.scene import Scene
 from sim.engine import Drive, Engine, Poses, Session, Settings
-from sim.measure import gaps
+from sim.engine.measure import gaps
+from sim.engine.tree_poses import body_poses
 from sim.mujoco.own_model.closures import ModelError, body_name, name_of, scene_name
 from sim.mujoco.own_model.component import component, loose_joints
 from sim.mujoco.own_model.disturbing import disturbances
@@ -25,8 +26,7 @@ from sim.mujoco.own_model.file import files, load, text_of
 from sim.mujoco.own_model.linkage import linkage, nearly
 from sim.mujoco.own_model.planar_model import PlanarModel, limbs_of
 from sim.mujoco.own_model.scene import scene_of
-from sim.mujoco.own_model.session import OwnModelSession
-from sim.mujoco.own_model.tour import tour
+from sim.mujoco.own_model.session import OwnModelSession, tour
 from sim.mujoco.own_model.variants import (
     OFF,
     RECOMMENDED,
@@ -39,13 +39,12 @@ from sim.mujoco.own_model.variants import (
     profiles,
 )
 from sim.mujoco.stepped import VERSION, compiled_file
-from sim.own_models import MOST_TURNS, Advised, Disturbance, Reader, Tour
-from sim.tree_poses import body_poses
+from sim.registry.own_models import MOST_TURNS, Advised, Disturbance, Reader, Tour
 
 
 @dataclass(frozen=True, eq=False)
 class ReadModel:
-    """An MJCF file as it was read: `sim.own_models.OwnModel`."""
+    """An MJCF file as it was read: `sim.registry.own_models.OwnModel`."""
 
     path: Path
     planar: PlanarModel

@@ -1,19 +1,19 @@
 """What may help a mechanism of unequal masses in MuJoCo: other pins, or stiffer ones.
 
 A closure gives way by what its force is over a stiffness that MuJoCo scales by the inverse masses
-of the two bodies as they hang in the tree. `models.tree` closes where these are heavy, which is the
-best pin mostly; which one it is depends on the forces.
+of the two bodies as they hang in the tree. `models.mjcf.tree` closes where these are heavy, which
+is the best pin mostly; which one it is depends on the forces.
 """
 
 from __future__ import annotations
 
 from itertools import islice
 
+from models.mjcf.tree import closings
 from models.motion import State
 from models.scene import Scene
-from models.tree import closings
 from sim.engine import Settings
-from sim.offers import Remedies
+from sim.registry.offers import Remedies
 
 MOST_CLOSINGS = 8
 STIFFER: tuple[Settings, ...] = ({"solref_timeconst_steps": 2}, {"solref_dampratio": 0.3})

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from models.joints import inertia_scale
-from models.loads import SegmentSpring
 from models.mjcf import document, options
 from models.motion import State
 from models.scene import Scene
+from models.scene.joints import inertia_scale
+from models.scene.loads import SegmentSpring
 from sim.engine import Drive, Profile, Setting, Settings, SettingValue
-from sim.settings import check_choices, check_ranges
+from sim.engine.settings import check_choices, check_ranges
 
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast", "discrete")
 """In MuJoCo's own order."""
@@ -75,7 +75,7 @@ AS_SHIPPED = Profile(
         "solimp_width": Setting(0.001, "default [m]"),
         "islands": Setting("enable", "default"),
         "contact": Setting("enable", "default"),
-        "close": Setting("", "the pins that `models.tree` chooses; names with + or , between"),
+        "close": Setting("", "the pins that `models.mjcf.tree` chooses; names with + or , between"),
         "flywheel_ratio": Setting(options.FLYWHEEL_RATIO, "the drive, not an engine default"),
         "servo_gain": Setting(1e3, "of the drive `servo`, over inertia scale times peak speed"),
         "servo_integrator": Setting("Euler", "default; takes the place of integrator under servo"),

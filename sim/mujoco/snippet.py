@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings, SettingValue
 from sim.mujoco.settings import AS_SHIPPED, closing_steps
-from sim.offers import SnippetWriter, Stepping
+from sim.registry.offers import SnippetWriter, Stepping
 
 IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
 INSET = "  "
@@ -24,7 +24,7 @@ def mujoco_snippet(
 
     A class for the loop's own connects, and the step and integrator, which can only be the whole
     model's. What else differs from MuJoCo's defaults would change the rest of a user's model and
-    stands in a comment; see `sim.offers.snippet`.
+    stands in a comment; see `sim.registry.offers.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = defaults | dict(settings)

@@ -12,7 +12,7 @@ from models.array import Array
 from sim.engine import Session, Settings
 from sim.mujoco.engine import MujocoSession
 from sim.mujoco.settings import text
-from sim.spoil import Opening, Post, Spoiler, WrongSetting, rounded
+from sim.run.spoil import Opening, Post, Spoiler, WrongSetting, rounded
 
 
 class MujocoSpoiler:

@@ -8,15 +8,15 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import mujoco.viewer  # type: ignore[import-untyped]  # as above
 import numpy as np
 
-from models.laws import Law
 from models.mjcf.document import build
 from models.mjcf.forces import planned
 from models.mjcf.options import exact, has_control
 from models.motion import State
 from models.scene import Scene
+from models.scene.laws import Law
 from sim.engine import Drive
 from sim.mujoco.loading import Loading
-from sim.offers import Viewer
+from sim.registry.offers import Viewer
 
 
 def show(scene: Scene, start: State) -> None:

@@ -15,9 +15,9 @@ from typing import Any, cast
 import numpy as np
 
 from models.errors import CrankcheckError, EngineError, few, shown
-from models.joints import bodies, joined_at
 from models.motion import Forces, SliderForces, State
 from models.scene import Scene
+from models.scene.joints import bodies, joined_at
 from sim.engine import (
     BodyPose,
     Drive,

@@ -9,14 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from models.array import Array
-from models.characteristics import Staircase
 from models.errors import EngineError
-from models.joints import Slot, block_name, joints, riding_body, sliding_angle, turned
-from models.loads import ConstantFriction, Load
 from models.motion import State
 from models.scene import GROUND, Point, Scene
+from models.scene.characteristics import Staircase
+from models.scene.joints import Slot, block_name, joints, riding_body, sliding_angle, turned
+from models.scene.loads import ConstantFriction, Load
 from sim.engine import Drive
-from sim.load_magnitudes import ahead, known_ahead
+from sim.engine.load_magnitudes import ahead, known_ahead
 from sim.pymunk.bodies import Course, Frames, SliderCourse, anchor_of, frames_at_end
 from sim.pymunk.native import NONE, Pushes
 from sim.pymunk.space import SpaceModel

@@ -21,10 +21,10 @@ import pymunk
 import pymunk.batch
 
 from models.array import Array
-from models.joints import FIXED, Frame, Prism, Slot, less, local_point, riding_body, turned
 from models.scene import GROUND, Point, Scene
+from models.scene.joints import FIXED, Frame, Prism, Slot, less, local_point, riding_body, turned
 from sim.engine import BodyPose
-from sim.measure import across, arms
+from sim.engine.measure import across, arms
 from sim.pymunk.native import Pushes
 from sim.pymunk.space import SpaceModel
 

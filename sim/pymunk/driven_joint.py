@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy as np
 import pymunk
 
-from models.joints import turned
 from models.scene import Point, Scene
+from models.scene.joints import turned
 from sim.engine import Drive
 from sim.pymunk.space import SpaceModel
 

@@ -11,11 +11,11 @@ import pymunk
 import pymunk.batch
 
 from models.array import Array
-from models.laws import ConstantSpeed
 from models.motion import State
 from models.scene import Point, Scene
-from sim import drive as drives
+from models.scene.laws import ConstantSpeed
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
+from sim.engine import drive as drives
 from sim.pymunk.acting import Acting
 from sim.pymunk.arcs import Arcs
 from sim.pymunk.bodies import FIELDS, WIDTH, finite, pose, rows_of

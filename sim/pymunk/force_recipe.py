@@ -9,19 +9,19 @@ from collections.abc import Iterable, Iterator
 import pymunk
 
 from models.errors import EngineError
-from models.joints import Slot, bodies, centre_of, joints, less, mass_of, riding_body, turned
-from models.laws import ConstantSpeed
 from models.motion import State
 from models.scene import GROUND, Point, Scene
+from models.scene.joints import Slot, bodies, centre_of, joints, less, mass_of, riding_body, turned
+from models.scene.laws import ConstantSpeed
 from sim.engine import Settings
-from sim.offers import ForceRecipe
 from sim.pymunk.engine import VELOCITY_SHIFT
 from sim.pymunk.settings import checked, exact_lines
 from sim.pymunk.space import SpaceModel, build
+from sim.registry.offers import ForceRecipe
 
 
 def pymunk_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) -> str:
-    """See `sim.offers.ForceRecipe`: the force of every pin that pymunk holds on its second
+    """See `sim.registry.offers.ForceRecipe`: the force of every pin that pymunk holds on its second
     body, and the torque. Covers what a driver at constant speed moves without loads, springs,
     friction or redundant links."""
     checked(settings)

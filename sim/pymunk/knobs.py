@@ -8,13 +8,13 @@ from collections.abc import Mapping
 from models.motion import State
 from models.scene import Scene
 from sim.engine import Settings
-from sim.offers import Knob, SearchSpace, Work, rungs
 from sim.pymunk.settings import exact_lines
 from sim.pymunk.space import build
+from sim.registry.offers import Knob, SearchSpace, Work, rungs
 
 STEP_US, BODY_US, RAIL_US = 0.612, 0.022, 2.753
 PASS_US = {"PivotJoint": 0.00761, "GrooveJoint": 0.01893, "PinJoint": 0.01747}
-"""One joint in one iteration; pin joints are the rails of `sim.pymunk.rail`, a gear takes nothing
+"""One joint in one iteration; pin joints are the rails of `sim.pymunk.space`, a gear takes nothing
 that could be measured."""
 
 

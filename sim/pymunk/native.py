@@ -11,7 +11,9 @@ import pymunk
 
 from models.array import Array
 from models.errors import EngineError
-from models.joints import (
+from models.motion import State
+from models.scene import Point, Scene
+from models.scene.joints import (
     End,
     Frame,
     Prism,
@@ -26,9 +28,7 @@ from models.joints import (
     turned,
     whole_turns,
 )
-from models.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
-from models.motion import State
-from models.scene import Point, Scene
+from models.scene.loads import ConstantFriction, LineSpring, PinSpring, SlideSpring
 
 Push = tuple[float, float, float]
 """A force [N] and a moment [N m]."""

@@ -22,10 +22,10 @@ import pymunk
 import pymunk.batch
 
 from models.array import Array
-from models.joints import centre_of, mass_of, turned
 from models.motion import Forces
 from models.scene import Scene
-from sim.momentum_balance import JointPushes, MomentumGain, forces_by_body, joint_pushes
+from models.scene.joints import centre_of, mass_of, turned
+from sim.engine.momentum_balance import JointPushes, MomentumGain, forces_by_body, joint_pushes
 from sim.pymunk.native import Push, Pushes, moves_freely
 from sim.pymunk.space import SpaceModel
 

@@ -6,10 +6,10 @@ from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene
 from sim.engine import Settings
-from sim.offers import Remedies
 from sim.pymunk.convergence import held_by_iterations, iterations
 from sim.pymunk.settings import RANGES
 from sim.pymunk.space import build
+from sim.registry.offers import Remedies
 
 ITERATIONS = (300, 700, 2000)
 """Iterations that are tried."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sim.engine import Drive, Profile, Setting, Settings, SettingValue
-from sim.settings import check_choices, check_ranges
+from sim.engine.settings import check_choices, check_ranges
 
 AS_SHIPPED = Profile(
     "as-shipped",
@@ -38,7 +38,7 @@ TUNED = Profile(
         "lines": Setting(
             "exact",
             "a groove lets the sliding speed leak across the line unless the pushed bodies cannot "
-            "turn; there a pin joint with a moving end holds the point (see sim.pymunk.rail)",
+            "turn; there a pin joint with a moving end holds the point (see sim.pymunk.space)",
         ),
         "springs": Setting(
             "forces",

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
-from sim.offers import SnippetWriter, Stepping, comment
 from sim.pymunk.settings import AS_SHIPPED
+from sim.registry.offers import SnippetWriter, Stepping, comment
 
 WIDTH = 96
 DRIVES: Mapping[Drive, str] = {
@@ -42,7 +42,7 @@ def pymunk_snippet(
 
     The bias of the mechanism's own joints, and the iterations and step, which can only be the
     whole space's. What else differs from pymunk's defaults would change the rest of a user's space
-    and stands in a comment; see `sim.offers.snippet`.
+    and stands in a comment; see `sim.registry.offers.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = defaults | dict(settings)
@@ -96,7 +96,7 @@ def _notes(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
         notes.append(
             "Points on lines: where a push turns the sliding body or its guide, not GrooveJoint "
             "but a PinJoint whose far end moves along with the point (crankcheck, "
-            "sim/pymunk/rail.py). "
+            "sim/pymunk/space.py). "
             "Loops of pins need nothing of the kind."
         )
     if drive == "free":

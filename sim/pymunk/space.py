@@ -5,7 +5,13 @@ the link's own frame lies. A driven crank is a kinematic body on its pivot. A ma
 is a groove that the point of its link runs in. A body that slides on the ground cannot turn: it
 gets an infinite moment; on a moving guide a gear of ratio 1 holds its angle.
 
-A groove is in error where pushed bodies turn; ``sim.pymunk.rail`` says why, and holds the cure.
+A groove is in error where pushed bodies turn; ``sim.pymunk.space`` says why, and holds the cure.
+
+Chipmunk's groove joint solves for both components of the impulse and then drops the one along the
+line. Unless the bodies answer to a push along the line with a motion along the line alone, the
+sliding speed leaks into the constraint: the point leaves its line, by an error of first order in
+the step however many iterations there are, and a slider-crank with a massless piston comes apart.
+A rail holds the point by one scalar constraint across the line.
 """
 
 from __future__ import annotations
@@ -17,7 +23,9 @@ from dataclasses import dataclass
 import pymunk
 
 from models.errors import EngineError
-from models.joints import (
+from models.motion import State
+from models.scene import GROUND, Point, Scene, Slider, span
+from models.scene.joints import (
     Joints,
     Prism,
     Slot,
@@ -33,12 +41,44 @@ from models.joints import (
     sliding_angle,
     turned,
 )
-from models.motion import State
-from models.scene import GROUND, Point, Scene, Slider, span
 from sim.engine import Drive
-from sim.momentum_balance import Hinge
+from sim.engine.momentum_balance import Hinge
 from sim.pymunk.native import NativeSpring, PinFriction, moves_freely, native_springs, pin_friction
-from sim.pymunk.rail import Rail
+
+
+@dataclass(frozen=True)
+class Rail:
+    """A point held on a line by a pin joint whose far end moves along with the point.
+
+    The far end stands across the line from the point, at a fixed distance, in the frame of the
+    guide; it is set between the position and the velocity half of each step.
+    """
+
+    rider: pymunk.Body
+    guide: pymunk.Body
+    anchor: Point
+    start: Point
+    along: Point
+    arm: float
+
+    def joint(self) -> pymunk.PinJoint:
+        """The pin joint, set for the present positions."""
+        joint = pymunk.PinJoint(self.guide, self.rider, (0.0, 0.0), self.anchor)
+        joint.distance = self.arm
+        self.follow(joint, None)
+        joint.pre_solve = self.follow
+        return joint
+
+    def follow(self, joint: pymunk.Constraint, _space: object) -> None:
+        """Bring the far end level with the point."""
+        place = self.guide.world_to_local(self.rider.local_to_world(self.anchor))
+        (ux, uy), (x, y) = self.along, self.start
+        s = (place[0] - x) * ux + (place[1] - y) * uy
+        joint.anchor_a = (
+            x + s * ux - self.arm * uy,
+            y + s * uy + self.arm * ux,
+        )
+
 
 FAR = 1e3
 """Ends of a groove over the sum of all lengths: where lines cross at a small angle a slider travels
@@ -82,7 +122,7 @@ def build(
     A crank that is not prescribed is dynamic: with a motor under a servo, free without one.
     Points on lines run in Chipmunk's grooves or, with ``exact_lines``, on a `Rail` where the groove
     is in error. ``with_springs`` the space has those of the scene. Velocities are those of
-    ``delay_s`` later (see `models.joints.frames`).
+    ``delay_s`` later (see `models.scene.joints.frames`).
 
     Raises
     ------

@@ -13,7 +13,7 @@ from models.array import Array
 from sim.engine import Session, Settings
 from sim.pymunk.engine import PymunkSession
 from sim.pymunk.space import SpaceModel
-from sim.spoil import Opening, Post, Spoiler, WrongSetting, rounded
+from sim.run.spoil import Opening, Post, Spoiler, WrongSetting, rounded
 
 
 class PymunkSpoiler:

@@ -10,9 +10,9 @@ import numpy as np
 import pymunk.batch
 
 from models.array import Array
-from models.joints import less, line_ends, whole_turns
-from models.loads import LineSpring, PinSpring, SegmentSpring, SlideSpring, Spring
 from models.scene import Point, Scene
+from models.scene.joints import less, line_ends, whole_turns
+from models.scene.loads import LineSpring, PinSpring, SegmentSpring, SlideSpring, Spring
 from sim.pymunk.bodies import Course, Frames, SliderCourse, frames_at_end, rows_of
 from sim.pymunk.native import Pushes
 from sim.pymunk.space import SpaceModel

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from mpmath import mp, mpf
 
-from models.joints import local_point, sliding_body
-from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene, Slider
+from models.scene.joints import local_point, sliding_body
+from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from tests.analytic import oracle
 from tests.analytic.change_points import jets
 from tests.analytic.change_points.jets import Jet, Number

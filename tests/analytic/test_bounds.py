@@ -14,10 +14,10 @@ from mpmath import mp, mpf
 from analytic.kinematics import solve
 from models.array import Array
 from models.files.reading import load_scene, shipped
-from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.motion import Motion
-from models.moved_scene import moved
 from models.scene import GROUND, Driver, Point, Scene
+from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
+from models.scene.moved import moved
 from tests.analytic.chain import Chain, Solved, coordinates
 from tests.analytic.change_points.jets import Jet
 from tests.worlds.strategies import FORMS, OF_EACH_KIND, examples, mechanisms

@@ -16,13 +16,13 @@ from analytic import prepared
 from analytic.dyads.plane import EPS
 from analytic.kinematics import nearness, reach, solve, solve_driven
 from analytic.structure.mobility import sides_of
-from models import moved_scene as transform
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.files.reading import load_scene, parse_scene, shipped
 from models.motion import Motion
-from models.moved_scene import mirrored
 from models.scene import Scene
+from models.scene import moved as transform
+from models.scene.moved import mirrored
 from tests.worlds.other_way import sped_up
 from tests.worlds.strategies import FORMS, Designed, examples, mechanisms, swing_times
 from tests.worlds.tiers import slowly

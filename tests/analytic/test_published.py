@@ -17,8 +17,8 @@ from analytic.mechanism.cycle import Along
 from analytic.mechanism.travel import coriolis, travel
 from models.array import Array
 from models.files.reading import load_scene, parse_scene, shipped
-from models.laws import Accelerating
 from models.scene import Scene
+from models.scene.laws import Accelerating
 from tests.analytic.four_bars import fourbar
 
 SLIDER_CRANKS = [name for name in shipped() if name.startswith("slider-crank")]

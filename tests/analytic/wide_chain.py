@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from models.array import Array
-from models.joints import local_point, sliding_body
-from models.laws import ConstantSpeed, Law, Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene, Slider
+from models.scene.joints import local_point, sliding_body
+from models.scene.laws import ConstantSpeed, Law, Oscillating
 from tests.analytic.chain import Solved, held_points
 from tests.analytic.change_points.jets import Jet, _made
 from tests.analytic.oracle import Place
@@ -51,7 +51,7 @@ class Angle:
 @dataclass(frozen=True)
 class Given:
     """The angles of a scene as they were given: of each slider those of its line and of the link
-    on it, and those of the driver's law by their names in `models.laws`."""
+    on it, and those of the driver's law by their names in `models.scene.laws`."""
 
     lines: Mapping[str, Angle]
     leans: Mapping[str, Angle]

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from analytic.elastic.discretisation import Modes, Polynomials, flexible_links
-from models.cut_links import line_of
-from models.cut_scenes import HARDLY, BeamedScene
 from models.errors import CrankcheckError, SceneError
 from models.files.assemble import scene_text
 from models.files.reading import load_scene, parse_scene, shipped
 from models.motion import LinkMotion, Motion, PointMotion
 from models.scene import Scene
+from models.scene.cut_links import line_of
+from models.scene.cut_scenes import HARDLY, BeamedScene
 
 GOOD = """
 name = "good"

@@ -26,7 +26,7 @@ from models.files.reading import (
     scene_texts,
     shipped,
 )
-from models.laws import Oscillating
+from models.scene.laws import Oscillating
 
 GOOD = """
 name = "good"

@@ -8,13 +8,13 @@ from operator import attrgetter
 
 import pytest
 
-from models.driver import Released, let_go
 from models.errors import SceneError
 from models.files.assemble import scene_text
 from models.files.reading import every_shipped, load_scene, parse_scene, shipped
-from models.hard import Chain
-from models.loads import LineSpring, PinSpring, SlideSpring
 from models.scene import Driver
+from models.scene.driver import Released, let_go
+from models.scene.hard import Chain
+from models.scene.loads import LineSpring, PinSpring, SlideSpring
 from tests.worlds.let_go import EVERYTHING
 
 FREE = EVERYTHING.replace(

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from models.driver import passing
-from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
-from models.moved_scene import mirrored_law
+from models.scene.driver import passing
+from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
+from models.scene.moved import mirrored_law
 from tests.worlds.other_way import faster_law
 
 LAWS: list[Law] = [

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.characteristics import Characteristic, Constant, Polynomial, Sine, Staircase
 from models.errors import CrankcheckError, SceneError
 from models.files.assemble import scene_text
 from models.files.reading import load_scene, parse_scene
-from models.loads import ConstantFriction, CoulombFriction, Load
-from models.tabulated import Tabulated, slopes, spline
+from models.scene.characteristics import Characteristic, Constant, Polynomial, Sine, Staircase
+from models.scene.loads import ConstantFriction, CoulombFriction, Load
+from models.scene.tabulated import Tabulated, slopes, spline
 
 PRESS = """
 name = "press"

@@ -15,13 +15,13 @@ import numpy as np
 import pytest
 
 import models
-from models import tree
 from models.errors import EngineError
 from models.files.reading import load_scene, shipped
+from models.mjcf import tree
 from models.mjcf.document import build
 from models.mjcf.options import Writing
+from models.mjcf.tree import closings, plan
 from models.scene import Scene
-from models.tree import closings, plan
 from tests.worlds.runs import start_of
 
 

@@ -18,11 +18,11 @@ from models.array import numbers, samples
 from models.errors import CrankcheckError, EngineError
 from models.files.inputs import names_in
 from models.files.reading import load_scene, scene_texts
-from models.hard import Chain
-from models.laws import ConstantSpeed
 from models.mjcf.document import build
 from models.mjcf.options import Writing
 from models.motion import Crossing, Motion
+from models.scene.hard import Chain
+from models.scene.laws import ConstantSpeed
 from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes
 from sim.run import run
 from tests.second_opinions import newton

@@ -19,8 +19,8 @@ from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError
 from models.files.assemble import scene_text
 from models.files.reading import every_shipped, load_scene, parse_scene
-from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.scene import Scene
+from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from tests.worlds.runs import driven_by
 
 LAWS = [

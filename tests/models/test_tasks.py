@@ -11,7 +11,7 @@ import pytest
 
 from models.errors import CrankcheckError, SceneError
 from models.lectures.formula import DEEPEST, FUNCTIONS, LONGEST_TEXT, parse_formula
-from models.lectures.tasks.files import KINDS, find_task, load_task, shipped_tasks
+from models.lectures.tasks import KINDS, find_task, load_task, shipped_tasks
 from models.lectures.tasks.positions import CouplerTask
 
 HEAD = 'name = "x"\nsource = "a test"\n'

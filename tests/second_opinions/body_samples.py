@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from models.driver import driver_course
-from models.joints import block_name, local_point
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene
+from models.scene.driver import driver_course
+from models.scene.joints import block_name, local_point
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ import numpy as np
 from analytic.multibody.assembly import Assembly
 from models.array import Array
 from models.errors import CrankcheckError
-from models.joints import local_point, sliding_body
 from models.scene import Point, Scene, Slider
+from models.scene.joints import local_point, sliding_body
 from tests.second_opinions.driver_row import DriverRow
 
 

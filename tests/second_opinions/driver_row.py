@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from models.joints import local_point, turned
 from models.scene import GROUND, Point, Scene
+from models.scene.joints import local_point, turned
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from models.driver import driver_course
-from models.joints import local_point, sliding_body
-from models.loads import CoulombFriction
 from models.motion import Forces, Motion
 from models.scene import GROUND, Scene
+from models.scene.driver import driver_course
+from models.scene.joints import local_point, sliding_body
+from models.scene.loads import CoulombFriction
 from tests.second_opinions.body_samples import BodySamples, cross
 
 STILL = 1e-12

@@ -23,10 +23,10 @@ import numpy as np
 
 from analytic.multibody.dynamics import joint_forces
 from models.array import Array
-from models.driver import driver_course
 from models.errors import CrankcheckError
 from models.motion import Forces, Motion
 from models.scene import Scene
+from models.scene.driver import driver_course
 from tests.second_opinions.body_samples import BodySamples, body_samples, cross, weights_and_loads
 from tests.second_opinions.constraints import Constraints
 from tests.second_opinions.friction import rubbing_samples, turning

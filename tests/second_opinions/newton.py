@@ -20,9 +20,9 @@ import numpy as np
 
 from models.array import Array, samples
 from models.errors import CrankcheckError
-from models.joints import local_point
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import GROUND, Point, Scene, Slider
+from models.scene.joints import local_point
 from tests.second_opinions.constraints import Constraints
 
 LONGEST_STEP_RAD = 0.05

@@ -23,9 +23,9 @@ from analytic.free.chart import Arc, Chart
 from analytic.free.machine import Machine
 from analytic.kinematics import repeats_after
 from models.array import Array
-from models.driver import Released
 from models.errors import CrankcheckError
 from models.scene import Scene
+from models.scene.driver import Released
 
 SCAN = 720
 """Angles of a turn at which is looked whether the driver comes so far."""

@@ -16,10 +16,10 @@ from itertools import chain
 import numpy as np
 
 from models.array import Array
-from models.driver import driver_course
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.driver import driver_course
 from tests.second_opinions.body_samples import body_samples, weights_and_loads
 from tests.second_opinions.friction import rubbing_samples
 from tests.second_opinions.spring_samples import springs_on_bodies

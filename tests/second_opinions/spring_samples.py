@@ -11,10 +11,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from models.array import Array
-from models.joints import block_name, local_point, sliding_body
-from models.loads import LineSpring, PinSpring, SlideSpring
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene
+from models.scene.joints import block_name, local_point, sliding_body
+from models.scene.loads import LineSpring, PinSpring, SlideSpring
 from tests.second_opinions.body_samples import body_samples, cross
 
 Push = tuple[str, Point, Array, Array]

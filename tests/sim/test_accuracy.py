@@ -10,8 +10,8 @@ import pytest
 
 from analytic.kinematics import solve
 from models.files.reading import load_scene, parse_scene, shipped
-from models.laws import Accelerating, FromRest, Oscillating
 from models.scene import GROUND, Link, Point, Scene
+from models.scene.laws import Accelerating, FromRest, Oscillating
 from sim.engine import Run, SettingValue
 from sim.registry import ENGINES
 from sim.registry import engine as engine_of

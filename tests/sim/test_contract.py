@@ -15,9 +15,9 @@ from models.files.reading import load_scene
 from reports.contract.clauses import CLAUSES
 from reports.contract.ruling import SCENES, put_to
 from reports.contract.subject import Subject, numbers
-from sim.check import refuse_other_model
 from sim.engine import BodyPose, Engine, Facts
 from sim.registry import ENGINES, engine
+from sim.run.check import refuse_other_model
 from tests.worlds.runs import opened, start_of
 from tests.worlds.tiers import slowly
 

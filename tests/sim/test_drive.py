@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
-from sim.drive import chords, pushes, start_speed
+from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
+from sim.engine.drive import chords, pushes, start_speed
 
 DT_S, START_S, STEPS = 2e-3, 0.13, 2000
 TIMES = START_S + DT_S * np.arange(STEPS + 1)

@@ -11,11 +11,11 @@ import pytest
 from analytic.lectures.regulation.flywheel import WantedFlywheel, wanted_flywheel
 from analytic.lectures.regulation.steady_cycle import SteadyCycle, cycle_scene
 from analytic.lectures.regulation.turning_machine import TurningMachine
-from models.characteristics import Polynomial
-from models.driver import Released
 from models.files.reading import load_scene
-from models.loads import Load
 from models.scene import Driver, Scene
+from models.scene.characteristics import Polynomial
+from models.scene.driver import Released
+from models.scene.loads import Load
 from tests.worlds.runs import ran
 from tests.worlds.tiers import slow, slowly
 

@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 from analytic.forces import kinetostatics
-from models.characteristics import Constant, Sine
 from models.errors import EngineError
 from models.files.reading import load_scene
-from models.hard import double_parallelogram
-from models.loads import ConstantFriction, Load
 from models.scene import Scene
-from sim.offers import force_recipe
+from models.scene.characteristics import Constant, Sine
+from models.scene.hard import double_parallelogram
+from models.scene.loads import ConstantFriction, Load
 from sim.registry import offering
+from sim.registry.offers import force_recipe
 from tests.worlds.runs import acted_on, start_of, tuned
 from tests.worlds.tiers import few
 

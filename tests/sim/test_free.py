@@ -12,19 +12,19 @@ import pytest
 from analytic.free.window_chain import ChainMotion
 from models.errors import EngineError
 from models.files.reading import load_scene
-from models.hard import Chain
-from models.laws import ConstantSpeed, Oscillating
 from models.mjcf.options import has_control
 from models.motion import State
 from models.scene import Driver
+from models.scene.hard import Chain
+from models.scene.laws import ConstantSpeed, Oscillating
 from reports.contract.subject import numbers
-from sim.check import refuse_other_model
-from sim.drive import pace, period
 from sim.engine import Engine, Poses, Run
+from sim.engine.drive import pace, period
+from sim.engine.settings import resolved
 from sim.mujoco import settings as mujoco_settings
 from sim.registry import ENGINES, engine
 from sim.run import run
-from sim.settings import resolved
+from sim.run.check import refuse_other_model
 from tests.worlds import runs
 
 DT_S = 1e-3

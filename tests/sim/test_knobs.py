@@ -16,10 +16,10 @@ from sim.exudyn.engine import ExudynSession
 from sim.mujoco import knobs as mujoco_knobs
 from sim.mujoco.knobs import EVALUATIONS
 from sim.mujoco.settings import INTEGRATORS
-from sim.offers import Knob, Work, rungs, search_space
 from sim.pymunk import knobs as pymunk_knobs
 from sim.pymunk.knobs import PASS_US, RAIL_US
 from sim.registry import offering
+from sim.registry.offers import Knob, Work, rungs, search_space
 from tests.worlds.runs import ran, tuned
 from tests.worlds.tiers import slowly
 

@@ -17,16 +17,16 @@ from analytic.free.machine import Machine
 from analytic.kinematics import chunks, solve
 from models.errors import EngineError
 from models.files.reading import load_scene, shipped
-from models.joints import line_ends, whole_turns
-from models.loads import LineSpring, PinSpring, SlideSpring
 from models.mjcf.document import build
+from models.mjcf.tree import plan
 from models.scene import GROUND, Scene
-from models.tree import plan
-from sim.check import refuse_other_model
+from models.scene.joints import line_ends, whole_turns
+from models.scene.loads import LineSpring, PinSpring, SlideSpring
 from sim.engine import Poses
-from sim.measure import energy, gaps, motion, spring_lengths
+from sim.engine.measure import energy, gaps, motion, spring_lengths
+from sim.engine.tree_poses import body_poses
 from sim.registry import ENGINES
-from sim.tree_poses import body_poses
+from sim.run.check import refuse_other_model
 from tests.worlds.runs import acted_on, ran, start_of
 
 

@@ -14,9 +14,9 @@ import pytest
 
 from models.errors import EngineError
 from sim import registry
-from sim.offers import search_space, snippet, viewer
 from sim.registry import engine
-from sim.spoil import spoiler
+from sim.registry.offers import search_space, snippet, viewer
+from sim.run.spoil import spoiler
 from tests.test_architecture import ARROWS, ROOT
 from tests.worlds.tiers import slow
 
@@ -181,7 +181,7 @@ def test_what_is_declared_is_there(name: str) -> None:
 def test_a_snippet_is_made_where_the_engine_is_not_installed() -> None:
     code = (
         "import sys; sys.modules.update(mujoco=None, pymunk=None, exudyn=None)\n"
-        "from sim.offers import snippet\n"
+        "from sim.registry.offers import snippet\n"
         "for name in ('mujoco', 'pymunk', 'exudyn'): print(snippet(name, {}, 90))"
     )
     printed = subprocess.check_output([sys.executable, "-c", code], cwd=ROOT, text=True)

@@ -15,13 +15,13 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from models.characteristics import Constant
 from models.errors import EngineError
 from models.files.reading import load_scene
-from models.hard import double_parallelogram
-from models.loads import Load
+from models.mjcf.tree import plan
 from models.scene import Scene
-from models.tree import plan
+from models.scene.characteristics import Constant
+from models.scene.hard import double_parallelogram
+from models.scene.loads import Load
 from sim.engine import Facts, Run
 from sim.pymunk.space import build
 from sim.registry import ENGINES, available, declaration, engine

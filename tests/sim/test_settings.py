@@ -16,11 +16,11 @@ import pytest
 
 from models.files.reading import load_scene
 from sim.engine import Facts, Settings, SettingValue
+from sim.engine.settings import SettingError, resolved
 from sim.exudyn.engine import ENGINE
 from sim.exudyn.solver import simulation
-from sim.offers import remedies
 from sim.registry import ENGINES, engine, offering
-from sim.settings import SettingError, resolved
+from sim.registry.offers import remedies
 from tests.worlds import runs
 from tests.worlds.runs import driven_by, ran, start_of, tuned
 

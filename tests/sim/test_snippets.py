@@ -10,9 +10,9 @@ from typing import get_args
 import pytest
 
 from sim.engine import Drive, Settings, SettingValue
-from sim.offers import Stepping, frame_snippet, search_space, snippet
+from sim.engine.settings import resolved
 from sim.registry import engine, offering
-from sim.settings import resolved
+from sim.registry.offers import Stepping, frame_snippet, search_space, snippet
 from tests.worlds.bare import BARE, measured_as_we_did, measured_in_exudyn
 from tests.worlds.tiers import slowly
 from tests.worlds.workshop import DISTURBANCE, mujoco_disturbance

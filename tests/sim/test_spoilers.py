@@ -12,7 +12,7 @@ from models.files.reading import load_scene
 from reports.contract.subject import numbers
 from sim.engine import Session
 from sim.registry import engine, offering
-from sim.spoil import Opening, Spoiler, spoilt
+from sim.run.spoil import Opening, Spoiler, spoilt
 from tests.worlds.runs import opened
 from tests.worlds.tiers import few
 

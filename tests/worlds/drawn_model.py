@@ -14,10 +14,10 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from models.array import Array
-from models.joints import Frame, bodies, centre_of, frames, joints, local_point, mass_of
+from models.mjcf.tree import Freedom, Limb, LoopPin, plan
 from models.motion import State
 from models.scene import GROUND, Point, Scene
-from models.tree import Freedom, Limb, LoopPin, plan
+from models.scene.joints import Frame, bodies, centre_of, frames, joints, local_point, mass_of
 
 HALF = "-far-half"
 """What the name of the second half of a cut link ends with."""

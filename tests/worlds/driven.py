@@ -35,11 +35,11 @@ from models.array import Array
 from models.errors import EngineError
 from models.files.assemble import scene_text
 from models.files.reading import parse_scene
-from models.laws import ConstantSpeed
+from models.mjcf.tree import plan
 from models.motion import State
-from models.moved_scene import moved, scaled
 from models.scene import GROUND, Link, Point, Scene, Slider, span
-from models.tree import plan
+from models.scene.laws import ConstantSpeed
+from models.scene.moved import moved, scaled
 from reports.compare.hardness import curvature
 from reports.quantities.limits import DEFAULTS
 from sim.pymunk.settings import TUNED

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from models.array import Array
-from models.joints import (
+from models.scene import GROUND, Scene
+from models.scene.joints import (
     block_name,
     centre_of,
     joints,
@@ -14,10 +15,9 @@ from models.joints import (
     mass_of,
     riding_body,
 )
-from models.loads import LineSpring, PinSpring, SlideSpring
-from models.scene import GROUND, Scene
+from models.scene.loads import LineSpring, PinSpring, SlideSpring
 from sim.engine import BodyPose, Log
-from sim.measure import spring_lengths
+from sim.engine.measure import spring_lengths
 
 
 def turned(pose: BodyPose, local: tuple[float, float]) -> Array:

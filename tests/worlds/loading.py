@@ -12,10 +12,11 @@ import numpy as np
 
 from analytic.kinematics import reach
 from analytic.structure.mobility import analyse
-from models.characteristics import Characteristic, Constant, Polynomial, Sine
-from models.joints import block_name
-from models.laws import Accelerating, Oscillating
-from models.loads import (
+from models.scene import GROUND, Driver, Point, Scene
+from models.scene.characteristics import Characteristic, Constant, Polynomial, Sine
+from models.scene.joints import block_name
+from models.scene.laws import Accelerating, Oscillating
+from models.scene.loads import (
     ConstantFriction,
     CoulombFriction,
     Friction,
@@ -26,8 +27,7 @@ from models.loads import (
     SlideSpring,
     Spring,
 )
-from models.scene import GROUND, Driver, Point, Scene
-from models.tabulated import Interpolation, Tabulated
+from models.scene.tabulated import Interpolation, Tabulated
 from tests.worlds.strategies import (
     KINDS,
     SWINGS,

@@ -9,8 +9,8 @@ from functools import cache
 import numpy as np
 
 from models.files.reading import load_scene, parse_scene
-from models.hard import double_parallelogram
 from models.scene import Scene
+from models.scene.hard import double_parallelogram
 from reports.logs.channel import Channel
 from tests.worlds.plantings import PLANTINGS
 from tests.worlds.sheets import Sheet, sheet

@@ -9,12 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.structure.mobility import sides_of
-from models import moved_scene
 from models.array import Array
-from models.driver import Released
-from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
-from models.loads import ConstantFriction, Friction, Load, Spring, Stroke
-from models.scene import Driver, Scene
+from models.scene import Driver, Scene, moved
+from models.scene.driver import Released
+from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
+from models.scene.loads import ConstantFriction, Friction, Load, Spring, Stroke
 
 OPPOSITE: dict[Stroke, Stroke] = {"both": "both", "forward": "backward", "backward": "forward"}
 
@@ -93,11 +92,11 @@ class Change:
 
 
 MOVES: dict[str, Change] = {
-    "turned": Change(lambda s: moved_scene.rotated(s, 0.7), turn_rad=0.7),
-    "moved": Change(lambda s: moved_scene.moved(s, (3.0, -2.0)), shift_m=(3.0, -2.0)),
-    "mirrored": Change(lambda s: moved_scene.mirrored(s, sides_of(s)), side=-1.0),
-    "larger": Change(lambda s: moved_scene.scaled(s, 10.0), grow=10.0),
-    "smaller": Change(lambda s: moved_scene.scaled(s, 0.1), grow=0.1),
+    "turned": Change(lambda s: moved.rotated(s, 0.7), turn_rad=0.7),
+    "moved": Change(lambda s: moved.moved(s, (3.0, -2.0)), shift_m=(3.0, -2.0)),
+    "mirrored": Change(lambda s: moved.mirrored(s, sides_of(s)), side=-1.0),
+    "larger": Change(lambda s: moved.scaled(s, 10.0), grow=10.0),
+    "smaller": Change(lambda s: moved.scaled(s, 0.1), grow=0.1),
 }
 
 

@@ -19,9 +19,9 @@ from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
-from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
 from reports.logs.channel import Channel
 from reports.logs.kinds import KINDS
 from reports.logs.units import UNITS

@@ -10,14 +10,14 @@ import numpy as np
 from analytic.kinematics import solve
 from models.array import Array
 from models.files.reading import load_scene
-from models.laws import Law
-from models.loads import ConstantFriction, Friction, Load, Spring
 from models.motion import State
 from models.scene import Scene
+from models.scene.laws import Law
+from models.scene.loads import ConstantFriction, Friction, Load, Spring
 from sim.engine import Engine, Poses, Run, Settings
+from sim.engine.settings import resolved
 from sim.registry import engine
 from sim.run import run
-from sim.settings import resolved
 
 
 def start_of(scene: Scene, time_s: float = 0.0) -> State:

@@ -10,8 +10,8 @@ from reports.store.manifest import Manifest
 from reports.store.writer import Writer
 from reports.sweep.measured import measured
 from sim.engine import SettingValue
+from sim.engine.settings import profile_of, resolved
 from sim.registry import engine as load
-from sim.settings import profile_of, resolved
 
 SCENES = ("fourbar-lecture-1", "slotted-lever")
 STEPS = (90, 180, 360, 720)

@@ -22,9 +22,9 @@ from hypothesis import strategies as st
 from analytic.kinematics import nearness, solve
 from analytic.structure.mobility import analyse
 from models.errors import ReachError
-from models.laws import ConstantSpeed, Law, Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
+from models.scene.laws import ConstantSpeed, Law, Oscillating
 
 Draw = Callable[[float, float], float]
 

@@ -18,8 +18,8 @@ import numpy as np
 from models.array import Array
 from models.files.assemble import scene_text
 from models.files.reading import parse_scene
-from models.laws import ConstantSpeed
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
 from tests.analytic.wide_chain import Angle, Given
 from tests.worlds.strategies import KINDS, Layout, least_sine, some_forms, swinging, with_dyads
 

@@ -11,10 +11,10 @@ from typing import Any, ClassVar, NamedTuple, cast
 import numpy as np
 
 from models.array import Array
-from models.characteristics import Constant, Sine
-from models.loads import ConstantFriction, LineSpring, Load, Spring
 from models.motion import Forces, State
 from models.scene import Scene
+from models.scene.characteristics import Constant, Sine
+from models.scene.loads import ConstantFriction, LineSpring, Load, Spring
 from sim.engine import (
     BodyPose,
     Drive,
@@ -28,8 +28,8 @@ from sim.engine import (
     Setting,
     Settings,
 )
+from sim.engine.settings import SettingError
 from sim.registry import engine
-from sim.settings import SettingError
 from tests.worlds.fake.engine import FakeEngine
 
 

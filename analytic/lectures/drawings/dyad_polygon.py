@@ -29,8 +29,8 @@ from analytic.lectures.drawings.placed_mechanism import BodyRates, PlacedMechani
 from analytic.lectures.drawings.polygon import EquationSide, Kind, Term
 from analytic.structure.groups import Group
 from models.array import Array
-from models.joints import sliding_body
 from models.scene import GROUND
+from models.scene.joints import sliding_body
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ import numpy as np
 from analytic.kinematics import solve_driven
 from analytic.structure.mobility import Structure, analyse
 from models.array import Array
-from models.joints import sliding_angle, sliding_body
 from models.motion import Motion
 from models.scene import GROUND, Scene
+from models.scene.joints import sliding_angle, sliding_body
 
 
 @dataclass(frozen=True)

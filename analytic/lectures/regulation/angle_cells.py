@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from analytic.lectures.regulation.turning_machine import TurningMachine, follows_speed
 from analytic.structure.mobility import analyse
 from models.array import Array
-from models.characteristics import Constant, FourierSum, Sine
-from models.loads import Load
+from models.scene.characteristics import Constant, FourierSum, Sine
+from models.scene.loads import Load
 
 NODES = 5
 CELLS = 120

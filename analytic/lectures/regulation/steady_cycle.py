@@ -15,10 +15,10 @@ import numpy as np
 from analytic.lectures.regulation.periodic_solution import PeriodicSolution
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from models.array import Array
-from models.characteristics import Constant
-from models.driver import Released
-from models.loads import Load
 from models.scene import Driver, Scene
+from models.scene.characteristics import Constant
+from models.scene.driver import Released
+from models.scene.loads import Load
 
 NO_WORK = 1e-12
 """A work of the cycle below this, over all that is turned over in it, is rounding."""

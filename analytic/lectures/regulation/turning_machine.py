@@ -24,12 +24,12 @@ from analytic.forces.virtual_power import inertia_and_slope, loaded_bodies, torq
 from analytic.kinematics import driven_chunk, reach, repeats_after, unit_chunk
 from analytic.structure.mobility import analyse, refuse_other_than_cranked
 from models.array import Array
-from models.characteristics import Constant
 from models.errors import CrankcheckError, few
-from models.laws import ConstantSpeed
-from models.loads import Load
 from models.scene import Scene
-from models.tabulated import Tabulated
+from models.scene.characteristics import Constant
+from models.scene.laws import ConstantSpeed
+from models.scene.loads import Load
+from models.scene.tabulated import Tabulated
 
 MOST_TURNS = 12
 """Of the mechanism's own cycle, within which that of the loads has to come round."""

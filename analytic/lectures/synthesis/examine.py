@@ -27,9 +27,9 @@ from analytic.mechanism.fourbar import grashof_of
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.files.assemble import Table
-from models.laws import ConstantSpeed, Law, Oscillating
 from models.lectures.draft import SPEED_RAD_S, Draft
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed, Law, Oscillating
 
 LOOKS = 361
 """Looks at the driver's way, for transmission and size."""

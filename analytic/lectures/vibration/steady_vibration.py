@@ -32,8 +32,8 @@ from analytic.elastic.reduced import ReducedForm
 from analytic.lectures.vibration.floquet import Stability, stability_of
 from models.array import Array
 from models.errors import CrankcheckError
-from models.laws import ConstantSpeed
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
 
 INSTANTS = 65
 """Of a turn: orders up to half as many are told apart."""

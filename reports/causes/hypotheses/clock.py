@@ -14,7 +14,7 @@ import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError
-from models.laws import ConstantSpeed
+from models.scene.laws import ConstantSpeed
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, later, number
 from reports.causes.cause import BROUGHT_WITHIN, Rows, picked
 from reports.causes.fit import fitted

@@ -10,7 +10,7 @@ import numpy as np
 
 from models.array import Array, Mask
 from models.errors import CrankcheckError
-from models.laws import ConstantSpeed
+from models.scene.laws import ConstantSpeed
 from reports.causes.account import CAUSE, NUMBER, Account, later
 from reports.causes.cause import EXPLAINED, Excerpt, Size
 from reports.causes.fit import fitted

@@ -14,7 +14,7 @@ from analytic.structure.groups import Group, Triad
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
-from models.laws import ConstantSpeed, Law
+from models.scene.laws import ConstantSpeed, Law
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, number
 from reports.causes.fit import fitted
 from reports.causes.inquiry import Inquiry

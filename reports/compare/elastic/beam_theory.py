@@ -23,10 +23,10 @@ from analytic.elastic.engine_start import chain_motion
 from analytic.elastic.natural import lowest_rad_s
 from analytic.elastic.released import ROUGH
 from models.array import Array
-from models.cut_scenes import SegmentedScene
-from models.elastic import Shape
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.cut_scenes import SegmentedScene
+from models.scene.elastic import Shape
 from reports.quantities.elastic import largest_deflection
 
 FEWER = Polynomials(REFERENCE.across - 2, REFERENCE.along - 1)

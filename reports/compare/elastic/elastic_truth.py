@@ -20,11 +20,11 @@ from analytic.elastic.elastic_motion import fastest_rad_s
 from analytic.elastic.engine_start import node_start, segment_start
 from analytic.kinematics import solve
 from models.array import Array
-from models.cut_links import CutScene
-from models.cut_scenes import BeamedScene, SegmentedScene
 from models.errors import CrankcheckError, EngineError, ReachError
 from models.motion import Forces, Motion, State
 from models.scene import Scene, as_bytes
+from models.scene.cut_links import CutScene
+from models.scene.cut_scenes import BeamedScene, SegmentedScene
 from reports.compare.beside import Beside, Truth
 from reports.compare.elastic.beam_theory import LEAST, BeamTheory, ExactChain, shape_of
 from sim.engine import Run

@@ -21,11 +21,11 @@ from analytic.elastic.released import ReleasedElasticMotion
 from analytic.free.free_motion import FreeMotion, LimitPassage
 from analytic.multibody.bodies import EnergyBalance
 from models.array import Array
-from models.cut_links import with_rigid_links
-from models.cut_scenes import SegmentedScene
 from models.errors import EngineError, ReachError
 from models.motion import Motion
 from models.scene import Scene, as_bytes
+from models.scene.cut_links import with_rigid_links
+from models.scene.cut_scenes import SegmentedScene
 from reports.compare.beside import Beside, first_samples
 from reports.compare.elastic.beam_theory import FreeBeamTheory
 from reports.compare.elastic.elastic_truth import (

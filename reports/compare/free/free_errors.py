@@ -12,7 +12,7 @@ import numpy as np
 from analytic.forces.late_impulses import late_impulses
 from models.array import Array
 from models.errors import CrankcheckError
-from models.joints import has_loops
+from models.scene.joints import has_loops
 from reports.compare.beside import Beside
 from reports.compare.branch import free_departure
 from reports.compare.error_rows import Instants, instants_of, whole_row, whole_rows

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, ClassVar, Protocol
 import numpy as np
 
 from models.array import Array
-from models.driver import LONGEST_S, Released
 from models.motion import Motion, State
 from models.scene import Driver, Scene, as_bytes
+from models.scene.driver import LONGEST_S, Released
 from reports.compare.beside import Beside, Truth, first_samples, incomplete
 from reports.compare.tracks import Track
 from reports.quantities.free import PHASE

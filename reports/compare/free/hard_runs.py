@@ -13,8 +13,8 @@ from analytic.free.toggle_barrier import ToggleBarrier
 from analytic.free.window_chain import ChainMotion
 from models.array import Array
 from models.errors import CrankcheckError
-from models.hard import Chain
 from models.motion import Motion
+from models.scene.hard import Chain
 from reports.compare.branch import AWAY_RAD, CLOSED, HERE_RAD
 from reports.compare.errors import Departure
 from sim.engine import Engine, Run, SettingValue

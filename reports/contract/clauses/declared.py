@@ -12,7 +12,7 @@ import numpy as np
 from models.errors import EngineError, few, shown
 from reports.contract.subject import STEPS, Clause, Subject, numbers
 from sim.engine import SettingValue
-from sim.settings import SettingError, profile_of, resolved
+from sim.engine.settings import SettingError, profile_of, resolved
 
 PROFILES = ("as-shipped", "tuned")
 NAME = re.compile(r"[A-Za-z_]\w{0,59}")

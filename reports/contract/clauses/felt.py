@@ -10,11 +10,11 @@ import numpy as np
 
 from analytic.forces import kinetostatics
 from models.array import Array
-from models.characteristics import Constant, Sine
-from models.joints import blocks, bodies, centre_of, joined_at, mass_of
-from models.loads import ConstantFriction, Load
 from models.motion import Forces
 from models.scene import Scene
+from models.scene.characteristics import Constant, Sine
+from models.scene.joints import blocks, bodies, centre_of, joined_at, mass_of
+from models.scene.loads import ConstantFriction, Load
 from reports.contract.clauses.reactions import LATE, OFF, START, STEPS, largest, late_by, named
 from reports.contract.subject import Clause, NotTriedError, Subject, numbers
 

@@ -10,12 +10,12 @@ from dataclasses import replace
 import numpy as np
 
 from models.array import Array
-from models.characteristics import Polynomial
-from models.driver import Released
 from models.errors import EngineError
-from models.loads import Load
 from models.motion import Motion, State
 from models.scene import Driver, Scene
+from models.scene.characteristics import Polynomial
+from models.scene.driver import Released
+from models.scene.loads import Load
 from reports.contract.clauses.reactions import pulled
 from reports.contract.oscillators import (
     BASE_RAD,
@@ -35,8 +35,8 @@ from reports.contract.oscillators import (
     rod_state,
 )
 from reports.contract.subject import Clause, NotTriedError, Subject
-from sim.check import refuse_other_model
-from sim.measure import energy, motion
+from sim.engine.measure import energy, motion
+from sim.run.check import refuse_other_model
 
 PACE_OFF, DECAY_OFF, REST_OFF = 0.02, 0.2, 0.02
 """How far the pace of an oscillation may be from that of its spring, over it; its decay, over it;

@@ -10,10 +10,10 @@ import numpy as np
 
 from analytic.structure.mobility import sides_of
 from models.array import Array
-from models.joints import bodies, centre_of
-from models.laws import ConstantSpeed, Oscillating
-from models.moved_scene import mirrored, moved, rotated, scaled
 from models.scene import Same, Scene
+from models.scene.joints import bodies, centre_of
+from models.scene.laws import ConstantSpeed, Oscillating
+from models.scene.moved import mirrored, moved, rotated, scaled
 from reports.compare.beside import Beside, truth_of
 from reports.compare.compare import places
 from reports.compare.errors import largest

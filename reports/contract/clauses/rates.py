@@ -15,7 +15,7 @@ from analytic.kinematics import solve
 from models.array import Array
 from reports.contract.subject import Clause, Subject
 from sim.engine import Session
-from sim.measure import motion
+from sim.engine.measure import motion
 
 STEPS = 800
 """Of one turn."""

@@ -12,9 +12,9 @@ import numpy as np
 from analytic.forces import kinetostatics
 from analytic.kinematics import solve
 from models.array import Array
-from models.joints import block_name, centre_of, joined_at, local_point, mass_of
 from models.motion import Forces, Motion
 from models.scene import GROUND, Scene
+from models.scene.joints import block_name, centre_of, joined_at, local_point, mass_of
 from reports.contract.subject import Clause, Subject, numbers
 
 STEPS = 800

@@ -12,10 +12,10 @@ from models.errors import EngineError
 from models.files.reading import load_scene, shipped
 from models.scene import Scene
 from reports.contract.subject import Clause, NotTriedError, Subject
-from sim.check import refuse_other_model
 from sim.engine import Drive
-from sim.measure import motion
+from sim.engine.measure import motion
 from sim.own_engine.spelling import failure
+from sim.run.check import refuse_other_model
 
 PLACE = 1e-12
 """How far a point may be from where it is, over the longest link or coordinate."""

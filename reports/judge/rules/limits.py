@@ -155,8 +155,8 @@ def allowance(tolerance: str, errors: Errors, placing: Placing = "integrated") -
 
     Elements of a beam that stand where the true line does are stretched, as a cubic can not bend
     without stretching somewhere, and set off by what that pushes their ends with
-    (`models.elastic.Beam.pushed`): of fourbar-elastic 0.13 of the driver's speed squared with 2 of
-    them and 0.009 with 4, at every step, until that is damped.
+    (`models.scene.elastic.Beam.pushed`): of fourbar-elastic 0.13 of the driver's speed squared
+    with 2 of them and 0.009 with 4, at every step, until that is damped.
 
     The caps are what anyone would call wrong, whatever the theory grants: a tenth of the driver's
     speed within a step.

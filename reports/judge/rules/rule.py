@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
-from models.driver import place_in_words
+from models.scene.driver import place_in_words
 from reports.compare.errors import Error, Errors
 from reports.judge.three_steps import Convergence
 from reports.judge.tolerance import Limit

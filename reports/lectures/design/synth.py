@@ -17,7 +17,7 @@ from analytic.lectures.synthesis.examine import Examined
 from analytic.lectures.synthesis.sensitivity import monte_carlo, sensitivity
 from analytic.lectures.synthesis.solutions import Solutions, solutions_of
 from models.errors import CrankcheckError
-from models.lectures.tasks.files import load_task, refuse_unknown, shipped_tasks
+from models.lectures.tasks import load_task, refuse_unknown, shipped_tasks
 from models.lectures.tasks.task import TaskTable
 from reports.lectures.design.constructions.construction_page import construction_page
 from reports.lectures.design.constructions.construction_sheet import construction_sheet

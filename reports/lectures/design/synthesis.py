@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from analytic.lectures.synthesis.solutions import Solutions, solutions_of
 from models.errors import CrankcheckError, shown
 from models.lectures.shipped_tables import table_of
-from models.lectures.tasks.files import KINDS, load_task, refuse_unknown
+from models.lectures.tasks import KINDS, load_task, refuse_unknown
 from models.lectures.tasks.task import TaskTable
 from models.scene import Scene
 from reports.requests.arguments import told_at_the_call

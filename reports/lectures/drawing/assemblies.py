@@ -11,11 +11,11 @@ import numpy as np
 
 from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMechanism
 from analytic.structure.mobility import Structure
-from models.cut_links import with_rigid_links
 from models.errors import CrankcheckError, ReachError, StructureError
 from models.files.names import MOST_ASSEMBLIES
-from models.laws import ConstantSpeed
 from models.scene import Scene
+from models.scene.cut_links import with_rigid_links
+from models.scene.laws import ConstantSpeed
 
 MOST_CHOICES = 1024
 """Combinations of branches that are tried."""

@@ -18,9 +18,9 @@ from reports.quantities import QUANTITIES
 from reports.results.lines import Named, called, named
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation
-from sim.offers import force_recipe
+from sim.engine.settings import profile_of, resolved
 from sim.registry import engine, offering
-from sim.settings import profile_of, resolved
+from sim.registry.offers import force_recipe
 
 RecommendationRow = dict[str, object]
 

@@ -11,8 +11,8 @@ import numpy as np
 from analytic.kinematics import solve
 from models.files.reading import load_scene
 from models.motion import State
-from models.moved_scene import moved, rotated, scaled
 from models.scene import Scene
+from models.scene.moved import moved, rotated, scaled
 from reports.stability.case import Case, Trial
 
 SOURCE = "fourbar-lecture-1"

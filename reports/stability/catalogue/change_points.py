@@ -8,7 +8,8 @@ from functools import partial
 import numpy as np
 
 from analytic.free.window_chain import ChainMotion
-from models.hard import (
+from models.scene import Scene
+from models.scene.hard import (
     SOURCE,
     Chain,
     double_parallelogram,
@@ -17,7 +18,6 @@ from models.hard import (
     slotted_lever,
     triad_platform,
 )
-from models.scene import Scene
 from reports.stability.case import Case, Trial
 
 GRASHOF = "Grashof's rule; the parallelogram and the kite are its limiting cases"

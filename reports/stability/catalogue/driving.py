@@ -7,8 +7,8 @@ from dataclasses import replace
 from functools import partial
 
 from models.files.reading import load_scene
-from models.laws import ConstantSpeed, Law, SpeedChange
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed, Law, SpeedChange
 from reports.stability.case import Case, Trial
 
 SOURCE = "fourbar-lecture-1"

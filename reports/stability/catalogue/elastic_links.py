@@ -7,8 +7,8 @@ from dataclasses import replace
 from functools import cache, partial
 
 from models.files.reading import load_scene
-from models.laws import ConstantSpeed
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
 from reports.stability.case import Case, Trial
 
 BENT = "fourbar-elastic"

@@ -13,11 +13,11 @@ from analytic.forces.force_elements import spring_lengths
 from analytic.free.machine import Machine
 from analytic.free.toggle_barrier import ToggleBarrier
 from analytic.mechanism.fourbar import FourBar
-from models.driver import Released
 from models.files.reading import load_scene
-from models.hard import fourbar
-from models.loads import SlideSpring
 from models.scene import Scene
+from models.scene.driver import Released
+from models.scene.hard import fourbar
+from models.scene.loads import SlideSpring
 from reports.stability.case import Case, Throw, Trial
 
 SWING, SLIDER_CRANK = "fourbar-swing", "slider-crank-spring"

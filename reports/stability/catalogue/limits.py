@@ -10,7 +10,12 @@ import math
 from functools import partial
 
 from analytic.mechanism.fourbar import FourBar
-from models.hard import fourbar, fourbar_by_coupler, slider_crank_by_piston, swinging_triad_platform
+from models.scene.hard import (
+    fourbar,
+    fourbar_by_coupler,
+    slider_crank_by_piston,
+    swinging_triad_platform,
+)
 from reports.stability.case import Case, Trial
 
 BEFORE_RAD = 0.5

@@ -12,9 +12,9 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
-from models.laws import MOST_TURNS
 from models.motion import Forces, Motion, State
 from models.scene import Same, Scene
+from models.scene.laws import MOST_TURNS
 from reports.compare.beside import Truth, truth_of
 from reports.compare.errors import DRIVEN
 from reports.plan.singular import (

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from models.driver import Controlled, Released
 from models.errors import CrankcheckError
 from models.scene import Scene
+from models.scene.driver import Controlled, Released
 from reports.causes.cause import Cause
 from reports.compare.beside import Truth
 from reports.compare.elastic.elastic_truth import ElasticBeside, ElasticTruth, elastic_truth

@@ -10,10 +10,10 @@ import numpy as np
 from analytic.free.free_motion import loosened
 from analytic.kinematics import solve
 from models.array import Array
-from models.driver import LONGEST_S
 from models.errors import CrankcheckError
 from models.motion import Forces, Motion, State
 from models.scene import Scene
+from models.scene.driver import LONGEST_S
 from reports.compare.beside import Truth
 from reports.compare.free.free_facts import FreeFacts
 from reports.compare.free.free_truth import kept_motion, released_state

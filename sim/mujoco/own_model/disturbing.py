@@ -13,7 +13,7 @@ from models.errors import few
 from sim.mujoco.own_model.closures import body_name, equalities, name_of, tendon_bodies
 from sim.mujoco.own_model.component import JOINTS, PARALLEL_DEG, WORLD, Component, joint_name, rigid
 from sim.mujoco.own_model.linkage import NEAR, Linkage, size
-from sim.own_models import Disturbance
+from sim.registry.own_models import Disturbance
 
 ROUNDED = 1e-5
 """A distance below this, over the size of the linkage, is rounding of what a file says."""

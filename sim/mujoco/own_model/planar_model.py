@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from models.array import Array
-from models.joints import blocks, sliding_angle
+from models.mjcf.tree import Freedom, Limb
 from models.motion import State
 from models.scene import GROUND, Scene
-from models.tree import Freedom, Limb
+from models.scene.joints import blocks, sliding_angle
 from sim.mujoco.own_model.component import WORLD
 from sim.mujoco.own_model.linkage import Linkage, Placement, pair, size
 from sim.mujoco.own_model.scene import Matter, SceneRead
@@ -200,7 +200,7 @@ def _in_order(
 
 
 def _split(axes: Sequence[complex], vector: complex) -> list[float]:
-    """The vector as a sum of axes. What no axis can reach stays; `sim.check` sees it."""
+    """The vector as a sum of axes. What no axis can reach stays; `sim.run.check` sees it."""
     if not axes:
         return []
     matrix = np.array([[axis.real for axis in axes], [axis.imag for axis in axes]])

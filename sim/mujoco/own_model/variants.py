@@ -15,10 +15,10 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs  # type: ignore[
 from models.errors import EngineError
 from models.mjcf.options import STIFF_DAMPING, STIFF_IMPEDANCE, STIFF_STEPS
 from sim.engine import Profile, Setting, Settings, SettingValue
+from sim.engine.settings import SettingError, check_choices
 from sim.mujoco.own_model.file import Tag, tags
 from sim.mujoco.settings import INTEGRATORS
-from sim.own_models import Advised
-from sim.settings import SettingError, check_choices
+from sim.registry.own_models import Advised
 
 AS_WRITTEN, RECOMMENDED = "as-written", "recommended"
 KEPT, STIFF = "as-written", "stiff"

@@ -11,11 +11,11 @@ import pytest
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.structure.mobility import analyse
 from models.array import Array
-from models.driver import driver_course
 from models.errors import ReachError
 from models.files.reading import load_scene, parse_scene
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.driver import driver_course
 from tests.analytic.chain import coordinates
 from tests.analytic.four_bars import fourbar
 from tests.analytic.test_bounds import shares

@@ -17,9 +17,9 @@ from analytic.prepared import prepare
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import ReachError
-from models.laws import ConstantSpeed
-from models.moved_scene import moved
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
+from models.scene.moved import moved
 from tests.analytic.assur.triad_scenes import KINDS, on_branch, triad
 from tests.analytic.test_bounds import shares
 from tests.worlds.tiers import few, slowly

@@ -19,10 +19,10 @@ from analytic.mechanism.travel import travel
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.files.reading import parse_scene
-from models.hard import Chain
-from models.laws import FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.hard import Chain
+from models.scene.laws import FromRest, Law, Oscillating, SpeedChange
 from tests.analytic import four_bars, oracle
 from tests.analytic.chain import law_at
 from tests.analytic.change_points import jets

@@ -17,10 +17,10 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
-from models.hard import Chain
-from models.joints import centre_of, frames
 from models.motion import Motion
 from models.scene import Same, Scene
+from models.scene.hard import Chain
+from models.scene.joints import centre_of, frames
 from reports.compare.beside import truth_of
 from reports.contract.oscillators import centres
 from tests.analytic.chain import coordinates

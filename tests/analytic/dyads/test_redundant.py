@@ -12,9 +12,9 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError, StructureError
 from models.files.reading import load_scene, parse_scene
-from models.laws import Oscillating
 from models.motion import LinkMotion
 from models.scene import Driver, Link, Point, Scene
+from models.scene.laws import Oscillating
 from tests.second_opinions import newton
 
 HIGH = np.radians(np.linspace(15.0, 165.0, 40))

@@ -18,9 +18,9 @@ from analytic.multibody.multibody_motion import MultibodyMotion
 from analytic.multibody.release_multibody import Acting, release_multibody
 from models.array import Array
 from models.files.reading import load_scene
-from models.laws import ConstantSpeed, Law
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed, Law
 
 FEW = Modes(2, 1)
 SHIPPED = ("fourbar-elastic", "slider-crank-elastic", "sixbar-elastic")

@@ -23,13 +23,13 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from benchmarks.elastic_theories import row
 from models.array import Array
-from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
-from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
-from models.moved_scene import scaled
 from models.scene import Scene
+from models.scene.elastic import Shape
+from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
+from models.scene.moved import scaled
 from tests.analytic.elastic.driven import (
     SHIPPED,
     following,

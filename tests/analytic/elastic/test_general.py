@@ -20,13 +20,13 @@ from analytic.elastic.engine_start import (
 )
 from analytic.forces.kinetostatics import forces
 from models.array import Array
-from models.cut_scenes import BeamedScene, SegmentedScene
-from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.files.reading import parse_scene
-from models.loads import PinSpring
 from models.motion import Motion, State
 from models.scene import Scene
+from models.scene.cut_scenes import BeamedScene, SegmentedScene
+from models.scene.elastic import Shape
+from models.scene.loads import PinSpring
 from tests.analytic.elastic.driven import fourbar, largest, with_elastic
 from tests.worlds.tiers import slowly
 

@@ -37,13 +37,13 @@ from analytic.lectures.vibration.steady_vibration import (
     swings,
 )
 from models.array import Array
-from models.characteristics import Polynomial, Sine
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
-from models.laws import ConstantSpeed, FromRest
-from models.loads import Load
 from models.scene import Scene
-from models.tabulated import Tabulated
+from models.scene.characteristics import Polynomial, Sine
+from models.scene.laws import ConstantSpeed, FromRest
+from models.scene.loads import Load
+from models.scene.tabulated import Tabulated
 from tests.analytic.elastic.driven import FEW, following, form_of, turning, with_elastic
 from tests.worlds.tiers import few, slow, slowly
 

@@ -20,18 +20,18 @@ from analytic.free.release import release
 from analytic.kinematics import solve
 from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
-from models.characteristics import FourierSum, Pulse
-from models.driver import Controlled
-from models.elastic import Shape
 from models.errors import CrankcheckError, SceneError
 from models.files.assemble import scene_text
 from models.files.reading import find_scene, load_scene, parse_scene
-from models.laws import ConstantSpeed
-from models.loads import Load
 from models.mjcf.document import build
 from models.scene import Scene
-from sim.check import refuse_unknown_forces
+from models.scene.characteristics import FourierSum, Pulse
+from models.scene.driver import Controlled
+from models.scene.elastic import Shape
+from models.scene.laws import ConstantSpeed
+from models.scene.loads import Load
 from sim.registry import ENGINES, engine
+from sim.run.check import refuse_unknown_forces
 from tests.analytic.elastic.driven import apart, by_multipliers, following, largest, with_elastic
 from tests.analytic.multibody.scenes import FIVE_BAR, PARALLELOGRAM, SLIDER_CRANK, scene
 from tests.worlds.tiers import slow, slowly

@@ -20,8 +20,8 @@ from analytic.elastic.shapes import (
     shortening,
 )
 from models.array import Array
-from models.cut_links import Line
-from models.elastic import ElasticLink
+from models.scene.cut_links import Line
+from models.scene.elastic import ElasticLink
 
 LENGTH_M, DENSITY_KG_M, FLEXURAL_N_M2, AXIAL_N = 0.75, 0.243, 4.725, 6.3e6
 LINK = ElasticLink("rod", FLEXURAL_N_M2, AXIAL_N)

@@ -19,12 +19,12 @@ from analytic.elastic.reduced import ReducedForm
 from analytic.elastic.vibration import SlopesOverWindows, tangent, vibrate
 from analytic.free.window import gauss
 from analytic.multibody.multibody_motion import Baumgarte, Method, Projection
-from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
-from models.laws import FromRest
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.elastic import Shape
+from models.scene.laws import FromRest
 from tests.analytic.elastic.driven import (
     FEW,
     apart,

@@ -17,11 +17,11 @@ from mpmath import matrix, mp, mpc, mpf
 
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
-from models.characteristics import Characteristic, Constant, Polynomial, Sine
-from models.joints import block_name, local_point, sliding_body
-from models.loads import CoulombFriction, Load, PinSpring, SlideSpring, Spring
 from models.scene import GROUND, Point, Scene, Slider
-from models.tabulated import Tabulated
+from models.scene.characteristics import Characteristic, Constant, Polynomial, Sine
+from models.scene.joints import block_name, local_point, sliding_body
+from models.scene.loads import CoulombFriction, Load, PinSpring, SlideSpring, Spring
+from models.scene.tabulated import Tabulated
 from tests.analytic.chain import Solved, law_at
 from tests.analytic.change_points.jets import Number
 from tests.analytic.oracle import Place

@@ -17,8 +17,8 @@ from analytic.kinematics import chunks, solve
 from models.array import Array
 from models.files.reading import load_scene, shipped
 from models.motion import Forces
-from models.moved_scene import moved
 from models.scene import Scene
+from models.scene.moved import moved
 from tests.analytic.chain import Chain, coordinates
 from tests.analytic.forces.beside import series
 from tests.analytic.forces.exact_forces import ExactForces, exact_forces, exact_rubbed, value_of

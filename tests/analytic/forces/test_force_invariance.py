@@ -14,13 +14,12 @@ import pytest
 
 from analytic.forces import kinetostatics
 from analytic.structure.mobility import sides_of
-from models import moved_scene
-from models.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.files.reading import load_scene, shipped
-from models.loads import ConstantFriction, CoulombFriction, Friction
 from models.motion import Forces
-from models.scene import Scene
-from models.tabulated import Tabulated
+from models.scene import Scene, moved
+from models.scene.characteristics import Characteristic, Constant, Polynomial, Sine
+from models.scene.loads import ConstantFriction, CoulombFriction, Friction
+from models.scene.tabulated import Tabulated
 from tests.analytic.forces.beside import apart, turn, unlocked
 from tests.worlds.loading import loaded, sprung
 from tests.worlds.other_way import MOVES, Change, faster, sped_up
@@ -105,9 +104,8 @@ def test_friction_grows_with_the_scene() -> None:
         return {"A": CoulombFriction("A", 0.1, radius_m), **constant}
 
     scene = replace(load_scene("slider-crank-central"), friction=rubs(0.02, 3.0, 5.0))
-    assert moved_scene.scaled(scene, 10.0).friction == rubs(0.2, 3000.0, 500.0)
+    assert moved.scaled(scene, 10.0).friction == rubs(0.2, 3000.0, 500.0)
     assert sped_up(scene, 3.0).friction == rubs(0.02, 27.0, 45.0)
     assert (
-        moved_scene.mirrored(scene, sides_of(scene)).friction
-        == moved_scene.moved(scene, (1.0, 0.0)).friction
+        moved.mirrored(scene, sides_of(scene)).friction == moved.moved(scene, (1.0, 0.0)).friction
     )

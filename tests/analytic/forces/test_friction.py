@@ -14,9 +14,9 @@ from analytic.forces.efficiency import friction_power
 from analytic.kinematics import reach, solve
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, parse_scene, shipped
-from models.loads import ConstantFriction, CoulombFriction
 from models.motion import Forces
 from models.scene import Scene
+from models.scene.loads import ConstantFriction, CoulombFriction
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.analytic.forces.beside import AGREED, agreed, apart, at, out_of_balance, series, turn
 from tests.second_opinions import multipliers, power

@@ -14,14 +14,14 @@ import pytest
 from analytic.forces.force_elements import spring_lengths
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import chunks, reach, solve, solve_driven
-from models.characteristics import Constant, Polynomial
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, parse_scene
-from models.laws import ConstantSpeed
-from models.loads import LineSpring, Load, PinSpring, SlideSpring
 from models.motion import Motion
 from models.scene import GROUND, Driver, Scene
-from models.tabulated import Tabulated
+from models.scene.characteristics import Constant, Polynomial
+from models.scene.laws import ConstantSpeed
+from models.scene.loads import LineSpring, Load, PinSpring, SlideSpring
+from models.scene.tabulated import Tabulated
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.analytic.forces.beside import AGREED, agreed, apart, at, out_of_balance, series, turn
 from tests.analytic.forces.test_self_locking import STEEP

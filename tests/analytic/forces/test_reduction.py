@@ -15,12 +15,12 @@ from analytic.forces.late_impulses import ON_TIME, LateImpulses, late_impulses
 from analytic.forces.virtual_power import reduced_machine
 from analytic.kinematics import solve
 from models.array import Array
-from models.characteristics import Constant
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, parse_scene, shipped
-from models.laws import Accelerating, ConstantSpeed
-from models.loads import Load
 from models.scene import Driver
+from models.scene.characteristics import Constant
+from models.scene.laws import Accelerating, ConstantSpeed
+from models.scene.loads import Load
 from tests.second_opinions.reduction import oscillation_length, plane_motion, rotation, two_masses
 from tests.worlds.loading import loaded, sprung
 

@@ -26,9 +26,9 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import parse_scene
-from models.laws import Accelerating, Oscillating
-from models.loads import ConstantFriction, CoulombFriction
 from models.scene import Driver, Scene
+from models.scene.laws import Accelerating, Oscillating
+from models.scene.loads import ConstantFriction, CoulombFriction
 from tests.worlds.loading import rubbed_mechanism
 from tests.worlds.tiers import slowly
 

@@ -15,9 +15,9 @@ from analytic.kinematics import solve
 from analytic.prepared import prepared
 from models.array import Array
 from models.files.reading import load_scene, parse_scene, shipped
-from models.laws import Accelerating
 from models.motion import Forces, Motion
 from models.scene import Driver, Scene
+from models.scene.laws import Accelerating
 from tests.analytic.assur.triad_scenes import KINDS, triad
 from tests.analytic.forces.beside import (
     AGREED,

@@ -16,8 +16,8 @@ from analytic.free.machine import Machine
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
 from models.array import Array
-from models.joints import centre_of, mass_of
 from models.scene import Scene, as_bytes
+from models.scene.joints import centre_of, mass_of
 from tests.analytic.multibody.scenes import scene
 from tests.second_opinions.constraints import Constraints
 

@@ -16,11 +16,11 @@ from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
 from analytic.free.toggle_barrier import ToggleBarrier
 from models.array import Array
-from models.driver import let_go
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
-from models.hard import fourbar as triple_rocker
 from models.scene import Scene
+from models.scene.driver import let_go
+from models.scene.hard import fourbar as triple_rocker
 from tests.analytic.free.mechanisms import (
     fourbar,
     newton_euler,

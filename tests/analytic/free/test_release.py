@@ -20,12 +20,12 @@ from analytic.free.release import release
 from analytic.free.window import WindowSolution
 from analytic.kinematics import reach
 from analytic.multibody.multibody_motion import Projection
-from models.characteristics import Constant, Pulse, Staircase
 from models.errors import CrankcheckError, StructureError
 from models.files.reading import load_scene, parse_scene
-from models.loads import ConstantFriction, CoulombFriction, LineSpring, Load, PinSpring
 from models.scene import Scene, Start
-from models.tabulated import Tabulated
+from models.scene.characteristics import Constant, Pulse, Staircase
+from models.scene.loads import ConstantFriction, CoulombFriction, LineSpring, Load, PinSpring
+from models.scene.tabulated import Tabulated
 from tests.analytic.free.mechanisms import (
     driver_by_steps,
     fourbar,

@@ -23,13 +23,13 @@ from analytic.kinematics import solve_driven
 from analytic.prepared import Prepared
 from analytic.structure.mobility import analyse
 from models.array import Array
-from models.characteristics import Constant
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
-from models.hard import UPRIGHT, Chain
-from models.joints import centre_of, mass_of
-from models.loads import Load
 from models.scene import Scene
+from models.scene.characteristics import Constant
+from models.scene.hard import UPRIGHT, Chain
+from models.scene.joints import centre_of, mass_of
+from models.scene.loads import Load
 from tests.analytic.free.mechanisms import (
     driver_by_steps,
     fourbar,

@@ -19,11 +19,11 @@ from analytic.mechanism.fourbar import (
     slider_crank_type,
 )
 from analytic.mechanism.travel import Travel, coriolis, extreme_speeds, travel, travels
-from models.driver import passing
 from models.errors import CrankcheckError, ReachError, StructureError
 from models.files.reading import load_scene, parse_scene
-from models.laws import ConstantSpeed
 from models.scene import Driver
+from models.scene.driver import passing
+from models.scene.laws import ConstantSpeed
 from tests.analytic.four_bars import fourbar, random_bars
 from tests.worlds.tiers import slowly
 

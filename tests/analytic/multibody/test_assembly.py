@@ -20,11 +20,11 @@ from analytic.multibody.bodies import Configuration
 from analytic.multibody.multibody_motion import Baumgarte, MultibodyMotion
 from analytic.multibody.release_multibody import release_multibody, start_state
 from models.array import Array
-from models.driver import let_go
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
-from models.loads import ConstantFriction
 from models.scene import Scene
+from models.scene.driver import let_go
+from models.scene.loads import ConstantFriction
 from tests.analytic.chain import coordinates
 from tests.analytic.multibody.scenes import (
     DOUBLE_PENDULUM,

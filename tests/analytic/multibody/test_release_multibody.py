@@ -19,10 +19,10 @@ from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
-from models.hard import Chain
-from models.loads import Load
-from models.moved_scene import scaled
-from models.tabulated import Tabulated
+from models.scene.hard import Chain
+from models.scene.loads import Load
+from models.scene.moved import scaled
+from models.scene.tabulated import Tabulated
 from tests.analytic.free.mechanisms import fourbar
 from tests.analytic.multibody.scenes import (
     DOUBLE_PENDULUM,

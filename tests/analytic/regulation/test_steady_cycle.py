@@ -19,15 +19,15 @@ from analytic.lectures.regulation.periodic_solution import StallError
 from analytic.lectures.regulation.steady_cycle import SteadyCycle, cycle_scene, with_flywheel
 from analytic.lectures.regulation.turning_machine import TurningMachine
 from analytic.structure.mobility import sides_of
-from models.characteristics import Constant, Polynomial, Pulse, Sine, Staircase
-from models.driver import Released
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
-from models.laws import Accelerating, ConstantSpeed
-from models.loads import ConstantFriction, CoulombFriction, LineSpring, PinSpring, SlideSpring
-from models.moved_scene import mirrored
 from models.scene import GROUND, Driver, Scene
-from models.tabulated import Tabulated
+from models.scene.characteristics import Constant, Polynomial, Pulse, Sine, Staircase
+from models.scene.driver import Released
+from models.scene.laws import Accelerating, ConstantSpeed
+from models.scene.loads import ConstantFriction, CoulombFriction, LineSpring, PinSpring, SlideSpring
+from models.scene.moved import mirrored
+from models.scene.tabulated import Tabulated
 from tests.analytic.regulation.worked import shaft, yoke
 from tests.worlds.tiers import few, slowly
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from models.characteristics import Characteristic, Constant
-from models.driver import Released
 from models.files.reading import load_scene, parse_scene
-from models.laws import ConstantSpeed
-from models.loads import Load, Over
 from models.scene import Driver, Scene
+from models.scene.characteristics import Characteristic, Constant
+from models.scene.driver import Released
+from models.scene.laws import ConstantSpeed
+from models.scene.loads import Load, Over
 
 SHAFT = """
 name = "shaft"

@@ -13,8 +13,8 @@ from analytic.structure.groups import Bridge
 from analytic.structure.mobility import MOST_LOOKS, LeftOver, analyse
 from models.errors import StructureError
 from models.files.reading import load_scene, parse_scene, shipped
-from models.laws import ConstantSpeed
 from models.scene import Driver, Scene
+from models.scene.laws import ConstantSpeed
 from tests.second_opinions import newton
 from tests.second_opinions.newton import Guess
 

@@ -17,9 +17,9 @@ from analytic.lectures.synthesis.solutions import Solutions, followed, solutions
 from analytic.lectures.synthesis.strokes import stroke_proposals
 from analytic.mechanism.travel import travel
 from models.errors import CrankcheckError, ReachError
-from models.laws import Oscillating
-from models.lectures.tasks.files import load_task
+from models.lectures.tasks import load_task
 from models.lectures.tasks.positions import StrokeTask
+from models.scene.laws import Oscillating
 from tests.analytic.synthesis.random_tasks import HEAD, TASKS, random_solutions
 from tests.worlds.tiers import at_length, few, slowly
 

@@ -18,9 +18,9 @@ from analytic.kinematics import reach, solve, solve_driven
 from analytic.turns.count import CellSolver
 from models.array import Array
 from models.files.reading import load_scene, parse_scene, shipped
-from models.laws import ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
 from models.scene import Driver, Scene
+from models.scene.laws import ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from tests.analytic import four_bars
 from tests.analytic.change_points.test_crossing import LEVER, LOCOMOTIVE, fourbar
 from tests.worlds.strategies import Designed, examples, mechanisms

@@ -13,8 +13,8 @@ import pytest
 
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, parse_scene, scene_texts
-from models.laws import ConstantSpeed
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
 from reports.advise.demand import MOST_SUBSTEPS, OWN, Choice, Demand, at_speed, choices, demanded
 from reports.advise.evidence import (
     MeasuredSteps,
@@ -27,8 +27,8 @@ from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED
 from reports.plan.study import load_study
 from reports.results.lines import Line, lines
 from reports.store.reader import Stored, read_store
+from sim.engine.settings import resolved
 from sim.registry import engine, usual
-from sim.settings import resolved
 from tests.worlds.small_store import SCENES, STEPS
 
 TEXTS = scene_texts(SCENES)

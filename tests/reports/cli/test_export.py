@@ -17,8 +17,8 @@ from analytic.elastic.discretisation import Modes
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.free.release import release
 from models.files.reading import kinds, load_scene, shipped
-from models.laws import Oscillating
 from models.motion import Motion
+from models.scene.laws import Oscillating
 from reports.drawing import gif
 from reports.drawing.shape import COLOURS
 from reports.requests import engines

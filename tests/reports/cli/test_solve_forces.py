@@ -17,8 +17,8 @@ from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve_driven
 from models.files.assemble import scene_text
 from models.files.reading import load_scene, shipped
-from models.loads import CoulombFriction
 from models.scene import Scene
+from models.scene.loads import CoulombFriction
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.worlds.command_line import crank, flat, refused, told
 from tests.worlds.without_pdf import without_pdf

@@ -15,9 +15,9 @@ from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.errors import ReachError
 from models.files.reading import load_scene, parse_scene, shipped
-from models.hard import fourbar, slider_crank, slotted_lever
 from models.motion import Crossing
 from models.scene import Scene
+from models.scene.hard import fourbar, slider_crank, slotted_lever
 from reports.compare.beside import Beside, Truth
 from reports.compare.branch import departure
 from reports.compare.errors import Errors, SceneFacts

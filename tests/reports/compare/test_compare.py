@@ -16,8 +16,8 @@ from analytic.structure.mobility import sides_of
 from models.array import Array
 from models.files.reading import load_scene
 from models.motion import LinkMotion
-from models.moved_scene import mirrored, moved, rotated, scaled
 from models.scene import Scene
+from models.scene.moved import mirrored, moved, rotated, scaled
 from reports.compare.beside import SETTLING, Beside, Truth, incomplete
 from reports.compare.compare import compare
 from reports.compare.errors import ErrorKind, Errors

@@ -13,12 +13,12 @@ import pytest
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
-from models.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.files.reading import load_scene, parse_scene
-from models.loads import ConstantFriction, Load
 from models.motion import Forces, Motion
 from models.scene import Scene
-from models.tabulated import Tabulated
+from models.scene.characteristics import Characteristic, Constant, Polynomial, Sine
+from models.scene.loads import ConstantFriction, Load
+from models.scene.tabulated import Tabulated
 from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Errors

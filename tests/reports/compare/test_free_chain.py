@@ -14,7 +14,7 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
-from models.hard import Chain
+from models.scene.hard import Chain
 from reports.compare.free.hard_runs import ChainErrors, compared, hold
 from sim.engine import BodyPose, Poses
 from sim.run import run

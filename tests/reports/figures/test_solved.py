@@ -22,9 +22,9 @@ from analytic.lectures.vibration.over_speeds import OverSpeeds, over_speeds
 from analytic.lectures.vibration.over_speeds import over_inertia as inertia_map
 from analytic.lectures.vibration.steady_vibration import SteadyVibration, steady_vibration
 from models.files.reading import load_scene
-from models.loads import ConstantFriction, CoulombFriction, Load
 from models.scene import Scene
-from models.tabulated import Tabulated
+from models.scene.loads import ConstantFriction, CoulombFriction, Load
+from models.scene.tabulated import Tabulated
 from reports.describe.elastic_course import drawn_course
 from reports.figures.elastic_figures import ELASTIC_FIGURES
 from reports.figures.force_figures import FORCE_FIGURES, mean_torque

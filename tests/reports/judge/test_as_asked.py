@@ -13,9 +13,9 @@ import pytest
 
 from analytic.kinematics import solve
 from models.files.reading import load_scene, shipped
-from models.laws import ConstantSpeed
-from models.loads import ConstantFriction
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
+from models.scene.loads import ConstantFriction
 from reports.compare.compare import not_asked_for
 from reports.compare.errors import Error
 from reports.compare.hardness import uneven, unevenly_turned
@@ -24,9 +24,9 @@ from reports.judge.rules import RULES
 from reports.judge.rules.reference import LEAST, too_good
 from reports.selftest.fault import integrates
 from sim.engine import Run
+from sim.engine.settings import resolved
 from sim.registry import ENGINES, engine
 from sim.run import run, setup
-from sim.settings import resolved
 from tests.worlds.facts import with_facts
 from tests.worlds.fake.engine import FakeEngine
 from tests.worlds.tiers import few

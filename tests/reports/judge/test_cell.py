@@ -18,9 +18,9 @@ from benchmarks.verify_overhead import LINKS, chain
 from models.array import Array
 from models.errors import EngineError, ReachError
 from models.files.reading import load_scene, parse_scene, shipped
-from models.laws import Accelerating
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.laws import Accelerating
 from reports.judge import cell as cells
 from reports.judge.cell import Cell, check, unfinished
 from reports.judge.rows import ERROR_COLUMNS, cell_frame, error_frame

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from analytic.forces.late_impulses import LateImpulses
-from models.driver import let_go
 from models.files.reading import load_scene, parse_scene
-from models.loads import ConstantFriction
 from models.scene import Scene
+from models.scene.driver import let_go
+from models.scene.loads import ConstantFriction
 from reports.compare.errors import DRIVEN, Errors
 from reports.compare.free import free_facts
 from reports.judge.cell import Cell, CellRunner, Checked, check, examined

@@ -12,9 +12,9 @@ import pytest
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
-from models.joints import mass_ratio
-from models.laws import ConstantSpeed, Oscillating
 from models.scene import Scene
+from models.scene.joints import mass_ratio
+from models.scene.laws import ConstantSpeed, Oscillating
 from reports.compare.beside import SETTLING, Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Errors, SceneFacts

@@ -17,16 +17,16 @@ from hypothesis import strategies as st
 from analytic.kinematics import solve
 from models.errors import EngineError
 from models.files.reading import load_scene, shipped
-from models.laws import ConstantSpeed
 from models.mjcf.document import build
 from models.motion import State
 from models.scene import Driver, Scene
+from models.scene.laws import ConstantSpeed
 from reports.judge.cell import Cell, check
 from reports.own_model.assembly import ModelRequest, assembled
 from sim.mujoco.own_model.closures import ModelError
 from sim.mujoco.own_model.variants import advice, patched
 from sim.mujoco.reader import read_model
-from sim.own_models import Advised
+from sim.registry.own_models import Advised
 from tests.worlds.drawn_model import HALF, UPRIGHT, Drawing, drawn, rotation
 from tests.worlds.own_four_bar import planted
 from tests.worlds.own_models import line, read_text

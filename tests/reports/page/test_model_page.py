@@ -14,7 +14,7 @@ from reports.own_model.account import CheckedLine
 from reports.own_model.judged import JudgedModel, judged_model
 from reports.page.build import _plotly
 from reports.page.model_page import model_page
-from sim.own_models import Disturbance
+from sim.registry.own_models import Disturbance
 from tests.reports.page.conftest import Write
 from tests.reports.page.hostile import Outline, embedded_in, stands_alone
 from tests.reports.page.tab import OUT, Tab

@@ -12,7 +12,7 @@ import pytest
 from analytic.kinematics import reach
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
-from models.laws import Oscillating
+from models.scene.laws import Oscillating
 from reports.plan.singular import passage_note, refuse_singular
 from tests.worlds.command_line import crank, refused
 

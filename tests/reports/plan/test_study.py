@@ -11,11 +11,11 @@ from typing import Any
 
 import pytest
 
-from models.characteristics import Constant
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
-from models.loads import ConstantFriction, Load
 from models.scene import Scene
+from models.scene.characteristics import Constant
+from models.scene.loads import ConstantFriction, Load
 from reports.judge.cell import Cell
 from reports.plan.chosen import chosen_scenes, left_out_note
 from reports.plan.chosen_study import StudyChoice, chosen_study

@@ -18,10 +18,10 @@ from reports.results.recommend import Recommendation, recommendations
 from reports.store.reader import Stored, read_store
 from reports.way.result_kind import TARGETS
 from sim.engine import Drive
+from sim.engine.settings import profile_of, resolved
 from sim.mujoco.settings import writing
-from sim.offers import snippet
 from sim.registry import engine as adapter
-from sim.settings import profile_of, resolved
+from sim.registry.offers import snippet
 from tests.sim.test_snippets import other
 from tests.worlds import bare
 from tests.worlds.bare import BARE

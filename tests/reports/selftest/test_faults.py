@@ -10,7 +10,7 @@ from itertools import product
 import pytest
 
 from models.files.reading import load_scene
-from models.hard import fourbar
+from models.scene.hard import fourbar
 from reports.judge.rules import RULES
 from reports.selftest import trial
 from reports.selftest.elastic_changes import LOOSE

@@ -16,8 +16,8 @@ import pytest
 from analytic.kinematics import solve
 from models.array import Array
 from models.files.reading import load_scene
-from models.joints import line_ends, mass_of
-from models.loads import PinSpring
+from models.scene.joints import line_ends, mass_of
+from models.scene.loads import PinSpring
 from reports.compare.free.free_truth import free_truth
 from reports.judge.cell import CellRunner, check, examined
 from reports.selftest.elastic_changes import (
@@ -54,7 +54,7 @@ from reports.selftest.unseen import UNSEEN_ELASTIC, UNSEEN_FREE
 from sim.engine import Run
 from sim.registry import engine
 from sim.run import run
-from sim.spoil import Post, rounded, spoilt
+from sim.run.spoil import Post, rounded, spoilt
 
 STEPS = 360
 BOTH = pytest.mark.parametrize("engine_name", ["mujoco", "pymunk"])

@@ -13,9 +13,9 @@ import pytest
 
 from analytic.elastic.discretisation import REFERENCE
 from analytic.free.release import release
-from models.cut_scenes import SegmentedScene
 from models.files.reading import load_scene
 from models.scene import Link, Scene
+from models.scene.cut_scenes import SegmentedScene
 from reports.selftest import elastic_changes, free_changes, segment_changes
 from reports.selftest.elastic_changes import BEAM_RUNS, BENT, LOOSE, elastic_cell
 from reports.selftest.free_faults import SWING

@@ -15,8 +15,8 @@ from analytic.lectures.drawings.drawn_polygons import draw_polygons
 from analytic.lectures.drawings.placed_mechanism import DriverState
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
-from models.laws import ConstantSpeed
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
 from reports.lectures.drawing.sheets.canvas import Canvas, line, text
 from reports.lectures.drawing.sheets.centre_sheet import centres_of, draw_centres
 from reports.lectures.drawing.sheets.driver_range import assembled

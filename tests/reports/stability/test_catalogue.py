@@ -14,9 +14,9 @@ import pytest
 
 from analytic.kinematics import reach, solve
 from models.errors import ReachError
-from models.hard import slider_crank_by_piston, slotted_lever, triad_platform
-from models.laws import Oscillating
 from models.scene import Driver, Scene
+from models.scene.hard import slider_crank_by_piston, slotted_lever, triad_platform
+from models.scene.laws import Oscillating
 from reports.stability.case import Trial
 from reports.stability.catalogue.change_points import TRIAD_CRANK_M
 from reports.stability.error_series import nearest

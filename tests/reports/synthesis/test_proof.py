@@ -16,11 +16,11 @@ from analytic.lectures.synthesis.design import Asked
 from analytic.lectures.synthesis.examine import Examined, passing_times
 from analytic.lectures.synthesis.solutions import solutions_of
 from models.errors import CrankcheckError
-from models.laws import ConstantSpeed, Oscillating
-from models.lectures.tasks.files import load_task, shipped_tasks
+from models.lectures.tasks import load_task, shipped_tasks
 from models.lectures.tasks.positions import CouplerTask
 from models.lectures.tasks.task import TaskTable
 from models.scene import span
+from models.scene.laws import ConstantSpeed, Oscillating
 from reports.lectures.design.proof import by_reference, proven
 from tests.analytic.synthesis.random_tasks import TASKS, random_solutions
 from tests.worlds.tiers import at_length, slowly

@@ -11,7 +11,7 @@ from typer.testing import CliRunner, Result
 from analytic.lectures.synthesis import coupler
 from analytic.lectures.synthesis.solutions import solutions_of
 from models.files.reading import read_scene
-from models.lectures.tasks.files import find_task, load_task
+from models.lectures.tasks import find_task, load_task
 from reports.cli import app
 from reports.lectures.design import synth as command
 from reports.lectures.design.design_tables import solution_frame

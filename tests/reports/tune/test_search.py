@@ -30,7 +30,7 @@ from reports.tune.search import (
 )
 from reports.workers.signals import Stopped
 from sim.engine import Settings
-from sim.offers import Knob, SearchSpace
+from sim.registry.offers import Knob, SearchSpace
 from tests.worlds.tiers import few
 
 PROFILE = {"stiffness": 10.0, "idle": 3, "kind": "slow", "fixed": 7}

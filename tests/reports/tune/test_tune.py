@@ -21,7 +21,7 @@ from reports.tune.attempt import Attempt, Bench
 from reports.workers.signals import Stopped
 from sim.engine import Settings
 from sim.mujoco.knobs import EVALUATIONS
-from sim.offers import Knob, search_space
+from sim.registry.offers import Knob, search_space
 from tests.worlds.command import PYTHON, script
 from tests.worlds.programs import Start
 from tests.worlds.tiers import slow

@@ -17,8 +17,8 @@ import pytest
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
-from models.laws import ConstantSpeed
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
+from models.scene.laws import ConstantSpeed
 from reports.lectures.drawing.workbook.family import family
 from reports.lectures.drawing.workbook.formula_table import Input, evaluated
 from reports.lectures.drawing.workbook.live_workbook import formulas_of, left_out, live_workbook

@@ -13,17 +13,17 @@ import pytest
 
 from analytic.forces import kinetostatics
 from models.array import Array
-from models.characteristics import Constant, Polynomial, Sine
 from models.errors import EngineError
 from models.files.reading import load_scene, shipped
-from models.loads import CoulombFriction, Load
 from models.motion import Forces
 from models.scene import Scene
-from models.tabulated import Tabulated
+from models.scene.characteristics import Constant, Polynomial, Sine
+from models.scene.loads import CoulombFriction, Load
+from models.scene.tabulated import Tabulated
 from reports.contract.clauses.reactions import named
 from sim.engine import Settings
 from sim.exudyn.engine import ENGINE
-from sim.offers import force_recipe
+from sim.registry.offers import force_recipe
 from tests.sim.test_force_recipes import printed
 from tests.worlds import runs
 from tests.worlds.loading import loaded_mechanism

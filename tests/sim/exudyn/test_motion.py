@@ -17,16 +17,16 @@ from scipy.integrate import solve_ivp  # type: ignore[import-untyped]  # ships n
 from analytic.elastic.engine_start import node_start, segment_start
 from analytic.free.machine import Machine
 from models.array import Array
-from models.characteristics import Characteristic, Polynomial, Pulse, Staircase
-from models.cut_scenes import BeamedScene, SegmentedScene
-from models.driver import Released
-from models.elastic import Shape
 from models.errors import EngineError
 from models.files.reading import load_scene
-from models.laws import ConstantSpeed, Oscillating
-from models.loads import LineSpring, Load, Over, PinSpring, SlideSpring, Spring
 from models.motion import Motion
 from models.scene import GROUND, Driver, Scene
+from models.scene.characteristics import Characteristic, Polynomial, Pulse, Staircase
+from models.scene.cut_scenes import BeamedScene, SegmentedScene
+from models.scene.driver import Released
+from models.scene.elastic import Shape
+from models.scene.laws import ConstantSpeed, Oscillating
+from models.scene.loads import LineSpring, Load, Over, PinSpring, SlideSpring, Spring
 from sim.engine import Run, Settings
 from sim.exudyn import engine
 from sim.exudyn.engine import ENGINE

@@ -12,9 +12,9 @@ import pytest
 from analytic.kinematics import solve
 from models.errors import EngineError
 from models.files.reading import load_scene
-from models.hard import double_parallelogram
-from models.laws import FromRest, Oscillating, SpeedChange
 from models.scene import Scene
+from models.scene.hard import double_parallelogram
+from models.scene.laws import FromRest, Oscillating, SpeedChange
 from sim.engine import Run, Settings
 from sim.exudyn.crank_drive import CrankCourse, speeds
 from sim.exudyn.engine import ENGINE, ExudynSession

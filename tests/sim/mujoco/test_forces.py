@@ -15,18 +15,17 @@ import pytest
 
 from analytic.forces import kinetostatics
 from analytic.free.window_chain import ChainMotion
-from models import tree
-from models.characteristics import Constant, Sine
 from models.errors import EngineError
 from models.files.reading import load_scene, shipped
-from models.hard import Chain
-from models.joints import block_name
-from models.loads import CoulombFriction, Load
-from models.mjcf import forces
+from models.mjcf import forces, tree
 from models.mjcf.document import build
 from models.motion import Forces
 from models.scene import Scene
-from models.tabulated import Tabulated
+from models.scene.characteristics import Constant, Sine
+from models.scene.hard import Chain
+from models.scene.joints import block_name
+from models.scene.loads import CoulombFriction, Load
+from models.scene.tabulated import Tabulated
 from sim.mujoco import engine
 from sim.run import run
 from tests.worlds import runs

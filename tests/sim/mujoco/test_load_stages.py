@@ -13,11 +13,11 @@ import pytest
 from analytic.free.release import release
 from analytic.free.window_chain import ChainMotion
 from models.array import Array
-from models.characteristics import Characteristic, Polynomial, Pulse, Sine, Staircase
 from models.files.reading import load_scene, parse_scene
-from models.hard import Chain
-from models.loads import Load
-from models.tabulated import Tabulated
+from models.scene.characteristics import Characteristic, Polynomial, Pulse, Sine, Staircase
+from models.scene.hard import Chain
+from models.scene.loads import Load
+from models.scene.tabulated import Tabulated
 from sim.mujoco.engine import MujocoSession
 from sim.mujoco.loading import LoadStages, forward_parts, stage_sizes
 from sim.run import run

@@ -33,7 +33,7 @@ from sim.mujoco.own_model.variants import (
 )
 from sim.mujoco.reader import ReadModel, read_model
 from sim.mujoco.settings import INTEGRATORS
-from sim.own_models import Advised, Tour
+from sim.registry.own_models import Advised, Tour
 from tests.worlds.own_four_bar import CLOSED, HEALTHY, planted
 
 

@@ -16,17 +16,17 @@ from scipy.integrate import solve_ivp  # type: ignore[import-untyped]  # ships n
 from analytic.free.release import release
 from analytic.multibody.release_multibody import start_state
 from models.array import Array
-from models.characteristics import Polynomial, Pulse
-from models.driver import Released
 from models.errors import EngineError
 from models.files.reading import load_scene, parse_scene
-from models.loads import LineSpring, Load, PinSpring, SlideSpring, Spring
 from models.mjcf.document import build
 from models.motion import State
 from models.scene import GROUND, Driver, Link, Point, Scene
-from sim.check import refuse_other_model
+from models.scene.characteristics import Polynomial, Pulse
+from models.scene.driver import Released
+from models.scene.loads import LineSpring, Load, PinSpring, SlideSpring, Spring
 from sim.mujoco.engine import MujocoSession
 from sim.run import run
+from sim.run.check import refuse_other_model
 from tests.worlds import runs
 from tests.worlds.equilibrium import left_over
 from tests.worlds.let_go import released

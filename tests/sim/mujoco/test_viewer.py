@@ -8,9 +8,9 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 import pytest
 
-from models.characteristics import Sine
 from models.files.reading import load_scene
-from models.loads import ConstantFriction, Load
+from models.scene.characteristics import Sine
+from models.scene.loads import ConstantFriction, Load
 from sim.mujoco import viewer as mujoco_viewer
 from tests.worlds.runs import acted_on, start_of
 

@@ -12,19 +12,19 @@ import pymunk
 import pytest
 
 from analytic.elastic.engine_start import segment_start
-from models.cut_scenes import SegmentedScene
 from models.errors import EngineError
 from models.files.reading import load_scene, parse_scene
-from models.loads import LineSpring, PinSpring, Spring
 from models.motion import State
 from models.scene import GROUND, Scene
+from models.scene.cut_scenes import SegmentedScene
+from models.scene.loads import LineSpring, PinSpring, Spring
 from sim.engine import Run
-from sim.offers import remedies
 from sim.pymunk import acting, convergence
 from sim.pymunk.convergence import HALVINGS, chain_iterations, iterations, left_over
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.space import SpaceModel, build
 from sim.pymunk.spring_steps import chain_springs
+from sim.registry.offers import remedies
 from sim.run import run
 from tests.worlds.runs import opened, ran, start_of
 

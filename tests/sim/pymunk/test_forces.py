@@ -12,15 +12,15 @@ import pytest
 
 from analytic.forces.kinetostatics import forces
 from models.array import Array
-from models.characteristics import Constant, Sine
 from models.files.reading import load_scene
-from models.hard import double_parallelogram
-from models.loads import Load
 from models.motion import Forces
 from models.scene import GROUND, Scene
+from models.scene.characteristics import Constant, Sine
+from models.scene.hard import double_parallelogram
+from models.scene.loads import Load
 from reports.contract.clauses.reactions import named
 from sim.engine import Drive, Run
-from sim.momentum_balance import Hinge, MomentumGain, joint_pushes
+from sim.engine.momentum_balance import Hinge, MomentumGain, joint_pushes
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.spoiler import SPOILER
 from sim.run import run

@@ -14,21 +14,21 @@ import pytest
 from analytic.free.release import release
 from analytic.kinematics import solve
 from models.array import Array
-from models.characteristics import Constant, Polynomial, Sine, Staircase
-from models.driver import Released
 from models.errors import EngineError
 from models.files.reading import load_scene
-from models.hard import Chain
-from models.loads import LineSpring, Load, PinSpring, SlideSpring, Spring
 from models.scene import GROUND, Driver, Scene
-from models.tabulated import Tabulated
+from models.scene.characteristics import Constant, Polynomial, Sine, Staircase
+from models.scene.driver import Released
+from models.scene.hard import Chain
+from models.scene.loads import LineSpring, Load, PinSpring, SlideSpring, Spring
+from models.scene.tabulated import Tabulated
 from sim.engine import Run
-from sim.offers import Stepping
+from sim.engine.settings import resolved
 from sim.pymunk.engine import ENGINE
 from sim.pymunk.force_recipe import FORCE_RECIPE
 from sim.pymunk.snippet import SNIPPET
+from sim.registry.offers import Stepping
 from sim.run import run
-from sim.settings import resolved
 from tests.worlds.let_go import released
 from tests.worlds.runs import acted_on, opened, ran
 from tests.worlds.tiers import slowly

@@ -6,8 +6,8 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
-from models.driver import Released
 from models.files.reading import load_scene
+from models.scene.driver import Released
 from reports.stability.case import Case, Trial
 
 SCENE = Path(__file__).with_name("bead.toml")

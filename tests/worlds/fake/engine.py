@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import EngineError
-from models.joints import blocks, bodies, centre_of, mass_of, sliding_angle
 from models.motion import Motion, State
 from models.scene import GROUND, Scene
+from models.scene.joints import blocks, bodies, centre_of, mass_of, sliding_angle
 from sim.engine import (
     BodyPose,
     Drive,
@@ -28,8 +28,8 @@ from sim.engine import (
     Setting,
     Settings,
 )
-from sim.settings import check_ranges
-from sim.spoil import rounded
+from sim.engine.settings import check_ranges
+from sim.run.spoil import rounded
 
 TUNED = Profile("tuned", "fake", "as exact as told", {"knob": Setting(1, "there has to be one")})
 

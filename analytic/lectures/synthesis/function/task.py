@@ -13,7 +13,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from models.lectures.formula import parse_formula
-from models.tabulated import Tabulated
+from models.scene.tabulated import Tabulated
 
 
 def chebyshev_spacing(count: int, low: float, high: float) -> Array:

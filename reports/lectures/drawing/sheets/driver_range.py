@@ -9,8 +9,8 @@ import numpy as np
 from analytic.kinematics import reach, solve_driven
 from models.array import Array, Mask
 from models.errors import CrankcheckError, ReachError
-from models.laws import Oscillating
 from models.scene import Scene
+from models.scene.laws import Oscillating
 
 
 def range_about(scene: Scene, theta: float) -> tuple[float, float]:

@@ -17,8 +17,8 @@ from matplotlib.path import Path
 from analytic.kinematics import solve_driven
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism, quarter_turn
 from models.array import Array
-from models.laws import Oscillating
 from models.scene import GROUND, Link
+from models.scene.laws import Oscillating
 from reports.figures.style import INK
 from reports.lectures.drawing.sheets.canvas import arrow_head, line
 from reports.lectures.drawing.sheets.driver_range import assembled, range_about

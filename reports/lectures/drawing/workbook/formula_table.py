@@ -19,9 +19,9 @@ from openpyxl.utils import get_column_letter  # type: ignore[import-untyped]  # 
 
 from models.array import Array
 from models.errors import CrankcheckError
-from models.joints import less
-from models.laws import ConstantSpeed
 from models.scene import Scene
+from models.scene.joints import less
+from models.scene.laws import ConstantSpeed
 
 NAME = re.compile(r"\{([\w]+)\}|\[([\w]+?)(-1)?\]")
 STATE = "state"

@@ -15,8 +15,8 @@ import math
 
 from analytic.mechanism.fourbar import FourBar
 from analytic.structure.groups import Group
-from models.joints import less
 from models.scene import Scene
+from models.scene.joints import less
 from reports.lectures.drawing.workbook.formula_table import (
     DRIVE_COLUMNS,
     Column,

@@ -15,8 +15,8 @@ from analytic.structure.groups import Group
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import StructureError
-from models.laws import ConstantSpeed
 from models.scene import GROUND, Scene
+from models.scene.laws import ConstantSpeed
 from reports.lectures.drawing.workbook.charts import Curves, add_chart, add_value_charts, widen
 from reports.lectures.drawing.workbook.formula_cells import TABLE, write_columns, write_inputs
 from reports.lectures.drawing.workbook.formula_table import FormulaTable

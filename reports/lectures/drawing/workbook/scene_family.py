@@ -12,9 +12,9 @@ from analytic.kinematics import driven_chunk, repeats_after, solve
 from analytic.structure.mobility import refuse_other_than_cranked
 from models.array import Array
 from models.errors import CrankcheckError, ReachError, suggestion
-from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import GROUND, Scene, span
+from models.scene.laws import ConstantSpeed
 from reports.lectures.drawing.workbook.family import (
     CLOSE_DEG,
     KINDS,

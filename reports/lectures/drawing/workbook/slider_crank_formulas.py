@@ -19,8 +19,8 @@ from __future__ import annotations
 import math
 
 from analytic.structure.groups import Group
-from models.joints import less, turned
 from models.scene import Point, Scene, Slider, span
+from models.scene.joints import less, turned
 from reports.lectures.drawing.workbook.formula_table import (
     DRIVE_COLUMNS,
     Column,

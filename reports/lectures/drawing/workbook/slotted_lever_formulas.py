@@ -12,8 +12,8 @@
 from __future__ import annotations
 
 from analytic.structure.groups import Group
-from models.joints import less, turned
 from models.scene import Scene, span
+from models.scene.joints import less, turned
 from reports.lectures.drawing.workbook.formula_table import (
     DRIVE_COLUMNS,
     Column,

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve_driven
-from models.characteristics import Constant
 from models.files.reading import load_scene, parse_scene
-from models.loads import Load
 from models.motion import Motion
 from models.scene import Scene
-from models.tabulated import Tabulated
+from models.scene.characteristics import Constant
+from models.scene.loads import Load
+from models.scene.tabulated import Tabulated
 from reports.compare.compare import compare, places
 from reports.compare.errors import Errors
 from reports.compare.free.drift import drift, kept_about, momentum, window_means, window_s

@@ -16,11 +16,11 @@ import numpy as np
 
 from analytic.kinematics import solve_driven
 from models.array import Array
-from models.driver import driver_shown
 from models.errors import CrankcheckError, few, suggestion
-from models.laws import ConstantSpeed, Oscillating
 from models.motion import Motion, Order
 from models.scene import Scene
+from models.scene.driver import driver_shown
+from models.scene.laws import ConstantSpeed, Oscillating
 from reports.compare.beside import Truth
 from reports.logs.kinds import KINDS, Kind, LoggedKind
 

@@ -10,9 +10,9 @@ from rich.console import Console
 
 from analytic.lectures.drawings.graphical import ORDERS, ThreeGraphs
 from models.array import Array
-from models.driver import driver_unit
 from models.errors import harmless
 from models.motion import Order
+from models.scene.driver import driver_unit
 from reports.figures.style import INK, QUIET, TINY, width_in
 from reports.lectures.drawing.sheets.canvas import line, text
 from reports.lectures.drawing.sheets.graphs.graph_drawing import READ, DrawnGraphs

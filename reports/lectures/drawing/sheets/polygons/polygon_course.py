@@ -13,9 +13,9 @@ from PIL import Image
 
 from analytic.lectures.drawings.drawn_polygons import DrawnPolygons, polygons_of
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
-from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
 from reports.compare.free.free_truth import kept_motion
 from reports.describe.free_motion import instants
 from reports.drawing.shape import turn_of

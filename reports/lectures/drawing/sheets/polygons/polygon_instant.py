@@ -18,9 +18,9 @@ from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMecha
 from analytic.lectures.drawings.polygon import Quantity
 from models.array import Array
 from models.errors import CrankcheckError, few
-from models.laws import Oscillating
 from models.motion import Motion, Order
 from models.scene import Scene
+from models.scene.laws import Oscillating
 from reports.compare.beside import Truth
 from reports.compare.free.free_truth import LOOK, kept_motion
 from reports.compare.tracks import rate, second_rate

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 from models.errors import CrankcheckError
 from models.files.reading import parse_scene
-from models.laws import ConstantSpeed
 from models.scene import Driver, Link, Point, Scene
+from models.scene.laws import ConstantSpeed
 
 START_DEG = 31.37
 SPEED_RAD_S = 10.0

@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from models.array import Array
-from models.characteristics import EPS, Characteristic
+from models.scene.characteristics import EPS, Characteristic
 
 Interpolation = Literal["linear", "pchip"]
 END = 1e-9

@@ -17,7 +17,9 @@ from typing import Literal
 
 from models.errors import EngineError
 from models.files.inputs import names_in
-from models.joints import (
+from models.motion import State
+from models.scene import GROUND, Point, Scene, Slider
+from models.scene.joints import (
     Frame,
     Prism,
     Slot,
@@ -30,8 +32,6 @@ from models.joints import (
     mass_ratio,
     turned,
 )
-from models.motion import State
-from models.scene import GROUND, Point, Scene, Slider
 
 UNEQUAL = 25.0
 """The heaviest body over the lightest from which on loops close where bodies are heavy. Up to it a
@@ -132,7 +132,7 @@ def plan(
 ) -> Tree:
     """The tree of a scene at an assembled state, with the loops closed at pins.
 
-    The rates of the coordinates are those of ``delay_s`` later (see `models.joints.frames`).
+    The rates of the coordinates are those of ``delay_s`` later (see `models.scene.joints.frames`).
 
     Raises
     ------

@@ -1,5 +1,6 @@
 """A model that somebody wrote in an engine's own format: what an engine that reads such files makes
-of one."""
+of one.
+"""
 
 from __future__ import annotations
 

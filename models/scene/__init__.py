@@ -21,9 +21,9 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NoReturn, TypeVar
 
-from models.elastic import Beam, ElasticLink, Shape
-from models.laws import Law
-from models.loads import CoulombFriction, Friction, Load, Spring
+from models.scene.elastic import Beam, ElasticLink, Shape
+from models.scene.laws import Law
+from models.scene.loads import CoulombFriction, Friction, Load, Spring
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -178,7 +178,7 @@ class Scene:
     scene has it; ``loads`` act from outside, ``friction`` in joints of two bodies, ``springs``
     between bodies. ``start`` says more of the start of free motion than the driver. ``elastic`` are
     the links that bend or stretch, by name; the others are rigid. ``beams`` are what such a link is
-    where an engine is given nodes for it (`models.cut_scenes`).
+    where an engine is given nodes for it (`models.scene.cut_scenes`).
     """
 
     name: str

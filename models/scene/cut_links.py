@@ -4,7 +4,7 @@
 
     A o-----@-----@-----@ ... -----o B        n pieces, n - 1 nodes between them and one at each pin
 
-The bodies are the pieces or the nodes (`models.cut_scenes`).
+The bodies are the pieces or the nodes (`models.scene.cut_scenes`).
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from functools import cached_property
 import numpy as np
 
 from models.array import Array
-from models.elastic import Beam
 from models.errors import CrankcheckError
-from models.joints import joined_at, less, turned
-from models.loads import Load, PinSpring, Spring
 from models.motion import ElasticMotion, LinkMotion, Motion
 from models.scene import Link, Point, Scene, Start
+from models.scene.elastic import Beam
+from models.scene.joints import joined_at, less, turned
+from models.scene.loads import Load, PinSpring, Spring
 
 
 @dataclass(frozen=True)

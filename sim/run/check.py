@@ -7,15 +7,15 @@ from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
-from models.driver import Controlled
 from models.errors import EngineError
-from models.joints import bodies, centre_of, frames, mass_of
-from models.loads import PinSpring
 from models.motion import State
 from models.scene import Scene
-from sim.drive import pace, start_speed
+from models.scene.driver import Controlled
+from models.scene.joints import bodies, centre_of, frames, mass_of
+from models.scene.loads import PinSpring
 from sim.engine import Drive, Engine, Facts
-from sim.measure import gaps
+from sim.engine.drive import pace, start_speed
+from sim.engine.measure import gaps
 
 SAME = 1e-9
 """Relative difference that counts as none: rounding of a few operations, far below any error."""

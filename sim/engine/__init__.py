@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, Protocol
 
 from models.array import Array
-from models.elastic import Beam
 from models.motion import Forces, Motion, State
 from models.scene import Point, Scene
+from models.scene.elastic import Beam
 
 Status = Literal["ok", "diverged", "locked", "branch-changed", "timeout", "crashed", "unsupported"]
 Drive = Literal["prescribed", "servo", "free"]
@@ -69,7 +69,7 @@ class BodyPose:
 
 @dataclass(frozen=True)
 class Poses:
-    """The bodies of the engine over time, as `models.joints.bodies` names them.
+    """The bodies of the engine over time, as `models.scene.joints.bodies` names them.
 
     Velocities belong to ``lag_s`` after the times of the positions.
     """

@@ -12,9 +12,9 @@ import math
 import numpy as np
 
 from models.array import Array
-from models.laws import ConstantSpeed, Law
 from models.motion import State
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed, Law
 from sim.engine import Drive
 
 

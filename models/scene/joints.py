@@ -16,9 +16,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from models.errors import EngineError
-from models.loads import LineSpring, PinSpring
 from models.motion import State
 from models.scene import GROUND, KEPT, FixedMapping, Link, Point, Same, Scene, Slider
+from models.scene.loads import LineSpring, PinSpring
 
 
 @dataclass(frozen=True)

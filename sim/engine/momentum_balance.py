@@ -20,10 +20,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from models.joints import Prism, Slot, block_name, joined_at, joints, less, local_point, riding_body
 from models.motion import Forces, SliderForces
 from models.scene import GROUND, Point, Scene, Slider
-from sim.measure import across, arms, directions
+from models.scene.joints import (
+    Prism,
+    Slot,
+    block_name,
+    joined_at,
+    joints,
+    less,
+    local_point,
+    riding_body,
+)
+from sim.engine.measure import across, arms, directions
 
 OnBlocks = Mapping[str, Array]
 """What acts on slider blocks without mass beside their two joints, by slider: (T, 3), a force [N]

@@ -17,8 +17,6 @@ from models.array import Array
 from models.errors import EngineError, shown
 from models.motion import Forces, State
 from models.scene import Scene
-from sim.check import refuse_other_model, refuse_unknown_forces
-from sim.drive import pace, period
 from sim.engine import (
     BodyPose,
     Cost,
@@ -34,11 +32,13 @@ from sim.engine import (
     Setup,
     Status,
 )
-from sim.measure import energy, gaps, motion
+from sim.engine.drive import pace, period
+from sim.engine.measure import energy, gaps, motion
+from sim.engine.settings import SettingError, profile_of, resolved
 from sim.own_engine.watched import BrokenContractError
 from sim.registry import applying_beams
 from sim.registry import engine as engine_of
-from sim.settings import SettingError, profile_of, resolved
+from sim.run.check import refuse_other_model, refuse_unknown_forces
 
 CHUNK_STEPS = 4000
 """Steps between two looks at whether the run has diverged."""
@@ -176,8 +176,8 @@ def run(
     ------
     EngineError
         An unknown engine, profile or setting, a missing package, a step that is not positive or
-        leaves under 8 steps in a period (`sim.drive.period`), or a model in the engine that is
-        not the scene; an engine of the user's own that breaks its contract.
+        leaves under 8 steps in a period (`sim.engine.drive.period`), or a model in the engine that
+        is not the scene; an engine of the user's own that breaks its contract.
     """
     chosen = engine_of(engine) if isinstance(engine, str) else engine
     told = setup(
@@ -197,7 +197,7 @@ def run(
     if scene.elastic:
         raise EngineError(
             f"{scene.name}: {', '.join(scene.elastic)} bends, and an engine is given rigid "
-            "segments for it: `models.cut_scenes.SegmentedScene(scene, count).rigid`"
+            "segments for it: `models.scene.cut_scenes.SegmentedScene(scene, count).rigid`"
         )
     try:
         refuse_unknown_forces(scene, chosen, with_forces=with_forces, applying_beams=applying_beams)

@@ -9,7 +9,9 @@ from functools import cached_property, lru_cache, reduce
 import numpy as np
 
 from models.array import Array
-from models.joints import (
+from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
+from models.scene import GROUND, KEPT, Point, Same, Scene, Slider
+from models.scene.joints import (
     block_name,
     blocks,
     bodies,
@@ -21,9 +23,7 @@ from models.joints import (
     sliding_angle,
     whole_turns,
 )
-from models.loads import LineSpring, PinSpring
-from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
-from models.scene import GROUND, KEPT, Point, Same, Scene, Slider
+from models.scene.loads import LineSpring, PinSpring
 from sim.engine import BodyPose, Energy, Poses
 
 
@@ -270,7 +270,7 @@ def _still(samples: int) -> BodyPose:
 
 
 def spring_lengths(scene: Scene, poses: Poses) -> Mapping[str, Array]:
-    """The q (T,) [m or rad] of each spring at the positions of the poses; see `models.loads`.
+    """The q (T,) [m or rad] of each spring at the positions of the poses; see `models.scene.loads`.
 
     The first sample is taken as the start, from which whole turns in pins are counted.
     """

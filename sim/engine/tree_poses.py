@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.array import Array
+from models.mjcf.tree import Freedom, Limb
 from models.scene import GROUND, Point
-from models.tree import Freedom, Limb
 from sim.engine import BodyPose
 
 Plane = NDArray[np.complex128]

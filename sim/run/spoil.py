@@ -123,7 +123,7 @@ def spoiler(engine: str) -> Spoiler:
 def spoilt(engine: Engine, at: tuple[int, ...], spoil: Spoil) -> Engine:
     """The engine with sessions that are spoilt after the steps ``at``, in rising order.
 
-    What is done after 0 steps the look at the model before the run (`sim.check`) can see.
+    What is done after 0 steps the look at the model before the run (`sim.run.check`) can see.
     """
 
     def opened(

@@ -9,12 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from models.array import Array
-from models.cut_links import CutScene, Line, line_of
-from models.elastic import Beam, ElasticLink
 from models.errors import CrankcheckError
-from models.loads import SegmentSpring
 from models.motion import Motion
 from models.scene import Link, Point, Scene
+from models.scene.cut_links import CutScene, Line, line_of
+from models.scene.elastic import Beam, ElasticLink
+from models.scene.loads import SegmentSpring
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,12 @@ from typing import ClassVar
 import numpy as np
 
 from models.array import Array
-from models.characteristics import Characteristic, Polynomial
 from models.errors import CrankcheckError
-from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
-from models.loads import Load, Over
 from models.motion import Motion, State
 from models.scene import GROUND, Scene
+from models.scene.characteristics import Characteristic, Polynomial
+from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
+from models.scene.loads import Load, Over
 
 LONGEST_S = 1e6
 """For which a mechanism may be left free [s]."""

@@ -16,9 +16,9 @@ from sim.own_engine.known import own_engine
 from sim.own_engine.spelling import installed
 
 ENGINES: Mapping[str, str] = {
-    "mujoco": ".mujoco",
-    "pymunk": ".pymunk",
-    "exudyn": ".exudyn",
+    "mujoco": "..mujoco",
+    "pymunk": "..pymunk",
+    "exudyn": "..exudyn",
 }
 """Name to folder. To add an engine, add its folder, with a `Declaration`, and a line here."""
 FIRST = next(iter(ENGINES))

@@ -10,8 +10,8 @@ from typing import Literal
 import numpy as np
 
 from models.array import Array
-from models.characteristics import Characteristic
 from models.errors import CrankcheckError
+from models.scene.characteristics import Characteristic
 
 Over = Literal["time", "angle", "displacement", "speed", "omega"]
 Stroke = Literal["both", "forward", "backward"]
@@ -28,8 +28,8 @@ UNITS: dict[str, str] = {
 class Load:
     """A force at a point of a body, or a torque on it (``point`` is None).
 
-    ``body`` is a link, or a slider's block (`models.joints.block_name`). The force points along
-    ``direction_rad`` in the frame of the ``ground`` or of the ``body`` where its magnitude is
+    ``body`` is a link, or a slider's block (`models.scene.joints.block_name`). The force points
+    along ``direction_rad`` in the frame of the ``ground`` or of the ``body`` where its magnitude is
     positive; a positive torque is counter-clockwise. ``slider`` is that whose displacement, speed
     or stroke counts: ``forward`` is where it moves along its direction. Over ``omega`` it follows
     the angular velocity of ``body``.
@@ -170,7 +170,7 @@ class PinSpring(_Elastic):
 
 @dataclass(frozen=True)
 class SegmentSpring(PinSpring):
-    """In a pin between two segments of an elastic link (`models.cut_scenes`)."""
+    """In a pin between two segments of an elastic link (`models.scene.cut_scenes`)."""
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from models.array import Array
-from models.loads import Load
 from models.scene import Scene
+from models.scene.loads import Load
 from sim.engine import Drive
 
 

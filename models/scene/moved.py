@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from models.driver import Released
-from models.joints import turned
-from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
-from models.loads import CoulombFriction, Friction, Load, PinSpring, Spring
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
+from models.scene.driver import Released
+from models.scene.joints import turned
+from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
+from models.scene.loads import CoulombFriction, Friction, Load, PinSpring, Spring
 
 
 def rotated(scene: Scene, angle_rad: float) -> Scene:
