@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from xml.etree.ElementTree import Element
 
 from reports.diff.words import ratio, size, told
-from reports.output.junit import case_of, say, suite_of
+from reports.output.junit import case_of, remark, suite_of
 from reports.results.changes.changes import CellPair, Diff
 from reports.results.changes.runs import CellName, StoredCell
 
@@ -41,9 +41,9 @@ def _compared(pair: CellPair) -> Element:
         ]
         kind = "status" if pair.turned else "error"
         message = f"{pair.name.label}: {told(pair)}"
-        say(case, "failure", "\n".join([versions, *rows]), message=message, type=kind)
+        remark(case, "failure", "\n".join([versions, *rows]), message=message, type=kind)
     elif pair.word == "better":
-        say(case, "system-out", f"better: {told(pair)}")
+        remark(case, "system-out", f"better: {told(pair)}")
     return case
 
 
@@ -51,7 +51,7 @@ def _uncompared(cells: Sequence[StoredCell], tag: str, why: str) -> list[Element
     """Cells that there is nothing to compare with."""
     cases = [_case(cell.name) for cell in cells]
     for case in cases:
-        say(case, tag, message=why)
+        remark(case, tag, message=why)
     return cases
 
 

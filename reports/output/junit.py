@@ -43,12 +43,12 @@ def suite_of(
 
 
 def case_of(group: str, name: str, time: str = "0") -> Xml.Element:
-    """A cell; what became of it is told by `say`, and nothing where it is as it should be."""
+    """A cell; what became of it is told by `remark`, and nothing where it is as it should be."""
     heads = {"classname": f"crankcheck.{group}", "name": name, "time": time}
     return Xml.Element("testcase", {head: clean(value) for head, value in heads.items()})
 
 
-def say(case: Xml.Element, tag: str, text: str = "", **attributes: str) -> None:
+def remark(case: Xml.Element, tag: str, text: str = "", **attributes: str) -> None:
     """Add a ``failure``, ``error``, ``skipped`` or ``system-out`` to a case."""
     cleaned = {name: clean(value) for name, value in attributes.items()}
     Xml.SubElement(case, tag, cleaned).text = clean(text)

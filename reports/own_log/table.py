@@ -16,7 +16,7 @@ from reports.causes.cause import Cause
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import share
 from reports.output.console import hanging, plain_table
-from reports.output.junit import case_of, say, suite_of
+from reports.output.junit import case_of, remark, suite_of
 from reports.output.markdown import folded, plain, table
 from reports.output.numbers import count, error_text, short
 from reports.own_log.judged import JudgedLog
@@ -244,14 +244,14 @@ def suite(judged: JudgedLog, facts: Mapping[str, str]) -> Element:
             text = f"{row.error.pure:.3g} {share(row.error)}, limit {row.limit.number:.3g}"
             own = {*row.columns}
             why = [cause_text(each) for each in judged.causes if own & {*each.columns}]
-            say(case, "failure", "\n".join(why), message=text, type="out")
+            remark(case, "failure", "\n".join(why), message=text, type="out")
         cases.append(case)
     whole = case_of(judged.scene.name, "the log as a whole")
     if judged.failures:
         text = "\n".join(f"{each.rule}: {each.text}" for each in judged.failures)
-        say(whole, "failure", text, message=judged.failures[0].text, type=judged.failures[0].rule)
+        remark(whole, "failure", text, message=judged.failures[0].text, type=judged.failures[0].rule)
     if judged.not_judged:
-        say(whole, "system-out", f"not judged: {', '.join(judged.not_judged)}")
+        remark(whole, "system-out", f"not judged: {', '.join(judged.not_judged)}")
     return suite_of("judge", [*cases, whole], facts)
 
 

@@ -14,7 +14,7 @@ from reports.judge.cell import Checked
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import Finding
 from reports.output.console import hanging
-from reports.output.junit import case_of, say, suite_of
+from reports.output.junit import case_of, remark, suite_of
 from reports.output.numbers import count
 from reports.quantities import QUANTITIES, named
 from reports.verify.cell_table import CellTable, footer, mark
@@ -122,13 +122,13 @@ def _case(one: Checked) -> Element:
     text = "\n".join(_line(finding) for finding in one.failures)
     head = one.failures[0].text if one.failures else "within tolerance"
     if not cell.gated:
-        say(case, "skipped", message=f"shown, not gated: {head}")
+        remark(case, "skipped", message=f"shown, not gated: {head}")
     elif one.verdict == "unsupported":
-        say(case, "error", text, message=head, type="unsupported")
+        remark(case, "error", text, message=head, type="unsupported")
     elif one.failures:
-        say(case, "failure", text, message=head, type=one.failures[0].rule)
+        remark(case, "failure", text, message=head, type=one.failures[0].rule)
     if one.advice:
-        say(case, "system-out", "\n".join(_line(finding) for finding in one.advice))
+        remark(case, "system-out", "\n".join(_line(finding) for finding in one.advice))
     return case
 
 

@@ -33,7 +33,6 @@ from analytic.lectures.synthesis.driving_dyad import chord
 from models.lectures.draft import Draft, bar
 from models.lectures.tasks.positions import QuickReturnTask
 
-O2, O4, PIN, END = "O2", "O4", "A", "B"
 PLACES = 24
 """Places of O2 that are tried on the circles of a time ratio, half on either side."""
 
