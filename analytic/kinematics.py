@@ -14,13 +14,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from analytic.change_points.turns import Counter
 from analytic.dyads.chunk import Chunk, driver_scale
 from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Real
 from analytic.prepared import Driven, Range, prepared, ranges, spans
 from analytic.result import Selection
 from analytic.structure.groups import Group, Triad
 from analytic.structure.mobility import Structure, analyse
-from analytic.turns.count import Counter
 from models.array import Array, beside, samples
 from models.errors import CrankcheckError, ReachError, StructureError
 from models.files.names import MOST_ASSEMBLIES
@@ -58,7 +58,7 @@ def solve(
         are asked for: in (-pi, pi] at time 0, and counted on from there; a link that keeps an angle
         to the ground or to the driver is that much ahead of it. Sliders count from ``through_m``.
         In chains of more than some six dyads whole turns are counted to the nearest angle, which
-        bounds of angles take as right (`analytic.turns.count.MOST`).
+        bounds of angles take as right (`analytic.change_points.turns.MOST`).
 
     Raises
     ------

@@ -15,6 +15,7 @@ import numpy as np
 
 from analytic.change_points.find import passages, passed
 from analytic.change_points.sign import ChangePoints
+from analytic.change_points.turns import CellSolver, Counter, Turns
 from analytic.dyads.chunk import Chunk, Passage, driver_scale, told
 from analytic.dyads.parts import OpenError
 from analytic.dyads.plane import AngleError, Real
@@ -24,7 +25,6 @@ from analytic.dyads.steps import DYAD_STEPS, FollowedStep, Step, stretched
 from analytic.result import MotionArrays, Selection
 from analytic.structure.groups import Bridge, Group, Triad
 from analytic.structure.mobility import Structure, analyse
-from analytic.turns.count import CellSolver, Counter, Turns
 from models.array import Array, Mask
 from models.errors import ReachError
 from models.files.names import MOST_ASSEMBLIES

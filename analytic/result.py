@@ -9,10 +9,10 @@ from typing import Protocol
 
 import numpy as np
 
+from analytic.change_points.turns import SURE
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS, BodyKinematics, PointKinematics, Real
 from analytic.dyads.steps import Step
-from analytic.turns.count import SURE
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.inputs import names_in

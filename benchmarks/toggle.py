@@ -1,7 +1,7 @@
 """Four-bars thrown at a toggle: which engines know whether they get over it.
 
 `python benchmarks/toggle.py [COUNT]` draws COUNT four-bars (200) whose toggle lies on top of a hill
-of their potential energy (`analytic.free.toggle_barrier`), throws each at it with a little more or
+of their potential energy (`analytic.free.exact_motions`), throws each at it with a little more or
 less energy than the hill needs (margins of 1e-6 to 1e-1 of it, both sides), and runs every engine
 at dt 1e-3, tuned and as shipped. The truth is the energy of the start; the integrated motion has to
 agree. Printed are the outcomes, the rights of each decade of the margin, and the margin from which
@@ -26,8 +26,8 @@ if __name__ == "__main__":  # run as a file: the packages are beside this folder
 # Not above: it imports logging, for which Python would take the file beside this one.
 from concurrent.futures import ProcessPoolExecutor
 
+from analytic.free.exact_motions import ToggleBarrier
 from analytic.free.release import release
-from analytic.free.toggle_barrier import ToggleBarrier
 from analytic.mechanism.fourbar import FourBar
 from models.errors import CrankcheckError
 from models.scene.hard import fourbar

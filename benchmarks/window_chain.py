@@ -29,7 +29,7 @@ if __name__ == "__main__":  # run as a file: the packages are beside this folder
 # Not above: it imports logging, for which Python would take the file beside this one.
 from concurrent.futures import ProcessPoolExecutor
 
-from analytic.free.window_chain import ChainMotion
+from analytic.free.exact_motions import ChainMotion
 from models.errors import EngineError
 from models.scene.hard import Chain
 from reports.compare.free.hard_runs import ChainErrors, hold

@@ -63,7 +63,7 @@ if TYPE_CHECKING:
     from reports.compare.errors import Error, Errors
     from reports.judge.cell import Cell
     from reports.judge.rules.rule import Finding
-    from reports.lectures.design.synthesis import Synthesis, synth
+    from reports.lectures.design.synth import Synthesis, synth
     from reports.lectures.machine.regulation import MachineCycle, MachineFlywheel, cycle, flywheel
     from reports.requests.check import CellVerdict, check
     from reports.requests.compare import Comparison, compare
@@ -167,7 +167,7 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
             case "Sweep" | "sweep":
                 from reports.requests import sweep as home
             case "Synthesis" | "synth":
-                from reports.lectures.design import synthesis as home
+                from reports.lectures.design import synth as home
             case "Cell":
                 from reports.judge import cell as home
             case "Finding":

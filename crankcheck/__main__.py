@@ -8,7 +8,7 @@ from crankcheck import _end_on_ctrl_c
 def main() -> None:
     """The command, imported once Ctrl-C can do no harm."""
     _end_on_ctrl_c()
-    from reports.workers.one_thread import one_thread
+    from reports.workers import one_thread
 
     one_thread(os.environ)  # before anything imports numpy
     from reports.cli import main as command

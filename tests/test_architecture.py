@@ -50,8 +50,8 @@ FLOORS: Mapping[str, str] = {
         kinematics
         prepared
         assur
-        change_points result
-        turns
+        result
+        change_points
         dyads
         structure multibody
     """,
@@ -79,7 +79,7 @@ MENTIONING: Mapping[str, str] = {
     "reports/cli/commands.py": "whose viewer `view` opens",
     "reports/requests/history.py": "an example in the help, and in a message",
     "reports/requests/sweep.py": "an example in a message",
-    "reports/requests/verify_options.py": "whose files --mjcf takes",
+    "reports/requests/options.py": "whose files --mjcf takes",
 }
 """Where sentences mention engines, and why; an engine that is not mentioned works as well."""
 BESIDE = {"tests", "benchmarks"}
@@ -267,7 +267,7 @@ def house(tmp_path: Path) -> Path:
         ("analytic/dyads/a.py", "import sim.run"),
         ("models/a.py", "def f():\n    from analytic import reach"),
         ("reports/compare/a.py", "from reports.judge import cell"),
-        ("reports/page/a.py", "from reports.figures.marks import marks"),
+        ("reports/page/a.py", "from reports.figures.drawing import marks"),
         ("reports/store/a.py", "if TYPE_CHECKING:\n    import reports.cli"),
         ("analytic/structure/a.py", "import analytic.dyads.rrr"),
         ("sim/engine/a.py", "from sim import run"),

@@ -13,8 +13,10 @@ from dataclasses import dataclass, replace
 from flint import acb, arb, ctx, fmpq, fmpq_poly
 
 from analytic.assur.eliminant import (
+    AngleRow,
     ContinuumError,
     Eliminant,
+    LegRows,
     Place,
     Root,
     Turn,
@@ -25,7 +27,6 @@ from analytic.assur.eliminant import (
     row_polynomial,
     value,
 )
-from analytic.assur.leg_rows import AngleRow, LegRows
 from models.errors import CrankcheckError
 from models.scene import Point
 

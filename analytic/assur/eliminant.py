@@ -1,17 +1,4 @@
-"""The equation of a triad in one unknown, exactly: t = tan(phi/2) of the central link's angle.
-
-With w = 1 + t^2 every row, times w, is a polynomial in t and at most quadratic in the place P,
-
-    circle: w P.P + u.P + k = 0          others: u.P + k = 0,       u, k of degree 2 in t,
-
-and differences of circles are like the others. Two such rows give P = N / D by Cramer's rule; in
-the third they leave one polynomial, the eliminant: of degree 6 for three circles, but for factors
-w, which have no real root. The numbers of the rows are rational numbers, as all floats are, and so
-are the coefficients: nothing is rounded.
-
-Source: C. Gosselin and J. Sefrioui, Polynomial solutions for the direct kinematic problem of planar
-three-degree-of-freedom parallel manipulators, 1991 (three circles: 6 assemblies).
-"""
+"""The equation of a triad in one unknown, exactly: t = tan(phi/2) of the central link's angle."""
 
 from __future__ import annotations
 
@@ -20,9 +7,68 @@ from dataclasses import dataclass
 
 from flint import arb, fmpq, fmpq_poly
 
-from analytic.assur.leg_rows import AngleRow, CircleRow, LegRow, LineRow, ThroughRow
 from models.errors import CrankcheckError
 from models.scene import Point
+
+
+@dataclass(frozen=True)
+class CircleRow:
+    """|P + R a - A| = L: ``a`` in the link's frame [m], known pin ``A``, ``length`` L [m]."""
+
+    a: Point
+    pin: Point
+    length: float
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """What of it is in metres."""
+        return (*self.a, *self.pin, self.length)
+
+
+@dataclass(frozen=True)
+class LineRow:
+    """n . (P + R a - p) = 0: ``a`` runs on the known line through ``p`` with ``normal`` n."""
+
+    a: Point
+    normal: Point
+    through: Point
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """What of it is in metres."""
+        return (*self.a, *self.through)
+
+
+@dataclass(frozen=True)
+class ThroughRow:
+    """(R m) . (A - P) = m . b: the link's own line, ``normal`` m through ``b`` in its frame, passes
+    through the known pin ``A``."""
+
+    normal: Point
+    b: Point
+    pin: Point
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """What of it is in metres."""
+        return (*self.b, *self.pin)
+
+
+@dataclass(frozen=True)
+class AngleRow:
+    """R (1, 0) is ``along``, a unit vector."""
+
+    along: Point
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """What of it is in metres."""
+        return ()
+
+
+LegRow = CircleRow | LineRow | ThroughRow | AngleRow
+LegRows = tuple[LegRow, LegRow, LegRow]
+
 
 W = fmpq_poly([1, 0, 1])
 Turn = tuple[fmpq, fmpq]

@@ -13,7 +13,7 @@ from typing import Protocol
 
 import numpy as np
 
-from analytic.assur.leg_rows import AngleRow, CircleRow, LegRow, LineRow, ThroughRow
+from analytic.assur.eliminant import AngleRow, CircleRow, LegRow, LineRow, ThroughRow
 from analytic.dyads.parts import MovingLine
 from analytic.dyads.plane import (
     EPS,

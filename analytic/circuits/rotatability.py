@@ -1,8 +1,8 @@
 """Which links turn fully against the ground and their neighbours, and how far others swing.
 
 Over the branch that the mechanism is on. Where the driver turns fully whole turns are those counted
-with certainty (`analytic.turns.count`); else a link goes to and fro with the driver, between its
-extremes over the branch, each followed to rounding.
+with certainty (`analytic.change_points.turns`); else a link goes to and fro with the driver,
+between its extremes over the branch, each followed to rounding.
 
 Source: R. L. Norton, Design of Machinery, sections 2.12 (rotatability) and 4.10 (limit positions).
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from analytic.change_points.find import passed
 from analytic.change_points.sign import Index
+from analytic.change_points.turns import Counter
 from analytic.dyads.plane import STEADY, AngleError
 from analytic.free.chart import Chart
 from analytic.free.coordinate_history import CoordinateHistory, Doubt
@@ -21,7 +22,6 @@ from analytic.free.limit_position import REACH
 from analytic.kinematics import solve_driven
 from analytic.prepared import CHUNK, prepared
 from analytic.result import MotionArrays, Selection
-from analytic.turns.count import Counter
 from models.array import Array
 from models.motion import Bound, Crossing, Motion
 from models.scene import Scene

@@ -16,7 +16,7 @@ from reports.judge.three_steps import AT_ROUNDING
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
 from reports.plan.study import load_study
-from reports.results.variants import OWN, value_text
+from reports.results.lines import OWN, value_text
 from sim.engine import SettingValue
 from sim.engine.settings import profile_of, resolved
 from sim.registry import engine

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 # fmt: off
 COMMANDS: Mapping[str, tuple[str, str]] = {
-    "verify": ("requests.verify_options:VerifyOptions", """
+    "verify": ("requests.options:VerifyOptions", """
 Run scenes in engines, or a model of your own, and hold them to the closed form; exit 1 when
 out of tolerance."""),
     "selftest": ("requests.selftest:SelftestRequest", """
@@ -34,7 +34,7 @@ Draw the diagrams of a sweep as SVG and PDF, for a paper."""),
 Grade the engines on hard cases, and find how far each holds them.
 
 The exit code is 0; with --at it is 1 where the value is not held."""),
-    "solve": ("requests.solve_options:SolveOptions", """
+    "solve": ("requests.options:SolveOptions", """
 Show the reference alone: angles, points and sliders with all their rates, and the forces
 that these ask for; of a scene that is let go, its free motion and energy; of one with elastic
 links, how these bend, and what that changes."""),
@@ -42,7 +42,7 @@ links, how these bend, and what that changes."""),
 Run a scene in an engine and write its log; exit 1 when the run did not end well."""),
     "export": ("requests.export:ExportRequest", """
 Write the scene as MJCF, assembled, with its state as the keyframe."""),
-    "scenes": ("requests.scenes:ScenesRequest", """
+    "scenes": ("requests.export:ScenesRequest", """
 List the shipped scenes with their structure, driver and source."""),
     "view": ("requests.export:ViewRequest", """
 Open MuJoCo's viewer, or, without a screen or with -o, draw the motion into a file."""),
@@ -63,13 +63,13 @@ Draw an angle, a displacement or a coordinate over a period with its rates, each
 other with ruler and pole, beside the exact curves.
 
 Without -o the table is shown that is drawn first, and what is drawn from it."""),
-    "cycle": ("lectures.machine.cycle:CycleRequest", """
+    "cycle": ("lectures.machine.regulation:CycleRequest", """
 Show the cycle that a machine repeats under its loads: extreme speeds, the coefficient of
 fluctuation, surplus of work, reduced inertia, power.
 
 A scene that is driven keeps its mean speed by a constant torque; one that is let go has its
 loads alone."""),
-    "flywheel": ("lectures.machine.flywheel:FlywheelRequest", """
+    "flywheel": ("lectures.machine.regulation:FlywheelRequest", """
 Work out the flywheel on the driver for a coefficient of fluctuation, exact and as the
 textbooks approximate it, and the speed over the cycle with it and without."""),
     "chains": ("lectures.drawing.chains:ChainsRequest", """
@@ -94,7 +94,7 @@ Show how elastic links vibrate at the driver's speed, or over speeds: natural fr
 deflection, stability, resonances.
 
 A resonance, where there is no periodic motion to tell, ends with exit code 2."""),
-    "joint": ("lectures.drawing.joint:JointRequest", """
+    "joint": ("lectures.drawing.mobility:JointRequest", """
 Say the class of a joint, whether it is a lower or a higher pair, and its freedoms by name,
 from how its two links touch."""),
     "mobility": ("lectures.drawing.mobility:MobilityRequest", """
@@ -102,7 +102,7 @@ Count the motions of a planar or spatial scheme, and say by name which constrain
 passive and which freedoms idle, from the rank of its equations."""),
     "engines": ("requests.engines:EnginesRequest", """
 List the engines with their version, or the command that installs them, and profiles."""),
-    "engines check": ("requests.engine_check:EngineCheckRequest", """
+    "engines check": ("requests.engines:EngineCheckRequest", """
 Say what of the contract of engines one holds, and how to mend what it does not.
 
 The exit code is 0 where it holds all of it, 1 where it does not."""),

@@ -23,7 +23,7 @@ from models.scene.cut_links import line_of, with_rigid_links
 from models.scene.driver import Controlled
 from models.scene.elastic import Shape
 from reports.describe.elastic_words import described
-from reports.describe.tables import Columns, tables_over_time
+from reports.describe.motion_tables import Columns, tables_over_time
 from reports.output.console import plain_table
 
 if TYPE_CHECKING:

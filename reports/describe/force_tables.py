@@ -15,8 +15,7 @@ from models.errors import CrankcheckError
 from models.motion import Forces, Motion
 from models.scene import Scene
 from models.scene.driver import driver_course, driver_place, driver_shown, driver_unit
-from reports.describe.frame import acted_on
-from reports.describe.tables import Columns, digits, head_table, tables_over_time
+from reports.describe.motion_tables import Columns, acted_on, digits, head_table, tables_over_time
 from reports.output.console import plain_table
 from reports.output.numbers import listed
 

@@ -10,7 +10,7 @@ from rich.table import Table
 from analytic.free.free_motion import FreeMotion
 from models.array import Array
 from models.motion import Motion
-from reports.describe.tables import Columns, tables_over_time
+from reports.describe.motion_tables import Columns, tables_over_time
 from reports.output.numbers import count, error_text
 
 ROUNDING = 1e-15

@@ -16,7 +16,7 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
 from models.scene.joints import block_name
-from reports.drawing.packed import packed
+from reports.drawing.moving import packed
 from reports.drawing.shape import MARGIN, box_of, guide_direction, size_of_motion
 
 LONGEST = 0.34

@@ -18,8 +18,17 @@ from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 from models.scene.driver import driver_stands
 from reports.drawing.force_arrows import Arrow, ForceArrows, force_arrows
-from reports.drawing.names import Name, Sheet, names, rail
-from reports.drawing.shape import box_of, clearest, guide_direction, size_of_motion, turn_of
+from reports.drawing.shape import (
+    Name,
+    Sheet,
+    box_of,
+    clearest,
+    guide_direction,
+    names,
+    rail,
+    size_of_motion,
+    turn_of,
+)
 
 WIDTH, HEIGHT = 440, 320
 """The largest picture [px]; the mechanism's own shape makes it narrower or lower."""

@@ -22,14 +22,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
 
-from reports.figures.drawing import around, ends, fitted, measured
-from reports.figures.marks import Mark, marks
+from reports.figures.drawing import Mark, around, ends, fitted, marks, measured
 from reports.figures.sheet import Panels, grid, sheet
 from reports.figures.style import COLUMN_IN, SMALL, logarithmic, width_in
 from reports.output.numbers import duration
 from reports.results.lines import Line, Named, named
 from reports.results.overview import Report, notes
-from reports.way.clock import SECONDS, TURNS, common_clock
+from reports.way.length import SECONDS, TURNS, common_clock
 
 STEP, TIME = "time step [s]", "time step"
 PER_TURN = "steps per turn"

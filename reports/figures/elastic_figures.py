@@ -25,7 +25,7 @@ from reports.figures.figure_set import FigureSet, note
 from reports.figures.sheet import ONE, SIDES, Panels, sheet
 from reports.figures.style import COLUMN_IN, INK, PAGE_IN, QUIET, SMALL, Look, shorten
 from reports.output.numbers import readable
-from reports.way.clock import SECONDS, TURNS
+from reports.way.length import SECONDS, TURNS
 from reports.way.way import way_of
 
 ELASTIC: Look = {"color": "#1f5f9e", "linewidth": 1.1}

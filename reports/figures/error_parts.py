@@ -24,9 +24,8 @@ from reports.figures.sheet import corner_words, grid, tenfold
 from reports.figures.style import INK, Look, power_of_ten
 from reports.output.numbers import short
 from reports.results.error_parts import Parts, Split, split, worst_body
-from reports.results.lines import Line, named
+from reports.results.lines import Line, label, named
 from reports.results.overview import Report, notes
-from reports.results.variants import label
 
 STEPS = 720
 """Steps per turn of the cells that are shown, or the nearest that ended well: those of verify."""

@@ -15,12 +15,11 @@ from matplotlib.patches import Patch
 from models.array import Array
 from models.scene.driver import driver_course
 from reports.describe.force_tables import cycle_of, cycle_words, flow_of
-from reports.describe.frame import acted_on
+from reports.describe.motion_tables import acted_on
 from reports.drawing.shape import colours_of
+from reports.figures.drawing import DASHES
 from reports.figures.figure_set import FigureSet
-from reports.figures.force_turn import ForceTurn
-from reports.figures.force_vectors import hodographs, loaded
-from reports.figures.marks import DASHES
+from reports.figures.force_turn import ForceTurn, hodographs, loaded
 from reports.figures.sheet import ONE, SIDES, Panels, sheet
 from reports.figures.style import COLUMN_IN, FRONT, INK, QUIET, Look
 from reports.output.numbers import readable

@@ -12,12 +12,11 @@ from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
 from models.scene import Scene
-from reports.compare.free.drift import window_means
+from reports.compare.free.free_facts import window_means
 from reports.compare.last_turn import Trace
 from reports.describe.facts import describe_law
 from reports.drawing.shape import true_motion
-from reports.figures.drawing import around
-from reports.figures.marks import Mark, marks
+from reports.figures.drawing import Mark, around, marks
 from reports.figures.sheet import Panels, corner_words, grid, sheet, tenfold
 from reports.figures.style import INK, PAGE_IN, Look, logarithmic, mark_zero, power_of_ten, shorten
 from reports.output.numbers import duration, short

@@ -21,12 +21,11 @@ from models.scene.driver import driver_stands
 from reports.describe.facts import describe_law
 from reports.drawing.force_arrows import ForceArrows
 from reports.drawing.gif import draw_arrows, draw_bodies, scale_bar
-from reports.drawing.names import Name, Sheet, names
-from reports.drawing.shape import PATH_SAMPLES, box_of, clearest, turn_of
+from reports.drawing.shape import PATH_SAMPLES, Name, Sheet, box_of, clearest, names, turn_of
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, width_in
 from reports.results.overview import Report, facts_of
-from reports.way.clock import SECONDS, TURNS
+from reports.way.length import SECONDS, TURNS
 from reports.way.way import way_of
 
 FREE_SAMPLES = 2401

@@ -10,6 +10,7 @@ from math import isinf
 from rich.console import Console
 from rich.text import Text
 
+from reports.history.verification import FOLLOWED, VersionResult, errors_of, overview, profiles_of
 from reports.history.version_changes import (
     FollowedChange,
     by_cell,
@@ -18,9 +19,8 @@ from reports.history.version_changes import (
     steps,
     times,
 )
-from reports.history.version_result import FOLLOWED, VersionResult, errors_of, overview, profiles_of
 from reports.output.console import hanging, plain_table
-from reports.output.markdown import plain, table
+from reports.output.for_ci import plain, table
 from reports.quantities import QUANTITIES, named
 from reports.results.changes.runs import CellName, StoredCell
 

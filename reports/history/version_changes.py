@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
-from reports.history.version_result import FOLLOWED, FollowedError, VersionResult, errors_of
+from reports.history.verification import FOLLOWED, FollowedError, VersionResult, errors_of
 from reports.output.numbers import count
 from reports.results.changes.changes import (
     CellPair,

@@ -14,10 +14,9 @@ from models.scene import Scene
 from models.scene.laws import MOST_TURNS
 from reports.logs.channel import Channel, Gap, Reading
 from reports.logs.columns import Columns
-from reports.logs.kinds import KINDS, Meaning
+from reports.logs.kinds import DIMENSION, KINDS, UNITS, Meaning, si
 from reports.logs.map_file import LEFT_OUT, ChannelTable
 from reports.logs.names import SceneNames, meaning
-from reports.logs.units import DIMENSION, UNITS, si
 
 
 @dataclass(frozen=True)

@@ -32,9 +32,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from models.errors import CrankcheckError, listed, shown, suggestion
 from models.files.inputs import UnreadableError, regular_text, tables
 from reports.logs.channel import Channel, OwnLog
-from reports.logs.kinds import KINDS
+from reports.logs.kinds import DIMENSION, KINDS, UNITS
 from reports.logs.text_rows import Layout
-from reports.logs.units import DIMENSION, UNITS
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e15, le=1e15)]
 Truth = Annotated[bool, Field(strict=True)]

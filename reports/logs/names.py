@@ -12,10 +12,15 @@ from functools import cached_property
 
 from models.errors import cut
 from models.scene import GROUND, Scene
-from reports.logs.kinds import KINDS, LENGTH, Kind, LoggedKind, Meaning, own_meanings
-from reports.logs.units import (
+from reports.logs.kinds import (
     DIMENSION,
+    KINDS,
+    LENGTH,
+    Kind,
+    LoggedKind,
+    Meaning,
     one_unit,
+    own_meanings,
     refuse_other_dimension,
     si,
     trailing_unit,

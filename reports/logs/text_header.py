@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from models.files.inputs import UnreadableError
+from reports.logs.kinds import spelled_unit
 from reports.logs.text_lines import (
     LOOK,
     Beginning,
@@ -17,7 +18,6 @@ from reports.logs.text_lines import (
     refuse_columns,
     separator_of,
 )
-from reports.logs.units import spelled_unit
 
 EXCEL = re.compile(r"sep=(.)", re.IGNORECASE)
 """The line that tells Excel the separator."""

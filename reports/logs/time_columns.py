@@ -11,8 +11,8 @@ from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
 from models.scene.laws import MOST_TURNS
 from reports.logs.columns import Columns
+from reports.logs.kinds import DIMENSION, UNITS, one_unit, si, spelled_unit, without_unit
 from reports.logs.map_file import Map
-from reports.logs.units import DIMENSION, UNITS, one_unit, si, spelled_unit, without_unit
 
 TIMES = {"time", "t", "timestamp", "time stamp", "times", "sim time", "simtime", "simulation time",
          "elapsed", "elapsed time"}  # fmt: skip

@@ -16,12 +16,10 @@ from reports.causes.cause import Cause
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import share
 from reports.output.console import hanging, plain_table
-from reports.output.junit import case_of, remark, suite_of
-from reports.output.markdown import folded, plain, table
+from reports.output.for_ci import case_of, folded, plain, remark, suite_of, table
 from reports.output.numbers import count, error_text, short
-from reports.own_log.judged import JudgedLog
-from reports.own_log.log_kind import log_kind
-from reports.own_log.rows import LogRow, column_text, log_rows
+from reports.own_log.judged import JudgedLog, LogRow, column_text, log_rows
+from reports.own_log.log_limits import log_kind
 
 WIDE = 90
 """Columns of a terminal that show when an error is largest."""
@@ -249,7 +247,9 @@ def suite(judged: JudgedLog, facts: Mapping[str, str]) -> Element:
     whole = case_of(judged.scene.name, "the log as a whole")
     if judged.failures:
         text = "\n".join(f"{each.rule}: {each.text}" for each in judged.failures)
-        remark(whole, "failure", text, message=judged.failures[0].text, type=judged.failures[0].rule)
+        remark(
+            whole, "failure", text, message=judged.failures[0].text, type=judged.failures[0].rule
+        )
     if judged.not_judged:
         remark(whole, "system-out", f"not judged: {', '.join(judged.not_judged)}")
     return suite_of("judge", [*cases, whole], facts)

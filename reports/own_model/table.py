@@ -32,7 +32,7 @@ from reports.own_model.sentences import (
     still_out,
     verdict_text,
 )
-from reports.verify.cell_table import MARKS, halved, mark
+from reports.verify.table import MARKS, halved, mark
 
 WIDE, NARROW = 76, 52
 """Columns of a terminal that show the gap and the body of the largest error; below which what

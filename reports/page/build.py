@@ -11,14 +11,14 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from markupsafe import Markup
 
-from reports.drawing.packed import embedded, policy
+from reports.drawing.moving import embedded, policy
 from reports.output.numbers import NONE, count, duration, error_text, readable
 from reports.page.sections import OF_WAYS, SECTIONS
 from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion
 from reports.page.sections.section import BUDGET, PageReport, Section
+from reports.results.lines import Look
 from reports.results.overview import Report
-from reports.results.variants import Look
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored
 

@@ -7,17 +7,15 @@ import math
 from collections.abc import Iterator
 
 from reports.judge.rules import RULES
-from reports.output.markdown import code, fitted, folded, plain, table
+from reports.output.for_ci import code, fitted, folded, plain, table
 from reports.output.numbers import count, listed, short
 from reports.page.sections.verdict import level, verdict
 from reports.results.cost import MEANS, Costs
-from reports.results.lines import Line, called, named
+from reports.results.lines import Line, called, label, named
 from reports.results.overview import Report, made, settings_of, study, versions
-from reports.results.recommend import Recommendation
-from reports.results.table import noise_line, short_target
-from reports.results.variants import label
+from reports.results.recommend import Recommendation, noise_line, short_target
 from reports.store.reader import Stored
-from reports.way.clock import clock_of
+from reports.way.length import clock_of
 from sim.engine import Drive
 from sim.registry.offers import snippet_writer
 

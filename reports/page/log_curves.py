@@ -15,9 +15,8 @@ from models.motion import Motion
 from models.scene.driver import driver_course, driver_shown
 from reports.drawing.moving import goes_round
 from reports.logs.channel import Reading
-from reports.logs.units import UNITS
-from reports.own_log.judged import JudgedLog
-from reports.own_log.rows import LogRow, log_rows
+from reports.logs.kinds import UNITS
+from reports.own_log.judged import JudgedLog, LogRow, log_rows
 
 LEAST, MOST = 240, 6_000
 """Rows that are drawn of a channel, however many there are and however long the log."""

@@ -16,11 +16,9 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.drawing.moving import FARTHEST, INSTANTS, drawing, drawn_links, moving_points
-from reports.drawing.packed import packed
+from reports.drawing.moving import FARTHEST, INSTANTS, drawing, drawn_links, moving_points, packed
 from reports.logs.channel import Reading
-from reports.own_log.judged import JudgedLog
-from reports.own_log.rows import log_rows
+from reports.own_log.judged import JudgedLog, log_rows
 from reports.page.log_curves import DrawnChannel, turn_s
 from reports.page.log_placing import PlacedBodies, Placing
 from reports.page.sections.motion import scene_words

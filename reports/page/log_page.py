@@ -9,14 +9,12 @@ from pathlib import PurePath
 from models.errors import few
 from models.scene.driver import driver_axis
 from reports.causes.cause import Cause
-from reports.drawing.moving import goes_round
-from reports.drawing.packed import packed, singles
+from reports.drawing.moving import goes_round, packed, singles
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import share
 from reports.logs.channel import Channel
 from reports.output.numbers import count, readable
-from reports.own_log.judged import JudgedLog
-from reports.own_log.rows import LogRow
+from reports.own_log.judged import JudgedLog, LogRow
 from reports.own_log.table import (
     fit_text,
     footer,

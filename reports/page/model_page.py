@@ -9,8 +9,7 @@ import numpy as np
 
 from models.array import Array
 from models.errors import harmless
-from reports.drawing.moving import INSTANTS, displacements, drawing
-from reports.drawing.packed import singles
+from reports.drawing.moving import INSTANTS, displacements, drawing, singles
 from reports.judge.halving import worst_place
 from reports.judge.rules import RULES
 from reports.output.numbers import count
@@ -34,7 +33,7 @@ from reports.own_model.sentences import (
 from reports.page.build import Head, assembled
 from reports.page.sections.motion import scene_words
 from reports.page.sections.section import Section, name_text, sentence_text
-from reports.results.variants import DASHES, Look, value_text
+from reports.results.lines import DASHES, Look, value_text
 
 
 def model_page(judged: JudgedModel, facts: Mapping[str, str]) -> str:

@@ -34,8 +34,7 @@ from reports.describe.with_forces import (
     turn_with_forces,
 )
 from reports.drawing.force_arrows import force_arrows
-from reports.drawing.moving import INSTANTS, drawing, magnification, moving_points
-from reports.drawing.packed import packed
+from reports.drawing.moving import INSTANTS, drawing, magnification, moving_points, packed
 from reports.drawing.shape import size_of_motion, turn_of
 from reports.output.numbers import count
 from reports.output.provenance import crankcheck_version

@@ -124,7 +124,7 @@ def compare(
         return Comparison(scene, f"{what.engine} {what.version}, profile {what.profile}", errors)
     from reports.logs.log_beside import beside_truth
     from reports.own_log.drives import chosen_drive, refuse_geometry_alone
-    from reports.own_log.log_kind import LogRequest, log_kind
+    from reports.own_log.log_limits import LogRequest, log_kind
 
     chosen = chosen_drive(one_of(drive, "--drive", LOG_DRIVES))
     refuse_geometry_alone(chosen, forces=is_true(forces, "forces"))

@@ -9,17 +9,15 @@ from typing import Annotated
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.diff.junit import suite
-from reports.diff.terminal import markdown, show
+from reports.diff.document import markdown, show, suite
 from reports.output.console import tell
-from reports.output.junit import junit
+from reports.output.for_ci import junit
 from reports.output.write import Outputs
 from reports.requests.options import argument, option, output_option
 from reports.results.changes.changes import compare
 from reports.results.changes.reading import CELLS, FACTS, read_run
 from reports.store.folder import paths_of
-from reports.store.manifest import MANIFEST
-from reports.store.schema import TABLES
+from reports.store.manifest import MANIFEST, TABLES
 
 
 def stored_files(*folders: Path | None) -> list[Path]:

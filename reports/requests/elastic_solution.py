@@ -35,13 +35,12 @@ from reports.describe.elastic_course import (
 from reports.describe.elastic_words import certainty, elastic_facts, elastic_warnings, start_words
 from reports.describe.facts import describe_law
 from reports.describe.force_tables import motion_force_tables
-from reports.describe.frame import cleaned
+from reports.describe.motion_tables import cleaned
 from reports.output.console import say
 from reports.requests.arguments import is_true
 from reports.requests.free_solution import LetGo
-from reports.requests.options import given
+from reports.requests.options import SolveOptions, given
 from reports.requests.solution import ROWS, Solution, drawn, heading, thinned
-from reports.requests.solve_options import SolveOptions
 from reports.requests.solving import Asked, ElasticChoice, Solving, refuse_samples, refuse_times
 
 if TYPE_CHECKING:
@@ -203,11 +202,14 @@ class ElasticSolving(Solving):
         return ELASTIC_FIGURES.written(course, folder)
 
     def page(self, solution: ElasticSolution) -> tuple[str, str]:
-        from reports.requests.scene_report import elastic_page_of
+        from reports.describe.elastic_course import closely_sampled, drawn_course
+        from reports.figures.elastic_figures import ELASTIC_FIGURES
+        from reports.page.scene_page import elastic_page
 
         motion = solution.vibration
         words = f"{motion.scene.name}{self.of_links} over {motion.until_s:.6g} s"
-        return elastic_page_of(motion), words
+        course = drawn_course(motion, closely_sampled(motion.scene, motion.until_s))
+        return elastic_page(motion, course, ELASTIC_FIGURES.pictures(course)), words
 
 
 class ReleasedElasticSolving(LetGo, ElasticSolving):

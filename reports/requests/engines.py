@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from models.errors import CrankcheckError, suggestion
+from reports.contract.clauses import CLAUSES
+from reports.contract.ruling import SCENES, named, put_to_all, refuses_all, show
+from reports.requests.options import Jobs, argument, option
+from reports.workers.isolated import checked_limits
+from reports.workers.progress import progress_bar
 from sim.registry import available, brought, engine
 
 
@@ -34,3 +42,37 @@ class EnginesRequest:
                         grid.add_row("", Text(f"{name} = {setting.value}: {setting.reason}", "dim"))
                 console.print(grid)
         return 0
+
+
+MEMORY_GB = 4.0
+"""What a clause may take: far more than any session does."""
+
+
+@dataclass(frozen=True)
+class EngineCheckRequest:
+    """What `engines check` was asked for, as given."""
+
+    name: Annotated[str, argument("ENGINE", "A name, or one of your own, package.module:ENGINE.")]
+    clauses: Annotated[
+        Sequence[str], option("Clause; may be repeated; all if none.", "--clause ID")
+    ] = ()
+    limit_s: Annotated[float, "Longest time for a clause, in seconds."] = 60.0
+    jobs: Jobs = 0
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Do it; returns the exit code: 0 where every clause that can be tried is held, 1 where one
+        is broken, 2 where nothing can be tried. Raises CrankcheckError for an engine that is not
+        there, or none, and for an unknown clause."""
+        limits = checked_limits(self.limit_s, MEMORY_GB)
+        for clause in self.clauses:
+            if clause not in CLAUSES:
+                hint = suggestion(clause, CLAUSES, "use")
+                raise CrankcheckError(f"--clause {clause!r}: there is none of that name; {hint}")
+        clauses = list(dict.fromkeys(self.clauses or CLAUSES))
+        called, version = named(self.name, limits)
+        with progress_bar(progress, "clauses", len(clauses)) as advance:
+            rulings = put_to_all(self.name, clauses, self.jobs, limits, lambda _: advance())
+        show(console, f"{called} {version}", rulings, SCENES)
+        if any(ruling.answer == "broken" for ruling in rulings):
+            return 1
+        return 2 if refuses_all(rulings) else 0

@@ -11,12 +11,17 @@ from pathlib import Path
 from typing import Annotated
 
 from rich.console import Console
+from rich.text import Text
 
-from models.errors import CrankcheckError, harmless
-from models.files.reading import find_scene, load_scene
+from analytic.structure.groups import Bridge
+from analytic.structure.mobility import analyse
+from models.errors import CrankcheckError, StructureError, harmless
+from models.files.reading import KINEMATICS, find_scene, kinds, load_scene, shipped
 from models.mjcf.document import build
 from models.mjcf.options import exact
-from reports.output.console import put, say
+from models.scene import Scene
+from reports.describe.facts import describe_law
+from reports.output.console import plain_table, put, say
 from reports.output.write import check_file, write
 from reports.plan.free import under_control
 from reports.plan.steps import MOST_STEPS
@@ -135,3 +140,36 @@ def has_screen() -> bool:
     if sys.platform in ("darwin", "win32"):
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+@dataclass(frozen=True)
+class ScenesRequest:
+    """What `scenes` was asked for: nothing in particular."""
+
+    def run(self, console: Console, progress: Console) -> int:
+        """The shipped scenes by kind: structure, driver and source."""
+        for kind in kinds():
+            console.print(Text(_heading(kind), "bold"))
+            table = plain_table(gap=2)
+            for head in ("scene", "groups", "driver", "source"):
+                table.add_column(head, overflow="fold", no_wrap=head == "scene")
+            for name in shipped(kind):
+                scene = load_scene(name)
+                table.add_row(name, _groups(scene), describe_law(scene), Text(scene.source))
+            console.print(table, highlight=False)
+        return 0
+
+
+def _groups(scene: Scene) -> str:
+    """The Assur groups of a scene in solving order, a dash for one that is none of dyads."""
+    try:
+        parts = analyse(scene).order
+        return " + ".join(part.kind for part in parts if not isinstance(part, Bridge))
+    except StructureError:
+        return "-"
+
+
+def _heading(kind: str) -> str:
+    """A kind, and how to ask for all its scenes."""
+    by_name = f"all of them by `{kind}`, as in `crankcheck verify {kind}`"
+    return f"{kind}: {'all of them where no scene is named' if kind == KINEMATICS else by_name}"

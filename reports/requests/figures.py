@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, cast
 
 from matplotlib.figure import Figure
 from rich.console import Console
@@ -15,9 +15,8 @@ from rich.progress import track
 
 from models.errors import CrankcheckError, suggestion
 from models.files.schema import NAME
-from reports.figures.all_figures import FIGURES
 from reports.figures.drawing import Drawing
-from reports.figures.saving import FORMATS, saved
+from reports.figures.figure_set import FORMATS, saved
 from reports.figures.style import styled
 from reports.output.console import say_whole, tell
 from reports.output.numbers import count
@@ -25,6 +24,14 @@ from reports.output.write import check_folder, write
 from reports.requests.options import argument, option, output_option
 from reports.results.overview import Report
 from reports.store.reader import read_store
+from reports.way.way import own_parts
+
+FIGURES: Mapping[str, Drawing] = {
+    name: drawing
+    for part in own_parts("figures").values()
+    for name, drawing in cast(Mapping[str, Drawing], part).items()
+}
+
 
 Drawn = Callable[[], Figure | None]
 

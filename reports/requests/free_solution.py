@@ -20,15 +20,13 @@ from models.errors import CrankcheckError
 from models.motion import Bound, Motion
 from models.scene import Scene
 from reports.describe.facts import describe_law
-from reports.describe.frame import cleaned
 from reports.describe.free_motion import free_columns, free_notes, free_tables
-from reports.describe.tables import motion_tables
+from reports.describe.motion_tables import cleaned, motion_tables
 from reports.output.console import say
 from reports.plan.singular import continued_note
 from reports.requests.arguments import is_true
-from reports.requests.options import given
+from reports.requests.options import SolveOptions, given
 from reports.requests.solution import ROWS, Solution, drawn, heading, thinned
-from reports.requests.solve_options import SolveOptions
 from reports.requests.solving import ON_SCREEN, Asked, Solving, most_samples, refuse_samples
 
 if TYPE_CHECKING:
@@ -183,8 +181,9 @@ class FreeSolving(LetGo):
         return FREE_FIGURES.written(free_course(solution.free), folder)
 
     def page(self, solution: FreeSolution) -> tuple[str, str]:
-        from reports.requests.scene_report import free_page_of
+        from reports.figures.free_figures import FREE_FIGURES, free_course
+        from reports.page.scene_page import free_page
 
         lasts_s = solution.time_s[-1]
         words = f"the free motion of {solution.scene.name} over {lasts_s:g} s"
-        return free_page_of(solution.free), words
+        return free_page(solution.free, FREE_FIGURES.pictures(free_course(solution.free))), words

@@ -14,8 +14,16 @@ from models.errors import CrankcheckError
 from models.files.reading import find_scenes
 from reports.history.environments import EngineVersion, NotMeasuredError, ready, uv_here, wanted
 from reports.history.table import page, show, table_text
-from reports.history.verification import alone, cache_folder, kept, key_of, measure, place
-from reports.history.version_result import VersionResult, read_version
+from reports.history.verification import (
+    VersionResult,
+    alone,
+    cache_folder,
+    kept,
+    key_of,
+    measure,
+    place,
+    read_version,
+)
 from reports.judge.cell import Cell
 from reports.output.console import say_whole
 from reports.output.provenance import provenance
@@ -24,7 +32,7 @@ from reports.plan.chosen import left_out_note
 from reports.requests.options import Duration, Jobs, StepS, StepsPerTurn, argument, option
 from reports.requests.verify import IN_FOLDER, VerifyRequest, plan
 from reports.results.changes.reading import scene_digests
-from reports.way.clock import clock_of
+from reports.way.length import clock_of
 from reports.workers.signals import run_child
 from sim.registry import ENGINES, engine
 

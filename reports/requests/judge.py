@@ -24,10 +24,8 @@ from reports.output.console import say_whole
 from reports.output.provenance import provenance
 from reports.output.write import Outputs, check_file
 from reports.own_log.drives import chosen_drive, refuse_geometry_alone
-from reports.own_log.judged import JudgedLog, judge_log
-from reports.own_log.log_kind import LogRequest
-from reports.own_log.log_limits import EVERY
-from reports.own_log.rows import row_table
+from reports.own_log.judged import JudgedLog, judge_log, row_table
+from reports.own_log.log_limits import EVERY, LogRequest
 from reports.own_log.table import markdown, show
 from reports.plan.elastic import given_of
 from reports.plan.steps import positive

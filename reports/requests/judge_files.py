@@ -9,11 +9,10 @@ from pathlib import Path
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.logs.map_file import Map, map_text
-from reports.output.junit import junit
+from reports.output.for_ci import junit
 from reports.output.numbers import finite
 from reports.output.write import write
-from reports.own_log.judged import JudgedLog
-from reports.own_log.rows import row_table
+from reports.own_log.judged import JudgedLog, row_table
 from reports.own_log.table import suite
 
 

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
-from typing import Annotated, Any, get_type_hints
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, get_type_hints
 
 import typer
 
-from models.errors import shown
+from models.errors import CrankcheckError, shown
 
 
 def seconds(text: str) -> float:
@@ -105,3 +108,148 @@ def named(place: str) -> Any:
     """What has that place, ``room.module:name``, in a room beside this one; loaded now."""
     module, _, name = place.partition(":")
     return getattr(import_module(f"..{module}", __package__), name)
+
+
+@dataclass(frozen=True)
+class SolveOptions:
+    """Options of `solve`, whatever the kind of the scene."""
+
+    answered_by: ClassVar[str] = "requests.solve:SolveRequest"
+    scene: SceneName
+    at_deg: Annotated[float | None, option("One position: the driver's angle.", "DEG")] = None
+    at_m: Annotated[
+        float | None, option("One position: the displacement of a slider that drives.", "M")
+    ] = None
+    turns: Annotated[float | None, "A motion over so many turns (default 1)."] = None
+    steps_per_turn: Annotated[int | None, "Samples in a turn (default 12, in a file 360)."] = None
+    output: Annotated[
+        Path | None, output_option("Write .csv, .parquet or .xlsx, or a page, .html.")
+    ] = None
+    duration: Annotated[
+        float | None, option("Free motion: for how long (default the scene's own).", "S")
+    ] = None
+    steps: Annotated[
+        int | None, option("Free motion: samples in it (default 12, in a file 1000).", "N")
+    ] = None
+    clockwise: Annotated[bool, "With --at-deg: the driver turning clockwise there."] = False
+    along: Annotated[
+        Sequence[str], option("Stroke of a point along a direction; repeatable.", "POINT:DEG")
+    ] = ()
+    forces: Annotated[bool, "The reactions and the driving torque as well."] = False
+    figures: Annotated[
+        Path | None,
+        option(
+            "With --forces: draw them over a turn; or a free motion, or elastic links; as SVG "
+            "and PDF.",
+            "DIR",
+        ),
+    ] = None
+    modes: Annotated[int | None, option("Elastic links: sines across each.", "N")] = None
+    axial_modes: Annotated[int | None, option("Elastic links: sines along each.", "N")] = None
+    elements: Annotated[int | None, option("Elastic links: beam elements of each.", "N")] = None
+    shape: Annotated[
+        str | None,
+        "Elastic links start periodic, quasi-static or straight (default the scene's own).",
+    ] = None
+    linear: Annotated[bool, "Elastic links: leave out that a bent link is shorter."] = False
+    family: Annotated[
+        str | None,
+        option(
+            "With -o FILE.xlsx, .html, .svg or .pdf: mechanisms that differ in a number, such "
+            "as a length.",
+            "NAME=A,B,...",
+        ),
+    ] = None
+
+    @property
+    def at_place(self) -> str:
+        """The option by which one position was asked for; "" where a motion was."""
+        if self.at_deg is None and self.at_m is None:
+            return ""
+        return f"--at-m {self.at_m:g}" if self.at_deg is None else f"--at-deg {self.at_deg:g}"
+
+
+PRESCRIBED = "prescribed"
+of_model = partial(option, rich_help_panel="A model of your own")
+
+
+@dataclass(frozen=True)
+class VerifyOptions:
+    """Options of `verify`, of scenes and of a model of the user's own; ``baseline`` is the folder
+    of an earlier run, whose errors may grow by ``factor``."""
+
+    answered_by: ClassVar[str] = "requests.verify:VerifyRequest"
+    scenes: Annotated[
+        Sequence[str], argument("SCENE", "Shipped names or scene files; all if none.")
+    ] = ()
+    engines: Engines = ()
+    profiles: Annotated[
+        Sequence[str],
+        option("Profile, gated; default: tuned gated, as-shipped shown.", "--profile"),
+    ] = ()
+    dt_s: StepS = None
+    steps_per_turn: StepsPerTurn = None
+    turns: Annotated[float | None, "Turns (periods) of the driver (default 2)."] = None
+    tolerance: Annotated[
+        Sequence[str],
+        option("Tolerance as a pure number, such as angle=1e-4.", "--tol NAME=NUMBER"),
+    ] = ()
+    drive: Annotated[str, "prescribed or servo; with --mjcf: the joint that is driven."] = (
+        PRESCRIBED
+    )
+    converge: Annotated[
+        bool,
+        option(
+            "Run at half and quarter step too, and say what the error does.",
+            "--convergence/--no-convergence",
+        ),
+    ] = True
+    jobs: Jobs = 0
+    junit: Annotated[Path | None, "Write JUnit XML."] = None
+    csv: Annotated[Path | None, "Write the cells as CSV."] = None
+    json: Annotated[Path | None, "Write cells and findings as JSON."] = None
+    folder: Annotated[Path | None, output_option("Write all of them into a folder.")] = None
+    baseline: Annotated[
+        Path | None, option("Folder of an earlier run; exit 1 when worse than it.", "DIR")
+    ] = None
+    factor: Annotated[float, "Growth over the baseline that is no fault yet."] = 1.1
+    forces: Forces = False
+    free: Annotated[bool, "Let scenes go; those of free motion if none is named."] = False
+    duration_s: Duration = None
+    segments: SegmentCount = None
+    springs: SpringKind = None
+    mjcf: Annotated[
+        Path | None,
+        of_model("A MuJoCo model, run as it is; needs --drive JOINT and --speed.", "FILE"),
+    ] = None
+    speed_rad_s: Annotated[
+        float | None, of_model("Of the driven joint; below 0 the other way.", "--speed RAD/S")
+    ] = None
+    key: Annotated[
+        str | None, of_model("Keyframe to start from; default: the pose as drawn.", "NAME")
+    ] = None
+    start_deg: Annotated[
+        float | None, of_model("What the driven joint reads at the start.", "--start DEG")
+    ] = None
+    branch: Annotated[
+        Sequence[str],
+        of_model("Assembly, where the pose fits two; default: the nearest.", "NAME=1|-1"),
+    ] = ()
+    write_scene: Annotated[
+        Path | None, of_model("Write the scene that it was read as, as TOML.", "FILE")
+    ] = None
+    limit_s: Annotated[float, of_model("Time limit of each line.", "SECONDS")] = 60.0
+    memory_gb: Annotated[float, of_model("Memory limit of each line.", "GB")] = 2.0
+
+
+OF_MODELS = ["speed_rad_s", "key", "start_deg", "branch", "write_scene", "limit_s", "memory_gb"]
+"""Fields of a model of the user's own alone."""
+
+
+def refuse_of_models(request: VerifyOptions) -> None:
+    """Refuse what says nothing of scenes. Raises CrankcheckError."""
+    for given_option in given(request, *OF_MODELS):
+        raise CrankcheckError(
+            f"{given_option}: it is of a model of your own; name that with --mjcf FILE, or leave "
+            f"{given_option} out"
+        )

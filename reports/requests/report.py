@@ -18,7 +18,7 @@ from reports.requests.options import argument, option, output_option
 from reports.requests.sweep import Sweep
 from reports.stability.matrix import FILE as MATRIX
 from reports.stability.matrix import Matrix, read_matrix
-from reports.store.schema import TABLES
+from reports.store.manifest import TABLES
 
 Format = Literal["html", "md"]
 ENDINGS: Mapping[Format, tuple[str, ...]] = {

@@ -74,12 +74,12 @@ class Simulation(Shown, Run):
         Where velocities or accelerations belong to other instants than the places,
         ``velocity_time_s`` and ``acceleration_time_s`` have these.
         """
-        from reports.describe.frame import run_frame
+        from reports.describe.motion_tables import run_frame
 
         return run_frame(self)
 
     def show(self, console: Console) -> None:
-        from reports.describe.tables import motion_tables
+        from reports.describe.motion_tables import motion_tables
 
         say(console, self._heading())
         if self.motion is not None:

@@ -25,8 +25,13 @@ from reports.describe.force_tables import (
     motion_force_tables,
     position_force_tables,
 )
-from reports.describe.frame import cleaned
-from reports.describe.tables import certainty, motion_tables, position_tables, speed_table
+from reports.describe.motion_tables import (
+    certainty,
+    cleaned,
+    motion_tables,
+    position_tables,
+    speed_table,
+)
 from reports.describe.with_forces import (
     cleaned_forces,
     force_certainty,
@@ -63,7 +68,7 @@ class Solution(Shown, Motion):
 
     def frame(self) -> pd.DataFrame:
         """One row per sample, columns with their units: ``rocker_theta_rad``, ``C_x_m``."""
-        from reports.describe.frame import motion_frame
+        from reports.describe.motion_tables import motion_frame
 
         return motion_frame(self)
 

@@ -26,9 +26,8 @@ from reports.describe.with_forces import with_forces
 from reports.output.frame_file import ENDINGS
 from reports.output.write import check_file
 from reports.requests.arguments import SceneLike, is_true, scene_of, told_at_the_call
-from reports.requests.options import FAMILY, LIVE_SHEET, given, named
+from reports.requests.options import FAMILY, LIVE_SHEET, SolveOptions, given, named
 from reports.requests.solution import Solution, show_solution
-from reports.requests.solve_options import SolveOptions
 from reports.requests.solving import (
     FAMILY_ENDINGS,
     PAGE,
@@ -245,11 +244,14 @@ class DrivenSolving(Solving):
         return FORCE_FIGURES.written(force_turn(solution.scene), folder)
 
     def page(self, solution: Solution) -> tuple[str, str]:
-        from reports.requests.scene_report import page_of
+        from reports.figures.force_figures import FORCE_FIGURES
+        from reports.figures.force_turn import force_turn
+        from reports.page.scene_page import scene_page
 
         scene = solution.scene
         forces = solution.forces is not None
-        return page_of(scene, with_forces=forces), f"{scene.name} over one turn"
+        pictures = FORCE_FIGURES.pictures(force_turn(scene)) if forces else None
+        return scene_page(scene, pictures), f"{scene.name} over one turn"
 
     def more(
         self, solution: Solution, columns: list[str], request: SolveOptions

@@ -23,9 +23,8 @@ from reports.output.console import say_whole
 from reports.output.frame_file import SHEET_ROWS, write_frame
 from reports.output.write import check_folder, write
 from reports.requests.arguments import is_true, one_of, whole_of
-from reports.requests.options import given
+from reports.requests.options import SolveOptions, given
 from reports.requests.solution import Solution
-from reports.requests.solve_options import SolveOptions
 from reports.way.way import way_of
 
 if TYPE_CHECKING:

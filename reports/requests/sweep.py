@@ -86,7 +86,7 @@ class Sweep(Shown):
         return "within" if bool((gated["verdict"] == "within").all()) else "out"
 
     def show(self, console: Console) -> None:
-        from reports.requests.sweep_text import show_sweep
+        from reports.sweep.running import show_sweep
 
         show_sweep(console, self.folder, self.cells, self.done)
 
@@ -238,8 +238,7 @@ class SweepRequest:
         damaged in the store is mended, and told. Raises CrankcheckError for what can be told of the
         request before running.
         """
-        from reports.requests.sweep_text import show_sweep
-        from reports.sweep.running import Manner, swept
+        from reports.sweep.running import Manner, show_sweep, swept
 
         limits = checked_limits(self.limit_s, self.memory_gb)
         manner = Manner(

@@ -24,8 +24,8 @@ from reports.judge.tolerance import (
     refuse_of_other_kinds,
 )
 from reports.output.console import say_whole, tell
+from reports.output.for_ci import junit
 from reports.output.frame_file import csv, parquet
-from reports.output.junit import junit
 from reports.output.numbers import finite
 from reports.output.provenance import provenance
 from reports.output.write import Outputs, check_outputs
@@ -44,7 +44,7 @@ from reports.plan.free import (
     under_control,
 )
 from reports.plan.singular import gives_forces, silent_note
-from reports.requests.verify_options import PRESCRIBED, VerifyOptions, refuse_of_models
+from reports.requests.options import PRESCRIBED, VerifyOptions, refuse_of_models
 from reports.verify.advised import check_all
 from reports.verify.table import show, suite
 from reports.way.length import Length
@@ -94,7 +94,7 @@ class VerifyRequest(VerifyOptions):
         with outputs.written(contents(checked, facts, digests, diff)):
             show(console, checked, facts)
             if diff:
-                from reports.diff.terminal import show as show_diff
+                from reports.diff.document import show as show_diff
 
                 console.print()
                 show_diff(console, diff)
@@ -266,7 +266,7 @@ def contents(
 def _suites(diff: Diff | None) -> Iterator[Element]:
     """The suite of what changed, if that is known."""
     if diff is not None:
-        from reports.diff.junit import suite as diff_suite
+        from reports.diff.document import suite as diff_suite
 
         yield diff_suite(diff)
 

@@ -16,8 +16,8 @@ from models.errors import CrankcheckError
 from models.files.assemble import scene_text
 from reports.judge.rows import cell_frame, error_frame
 from reports.judge.tolerance import parse
+from reports.output.for_ci import junit
 from reports.output.frame_file import csv, parquet
-from reports.output.junit import junit
 from reports.output.provenance import provenance
 from reports.output.write import Outputs, check_file
 from reports.own_model.account import read
@@ -34,9 +34,8 @@ from reports.requests.arguments import (
     told_at_the_call,
     tolerances_of,
 )
-from reports.requests.options import given
+from reports.requests.options import PRESCRIBED, VerifyOptions, given
 from reports.requests.shown import Shown
-from reports.requests.verify_options import PRESCRIBED, VerifyOptions
 from reports.verify.table import suite
 from reports.workers.isolated import LIMIT_S, MEMORY_GB, checked_limits
 from sim.registry import engine

@@ -13,9 +13,8 @@ import pandas as pd
 
 from reports.results.cost import mean, time_to
 from reports.results.lines import Line, called, numbers
-from reports.way.clock import clock_of
-from reports.way.result_kind import ResultKind
-from reports.way.way import WAYS, Way, way
+from reports.way.length import clock_of
+from reports.way.way import WAYS, ResultKind, Way, way
 from sim.engine import Drive, SettingValue
 
 NOT_RUN = "not run"

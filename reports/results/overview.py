@@ -16,13 +16,21 @@ from reports.output.numbers import count, duration, listed
 from reports.plan.free import under_control
 from reports.results.candidates import Candidate, candidates
 from reports.results.cost import Costs, costs_of, noise
-from reports.results.lines import Line, Named, lines, machine, named
+from reports.results.lines import (
+    OWN,
+    Line,
+    Look,
+    Named,
+    lines,
+    looks,
+    machine,
+    named,
+    settings_told,
+)
 from reports.results.recommend import Recommendation, recommendations
-from reports.results.variants import OWN, Look, looks, settings_told
 from reports.store.reader import Stored
-from reports.way.clock import SECONDS, TURNS, clock_of, common_clock
-from reports.way.result_kind import TARGETS
-from reports.way.way import WAYS, way_of_row
+from reports.way.length import SECONDS, TURNS, clock_of, common_clock
+from reports.way.way import TARGETS, WAYS, way_of_row
 
 
 @dataclass(frozen=True)
@@ -215,7 +223,7 @@ def settings(report: Report, lines: Sequence[Line]) -> list[str]:
 
 
 def settings_of(report: Report, lines: Sequence[Line]) -> Mapping[str, str]:
-    """The settings of each variant, by its label (see `reports.results.variants`)."""
+    """The settings of each variant, by its label (see `reports.results.lines`)."""
     shown = dict.fromkeys(named(line) for line in lines)
     return {report.looks[name].name: report.settings_told[name] for name in shown}
 

@@ -9,7 +9,7 @@ from typing import Literal, cast
 
 import numpy as np
 
-from analytic.free.toggle_barrier import ToggleBarrier
+from analytic.free.exact_motions import ToggleBarrier
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError

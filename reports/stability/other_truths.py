@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.free.window_chain import ChainMotion
+from analytic.free.exact_motions import ChainMotion
 from analytic.kinematics import solve_driven
 from models.array import Array
 from models.motion import Motion, State

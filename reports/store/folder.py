@@ -23,7 +23,7 @@ from filelock import FileLock, Timeout
 from models.errors import CrankcheckError
 from models.files.inputs import UnreadableError, regular_bytes
 from reports.output.write import write
-from reports.store.schema import LOCK, NESTED, TABLES
+from reports.store.manifest import LOCK, NESTED, TABLES
 
 NAME = re.compile(r"(cells|timings)-(\d{20})-(\d+)-([0-9a-f]{16})\.parquet")
 """Table, time [ns], number of rows, and seal."""

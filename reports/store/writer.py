@@ -11,13 +11,22 @@ from types import TracebackType
 
 from models.errors import CrankcheckError
 from models.files.inputs import UnreadableError
-from reports.describe.frame import run_frame
+from reports.describe.motion_tables import run_frame
 from reports.output.frame_file import parquet
 from reports.output.write import check_folder, refuse_link, write
-from reports.store.examine import STOPPED, Examined, examine
 from reports.store.folder import has_parts, locked, open_part, paths_of, write_part
-from reports.store.manifest import MANIFEST, Manifest, indented, read_manifest
-from reports.store.schema import DAMAGED, LOCK, TABLES, TRAJECTORIES, table
+from reports.store.manifest import (
+    DAMAGED,
+    LOCK,
+    MANIFEST,
+    TABLES,
+    TRAJECTORIES,
+    Manifest,
+    indented,
+    read_manifest,
+    table,
+)
+from reports.store.reader import STOPPED, Examined, examine
 from sim.engine import Run
 
 EVERY_S = 1.0

@@ -13,15 +13,18 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, harmless
 from reports.judge.cell import Cell, unfinished
 from reports.judge.rows import cell_row
-from reports.output.console import tell
+from reports.output.console import say, tell
+from reports.output.numbers import count
 from reports.output.provenance import provenance
 from reports.plan.grid import Grid, Task, grid
 from reports.plan.study import Study
+from reports.results.lines import lines
+from reports.results.recommend import noise_line, recommendation_table, recommendations
 from reports.store.manifest import Manifest
-from reports.store.reader import stored_costs, stored_endings, stored_keys
+from reports.store.reader import Stored, read_store, stored_costs, stored_endings, stored_keys
 from reports.store.writer import Writer
 from reports.sweep.measured import (
     UNMEASURED,
@@ -233,3 +236,30 @@ def _own_steps(study: Study, tasks: Sequence[Task]) -> dict[str, list[float]]:
         if task.cell.scene.elastic and study.times_held:
             steps.setdefault(task.line, []).append(task.cell.steps_per_turn)
     return steps
+
+
+def show_sweep(console: Console, folder: Path, number: int, done: Done) -> None:
+    """Print what of so many cells was run now, what failed, and what to do with it."""
+    console.print(
+        f"{count(number, 'cell')}: {done.ran} run now, {number - done.ran} were there; "
+        f"{done.timed} timed now"
+    )
+    for status, reasons in sorted(done.failed.items()):
+        console.print(f"  {sum(reasons.values())} {status}, such as", highlight=False)
+        for reason, _ in reasons.most_common(2):
+            say(console, f"    {reason}")
+    stored = f"stored in {folder}; next: crankcheck report {folder} -o report.html"
+    console.print(harmless(stored), markup=False)
+    found = read_store(folder)
+    if not found.timings.empty:
+        _recommend(console, found)
+
+
+def _recommend(console: Console, stored: Stored) -> None:
+    """What to choose, of all that the store holds."""
+    console.print()
+    older = len(stored.cells) - sum(len(line.cells) for line in lines(stored))
+    if older:
+        console.print(f"left out: {older} cells of earlier runs, whose names stand for others now")
+    console.print(recommendation_table(recommendations(stored), console.width))
+    console.print(noise_line(stored), highlight=False)

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from reports.output.console import plain_table
 from reports.quantities import QUANTITIES, named
-from reports.results.variants import value_text
+from reports.results.lines import value_text
 from reports.tune.attempt import Attempt, Goal, Row, Taken
 from sim.registry.offers import SearchSpace
 

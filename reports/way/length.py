@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 from models.scene import Scene
 from reports.compare.beside import SETTLING
+from reports.output.numbers import duration
 
 Springs = Literal["plain", "corrected", "beam"]
 """Between segments: those of the beam's stiffness over a segment, or those that give the chain the
@@ -58,3 +59,74 @@ class Planned:
     @property
     def duration_s(self) -> float:
         return self.dt_s * self.steps
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The unit of time of a drive; ``per`` is what stands behind numbers of it, "" for turns,
+    ``unit`` behind lengths of runs."""
+
+    name: str
+    per: str
+    unit: str
+
+    def short(self, dt_s: float, steps_per_turn: float) -> str:
+        """The step of a run, in a few words."""
+        return f"{steps_per_turn:g} a turn"
+
+    def long(self, dt_s: float, steps: int, steps_per_turn: float) -> str:
+        """How long a run of so many steps is, in words."""
+        turns = steps / steps_per_turn
+        return f"{steps_per_turn:.6g} steps a turn, {turns:.6g} turn{'s' * (turns != 1.0)}"
+
+    def step(self, row: Mapping[Any, Any]) -> str:
+        """The step of a stored cell, in words: so many in a turn."""
+        return f"{row['steps_per_turn']:g}"
+
+    def lasts(self, turns: float) -> str:
+        """How long a run is, in words behind its name."""
+        return f", {turns:g} turn{'' if turns == 1.0 else 's'}"
+
+    def words(self, dt_s: float, steps_per_turn: float, turns: float) -> tuple[str, str]:
+        """The step of a run and how long it is, in words."""
+        return f"{steps_per_turn:.4g} steps a turn", f"{turns:.4g} turns"
+
+    def period_s(self, driver_s: float) -> float:
+        """The period [s], where the driver has one of ``driver_s``."""
+        return driver_s
+
+
+class Seconds(Clock):
+    """As of `Clock`: what nothing drives has no turns."""
+
+    def short(self, dt_s: float, steps_per_turn: float) -> str:
+        return f"dt {dt_s:g} s"
+
+    def long(self, dt_s: float, steps: int, steps_per_turn: float) -> str:
+        return f"{steps} steps, {steps * dt_s:.6g} s"
+
+    def step(self, row: Mapping[Any, Any]) -> str:
+        return duration(row["dt_s"])
+
+    def lasts(self, turns: float) -> str:
+        return f" for {turns:g} s"
+
+    def words(self, dt_s: float, steps_per_turn: float, turns: float) -> tuple[str, str]:
+        return f"dt {dt_s:.4g} s", f"let go for {turns:.4g} s"
+
+    def period_s(self, driver_s: float) -> float:
+        return 1.0
+
+
+TURNS, SECONDS = Clock("turn", "", "turns"), Seconds("second", "/s", "s")
+_CLOCKS = {"free": SECONDS}
+
+
+def clock_of(drive: str) -> Clock:
+    """That of a drive."""
+    return _CLOCKS.get(drive, TURNS)
+
+
+def common_clock(drives: Iterable[str]) -> Clock:
+    """That of several drives: turns where one has them."""
+    return SECONDS if {clock_of(drive) for drive in drives} <= {SECONDS} else TURNS

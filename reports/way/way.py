@@ -7,6 +7,7 @@ add the folder and its name in `WAYS`.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence, Set
+from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
@@ -18,10 +19,35 @@ from models.motion import Forces, Motion, State
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.quantities.quantity import Role, Tolerance
-from reports.way.clock import Clock, clock_of
-from reports.way.length import GivenAs, Length, Planned, Springs
-from reports.way.result_kind import ResultKind
+from reports.way.length import Clock, GivenAs, Length, Planned, Springs, clock_of
 from sim.engine import Drive
+
+TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
+"""Errors of place [rad, or of the longest link]."""
+
+
+@dataclass(frozen=True)
+class ResultKind:
+    """Words and targets of stored cells.
+
+    ``unit`` is that of the error that they are compared by, ``axis`` its name on diagrams and
+    ``promise`` in a recommendation; ``targets`` are those of recommendations, ``kept`` what keeps
+    one, ``head`` its column, and ``notes`` stand over settings to be copied. ``error`` explains the
+    error on a page, in the place ``stands`` among other kinds;
+    where several are drawn together the axis is that of the kind that ``leads``, the lowest.
+    """
+
+    error: str
+    stands: int
+    leads: int
+    axis: str
+    promise: str
+    unit: str = "rad"
+    targets: Sequence[float] = TARGETS
+    kept: str = "scene within a target"
+    head: str = "target\nrad"
+    notes: Sequence[str] = ()
+
 
 WAYS = ("free_elastic", "elastic", "free", "driven")
 """The kinds, the more special first: a scene is of the first that takes it. A name with a dot is
@@ -54,14 +80,14 @@ class Way(Protocol):
 
     ========== ===============================================================================
     columns    the columns of its cells, a `reports.judge.rows.ColumnsOf`
-    table      the table of its cells, a `reports.verify.cell_table.CellTable`
-    footer     the lines under the table, `reports.verify.cell_table.Part` each, also there
+    table      the table of its cells, a `reports.verify.table.CellTable`
+    footer     the lines under the table, `reports.verify.table.Part` each, also there
     faults     the faults that are planted in its runs, a `reports.selftest.fault.FaultSet`
     cases      the hard cases of its scenes, by group (`reports.stability.case.Case`)
     series     what hard runs are compared with, by name (`reports.stability.case.Yardstick`)
     figures    its figures of a store, by name (`reports.figures.drawing.Drawing`)
     section    its section of the page (`reports.page.sections.section.WaySection`)
-    log        how its logs are judged, a `reports.own_log.log_kind.LogKind`
+    log        how its logs are judged, a `reports.own_log.log_limits.LogKind`
     solving    how its scenes are solved, a `reports.requests.solving.Solving`
     ========== ===============================================================================
     """

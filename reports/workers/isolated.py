@@ -18,8 +18,8 @@ from queue import SimpleQueue
 from typing import IO, Generic, TypeVar, cast
 
 from models.errors import CrankcheckError
+from reports.workers import one_thread
 from reports.workers.child import main, receive, send
-from reports.workers.one_thread import one_thread
 from sim.own_engine.known import spellings
 
 Result = TypeVar("Result")

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic.free.window_chain import ChainMotion
+from analytic.free.exact_motions import ChainMotion
 from analytic.kinematics import solve, solve_driven
 from models.array import numbers, samples
 from models.errors import CrankcheckError, EngineError

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analytic.free.window_chain import ChainMotion
+from analytic.free.exact_motions import ChainMotion
 from models.errors import EngineError
 from models.files.reading import load_scene
 from models.mjcf.options import has_control

@@ -42,7 +42,7 @@ import atexit, os, signal, sys, time
 from crankcheck.__main__ import main
 from models.errors import EngineError
 from reports.requests import solve
-from reports.requests.scenes import ScenesRequest
+from reports.requests.export import ScenesRequest
 from reports.workers import signals
 
 def strike(*_):

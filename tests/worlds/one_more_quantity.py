@@ -61,12 +61,12 @@ def main() -> None:
     from rich.console import Console
 
     from reports.history.table import COLUMNS
-    from reports.history.version_result import FOLLOWED
+    from reports.history.verification import FOLLOWED
     from reports.judge.cell import Cell, check
     from reports.judge.rows import cell_frame, error_frame
     from reports.page.sections.errors import DIAGRAMS
     from reports.results.changes.runs import COMPARED
-    from reports.store.schema import table
+    from reports.store.manifest import table
     from reports.tune.table import OTHERS
     from reports.verify.table import show
 

@@ -23,8 +23,7 @@ from models.motion import Motion
 from models.scene import Scene
 from models.scene.laws import ConstantSpeed
 from reports.logs.channel import Channel
-from reports.logs.kinds import KINDS
-from reports.logs.units import UNITS
+from reports.logs.kinds import KINDS, UNITS
 from tests.worlds.sheets import Sheet, wrapped
 
 T = TypeVar("T")

@@ -16,7 +16,7 @@ from analytic.lectures.synthesis.function.designs import function_designs
 from analytic.lectures.synthesis.function.structural_error import FunctionProposal, structural_error
 from analytic.lectures.synthesis.function.task import FunctionTask, GivenFunction
 from analytic.lectures.synthesis.line_draft import peaucellier
-from analytic.lectures.synthesis.path.rounds import Progress
+from analytic.lectures.synthesis.path.fit import Progress
 from analytic.lectures.synthesis.path.search import generate
 from analytic.lectures.synthesis.path.task import PathTask
 from analytic.lectures.synthesis.quick_return import quick_return_proposals

@@ -20,7 +20,7 @@ from reports.causes.cause import BROUGHT_WITHIN, Rows, picked
 from reports.causes.fit import fitted
 from reports.causes.inquiry import WELL, Inquiry
 from reports.causes.world import World
-from reports.logs.units import UNITS
+from reports.logs.kinds import UNITS
 from reports.output.numbers import duration
 
 MOST_FITS = 4

@@ -17,8 +17,7 @@ from reports.causes.account import CAUSE, CHOICE, NUMBER, Account
 from reports.causes.cause import EXPLAINED, Excerpt, Size, levelled
 from reports.causes.inquiry import Inquiry
 from reports.logs.channel import Channel
-from reports.logs.kinds import KINDS, Kind
-from reports.logs.units import UNITS
+from reports.logs.kinds import KINDS, UNITS, Kind
 
 
 @dataclass(frozen=True)

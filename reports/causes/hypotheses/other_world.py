@@ -20,7 +20,7 @@ from reports.causes.fit import fitted
 from reports.causes.inquiry import Inquiry
 from reports.causes.world import LogFrame, World
 from reports.logs.channel import Channel
-from reports.logs.units import UNITS
+from reports.logs.kinds import UNITS
 from reports.output.numbers import listed
 
 MOST_CHOICES = 6

@@ -13,7 +13,7 @@ from models.errors import CrankcheckError
 from reports.causes.account import BOUNDED, CAUSE, CHOICE, Account
 from reports.causes.cause import BROUGHT_WITHIN, Excerpt, Rows
 from reports.causes.inquiry import Inquiry
-from reports.logs.units import UNITS
+from reports.logs.kinds import UNITS
 from reports.output.numbers import listed
 
 SHOWN = 3

@@ -14,7 +14,7 @@ from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, later
 from reports.causes.cause import BROUGHT_WITHIN, Excerpt, Rows, Size, levelled
 from reports.causes.inquiry import Inquiry
 from reports.logs.channel import Channel
-from reports.logs.units import UNITS, si
+from reports.logs.kinds import UNITS, si
 from reports.output.numbers import listed
 
 TURNS = (0, 1, -1, 2, -2)

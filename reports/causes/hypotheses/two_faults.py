@@ -23,7 +23,7 @@ from reports.causes.hypotheses.samples import places_text, runs, samples
 from reports.causes.hypotheses.straight import straight, turns
 from reports.causes.inquiry import Inquiry
 from reports.logs.channel import Channel, Reading
-from reports.logs.units import UNITS
+from reports.logs.kinds import UNITS
 
 MOST = 4
 """Channels that are looked at twice."""

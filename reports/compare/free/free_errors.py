@@ -17,8 +17,7 @@ from reports.compare.beside import Beside
 from reports.compare.branch import free_departure
 from reports.compare.error_rows import Instants, instants_of, whole_row, whole_rows
 from reports.compare.errors import Error, Errors
-from reports.compare.free.drift import energy_rows, momentum_rows, window_s
-from reports.compare.free.free_facts import FreeFacts
+from reports.compare.free.free_facts import FreeFacts, energy_rows, momentum_rows, window_s
 from reports.compare.free.free_truth import FreeBeside
 from reports.compare.hardness import conditioning, uneven
 from reports.compare.tracks import Track, length

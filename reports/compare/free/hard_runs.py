@@ -1,4 +1,4 @@
-"""Hard free runs: a chain of windows held to its closed form (`analytic.free.window_chain`), and a
+"""Hard free runs: a chain of windows held to its closed form (`analytic.free.exact_motions`), and a
 mechanism that is thrown at its toggle."""
 
 from __future__ import annotations
@@ -9,8 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from analytic.free.toggle_barrier import ToggleBarrier
-from analytic.free.window_chain import ChainMotion
+from analytic.free.exact_motions import ChainMotion, ToggleBarrier
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion

@@ -24,8 +24,8 @@ from reports.lectures.drawing.sheets.centre_sheet import (
     centres_of,
     draw_centres,
 )
-from reports.lectures.drawing.sheets.driver_range import sense_of_law
 from reports.lectures.drawing.sheets.paper import Paper, sheet_note
+from reports.lectures.drawing.sheets.scheme import sense_of_law
 from reports.output.console import plain_table
 from reports.output.write import check_file
 from reports.requests.options import PaperSize, SceneName

@@ -15,7 +15,7 @@ from analytic.lectures.chains.chain import Chain, assortment_in_words, assortmen
 from analytic.lectures.chains.chain_synthesis import chain_names, chains, type_in_letters, types
 from models.errors import CrankcheckError
 from reports.lectures.drawing.positions import ENDINGS, save_sheet
-from reports.lectures.drawing.sheets.chain_sheet import DrawnChain, check_room, draw_chains
+from reports.lectures.drawing.sheets.field_sheets import DrawnChain, check_room, draw_chains
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.output.console import plain_table
 from reports.output.numbers import roman

@@ -11,8 +11,7 @@ from rich.console import Console
 
 from models.errors import harmless
 from models.files.reading import find_scene, load_scene
-from reports.lectures.drawing.sheets.canvas import Canvas
-from reports.lectures.drawing.sheets.paper import Paper, sheet_note
+from reports.lectures.drawing.sheets.paper import Canvas, Paper, sheet_note
 from reports.lectures.drawing.sheets.position_sheet import draw_positions, positions
 from reports.output.write import check_file, write
 from reports.requests.options import PaperSize, SceneName

@@ -4,15 +4,31 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
 
 from analytic.lectures.regulation.cycle_search import cycle_of
-from analytic.lectures.regulation.flywheel import WantedFlywheel, wanted_flywheel
+from analytic.lectures.regulation.flywheel import CoefficientError, WantedFlywheel, wanted_flywheel
 from analytic.lectures.regulation.steady_cycle import SteadyCycle, cycle_scene, with_flywheel
 from analytic.lectures.regulation.turning_machine import TurningMachine
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, harmless
+from models.files.assemble import scene_text
+from models.files.reading import find_scene, load_scene
 from models.scene import Scene
+from reports.lectures.machine.cycle_rows import (
+    cycle_document,
+    cycle_frame,
+    flywheel_document,
+    show_cycle,
+    show_flywheel,
+)
+from reports.output.frame_file import ENDINGS, write_frame
+from reports.output.write import check_file, check_folder, check_outputs, write
 from reports.requests.arguments import SceneLike, kind_of, scene_of, told_at_the_call
+from reports.requests.options import SceneName
 from reports.requests.shown import Shown
 
 if TYPE_CHECKING:
@@ -71,12 +87,12 @@ class MachineCycle(Shown):
 
     def frame(self) -> pd.DataFrame:
         """One row each half degree of the driver: speed, inertia, torques, work, energy."""
-        from reports.lectures.machine.cycle_frame import cycle_frame
+        from reports.lectures.machine.cycle_rows import cycle_frame
 
         return cycle_frame(self.details)
 
     def show(self, console: Console) -> None:
-        from reports.lectures.machine.cycle_frame import show_cycle
+        from reports.lectures.machine.cycle_rows import show_cycle
 
         show_cycle(console, self.details)
 
@@ -105,12 +121,12 @@ class MachineFlywheel(Shown):
 
     def frame(self) -> pd.DataFrame:
         """As that of the cycle, with the speed without the flywheel where there is one."""
-        from reports.lectures.machine.cycle_frame import cycle_frame
+        from reports.lectures.machine.cycle_rows import cycle_frame
 
         return cycle_frame(self.details.cycle, self.details.bare)
 
     def show(self, console: Console) -> None:
-        from reports.lectures.machine.cycle_frame import show_flywheel
+        from reports.lectures.machine.cycle_rows import show_flywheel
 
         show_flywheel(console, self.details)
 
@@ -152,3 +168,169 @@ def flywheel(scene: SceneLike, delta: float) -> MachineFlywheel:
     if isinstance(delta, bool) or not isinstance(delta, int | float):
         raise CrankcheckError(f"--delta: found {kind_of(delta)}; give a number, such as 0.02")
     return MachineFlywheel(wanted_flywheel(TurningMachine.of(scene_of(scene)), float(delta)))
+
+
+PAGE, NUMBERS = ".html", ".json"
+
+
+Output = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", help="Write .csv, .parquet, .xlsx or .json, or a page, .html."),
+]
+
+Figures = Annotated[
+    Path | None, typer.Option(metavar="DIR", help="Draw the cycle, as SVG and PDF.")
+]
+
+
+@dataclass(frozen=True)
+class CycleRequest:
+    """What `cycle` was asked for, as given."""
+
+    scene: SceneName
+    output: Output = None
+    figures: Figures = None
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Show or write a steady cycle. Raises CrankcheckError for what can not be asked."""
+        check_outputs_of(self.scene, self.output, self.figures)
+        cycle = cycle_of(TurningMachine.of(load_scene(self.scene)))
+        if self.figures is not None:
+            from reports.lectures.machine.regulation_figures import Regulated, written_figures
+
+            tell_of(console, written_figures(Regulated(cycle), self.figures))
+        if self.output is not None:
+            _write_cycle(self.output, cycle)
+            name = cycle.machine.scene.name
+            tell_of(console, f"{self.output}: the steady cycle of {name}")
+        show_cycle(console, cycle)
+        return 0
+
+
+def check_outputs_of(scene: str, output: Path | None, figures: Path | None) -> None:
+    """Refuse files that could not be written, before anything is worked out. Raises
+    CrankcheckError."""
+    if output is not None:
+        check_file(output, "-o", (*ENDINGS, NUMBERS, PAGE), inputs=[find_scene(scene)])
+    if figures is not None:
+        from reports.lectures.machine.regulation_figures import figure_files
+
+        check_folder(figures, "--figures", figure_files(), inputs=[find_scene(scene)])
+
+
+def tell_of(console: Console, told: str) -> None:
+    """Print what was written."""
+    console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
+
+
+def _write_cycle(path: Path, cycle: SteadyCycle) -> None:
+    """The cycle as a file of the kind that the ending says."""
+    ending, scene = path.suffix.lower(), cycle.machine.scene
+    if ending == PAGE:
+        from reports.lectures.machine.regulation_page import page_of_cycle
+
+        write(path, page_of_cycle(cycle))
+    elif ending == NUMBERS:
+        write(path, cycle_document(cycle))
+    else:
+        origin = {"scene": scene.name, "source": scene.source}
+        write_frame(path, cycle_frame(cycle), "cycle", origin)
+
+
+SCENE = ".toml"
+
+
+FlywheelOutput = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", help="Write .csv, .parquet, .xlsx or .json, or a page, .html."),
+]
+
+FlywheelFigures = Annotated[
+    Path | None, typer.Option(metavar="DIR", help="Draw the cycle, as SVG and PDF.")
+]
+
+
+@dataclass(frozen=True)
+class FlywheelRequest:
+    """What `flywheel` was asked for, as given. ``written`` is where the scene goes, ``free`` says
+    that it is let go in it."""
+
+    scene: SceneName
+    delta: Annotated[
+        float, typer.Option(help="Coefficient of fluctuation that is wanted, such as 0.02.")
+    ]
+    output: FlywheelOutput = None
+    figures: FlywheelFigures = None
+    written: Annotated[
+        Path | None,
+        typer.Option("--write", metavar="FILE.toml", help="Write the scene with the flywheel."),
+    ] = None
+    free: Annotated[
+        bool,
+        typer.Option(
+            "--free", help="With --write: let go in its cycle, the drive's torque as a load."
+        ),
+    ] = False
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Show or write a flywheel. Raises CrankcheckError for what can not be asked."""
+        _check(self)
+        machine = TurningMachine.of(load_scene(self.scene))
+        try:
+            found = wanted_flywheel(machine, self.delta)
+        except CoefficientError as error:
+            raise CrankcheckError(f"--{error}") from None  # of the option
+        if self.figures is not None:
+            from reports.lectures.machine.regulation_figures import Regulated, written_figures
+
+            tell_of(console, written_figures(Regulated(found.cycle, found), self.figures))
+        if self.output is not None:
+            _write_flywheel(self.output, found)
+            name = found.cycle.machine.scene.name
+            tell_of(console, f"{self.output}: the flywheel of {name}, and its cycle")
+        if self.written is not None:
+            write(self.written, _scene(found, free=self.free))
+            told = ", let go in its steady cycle" * self.free
+            tell_of(console, f"{self.written}: {found.cycle.machine.scene.name} with it{told}")
+        show_flywheel(console, found)
+        return 0
+
+
+def _check(request: FlywheelRequest) -> None:
+    """Refuse what can not be written, or goes with nothing."""
+    check_outputs_of(request.scene, request.output, request.figures)
+    if request.free and request.written is None:
+        raise CrankcheckError("--free: it says how the scene is written; give --write FILE.toml")
+    if request.written is not None:
+        if request.written.suffix.lower() != SCENE:
+            raise CrankcheckError(
+                f"--write {request.written}: found {request.written.suffix or 'no ending'}; use "
+                f"{SCENE}"
+            )
+        files = {"-o": request.output, "--write": request.written}
+        check_outputs(files, inputs=[find_scene(request.scene)])
+
+
+def _scene(found: WantedFlywheel, *, free: bool) -> str:
+    """The scene with the flywheel as the text of a file, the flywheel by itself in it."""
+    machine = found.cycle.machine
+    scene = cycle_scene(found.cycle, flywheel=False) if free else machine.scene
+    return scene_text(scene, {scene.driver.link: found.inertia_kg_m2})
+
+
+def _write_flywheel(path: Path, found: WantedFlywheel) -> None:
+    """The flywheel as a file of the kind that the ending says."""
+    ending, scene = path.suffix.lower(), found.cycle.machine.scene
+    if ending == PAGE:
+        from reports.lectures.machine.regulation_page import page_of_flywheel
+
+        write(path, page_of_flywheel(found))
+    elif ending == NUMBERS:
+        write(path, flywheel_document(found))
+    else:
+        origin = {
+            "scene": scene.name,
+            "source": scene.source,
+            "flywheel_kg_m2": repr(found.inertia_kg_m2),
+        }
+        write_frame(path, cycle_frame(found.cycle, found.bare), "cycle", origin)

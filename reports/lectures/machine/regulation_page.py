@@ -7,9 +7,9 @@ from collections.abc import Mapping
 
 from analytic.lectures.regulation.flywheel import WantedFlywheel
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
-from reports.figures.saving import saved
+from reports.figures.figure_set import saved
 from reports.lectures.machine import cycle_rows
-from reports.lectures.machine.figures.regulation import Regulated, drawn_figures
+from reports.lectures.machine.regulation_figures import Regulated, drawn_figures
 from reports.output.numbers import count
 from reports.output.provenance import crankcheck_version
 from reports.page.build import Head, assembled

@@ -31,7 +31,7 @@ from models.array import Array
 from models.errors import CrankcheckError, harmless, shown
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
-from reports.lectures.machine import vibration_files as files
+from reports.lectures.machine import vibration_tables as files
 from reports.lectures.machine.vibration_tables import show_map, show_speeds, show_vibration
 from reports.output.frame_file import csv
 from reports.output.write import check_folder, write
@@ -64,26 +64,26 @@ class Files(Generic[Found]):
 
 
 def _over_turn() -> Sequence[Callable[[SteadyVibration], Figure]]:
-    from reports.lectures.machine.figures import vibration
+    from reports.lectures.machine import vibration_figures
 
-    return vibration.draw_over_turn, vibration.draw_spectrum
+    return vibration_figures.draw_over_turn, vibration_figures.draw_spectrum
 
 
 def _over_speed() -> Sequence[Callable[[OverSpeeds], Figure]]:
-    from reports.lectures.machine.figures import vibration
+    from reports.lectures.machine import vibration_figures
 
-    return vibration.draw_over_speed, vibration.draw_waterfall
+    return vibration_figures.draw_over_speed, vibration_figures.draw_waterfall
 
 
 def _over_inertia() -> Sequence[Callable[[InertiaMap], Figure]]:
-    from reports.lectures.machine.figures import vibration
+    from reports.lectures.machine import vibration_figures
 
-    return (vibration.draw_over_inertia,)
+    return (vibration_figures.draw_over_inertia,)
 
 
 AT_A_SPEED = Files[SteadyVibration](
     {
-        "vibration.json": files.vibration_document,
+        "vibration_figures.json": files.vibration_document,
         "turn.csv": lambda found: csv(files.turn_frame(found)),
         "natural.csv": lambda found: csv(files.natural_frame(found)),
         "spectrum.csv": lambda found: csv(files.spectrum_frame(found)),
@@ -253,7 +253,7 @@ def _write(
     folder = request.output
     if folder is None:
         return
-    from reports.lectures.machine.figures.vibration import Drawing, write_figures
+    from reports.lectures.machine.vibration_figures import Drawing, write_figures
 
     for name, text in written.texts.items():
         write(folder / name, text(found))

@@ -14,13 +14,13 @@ const crankcheck = (() => {
 
   const viewed = (base64) => new DataView(Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)).buffer);
 
-  /** Numbers from the form of `reports.drawing.packed.singles`. */
+  /** Numbers from the form of `reports.drawing.moving.singles`. */
   function singles(packed) {
     const whole = viewed(packed.singles);
     return Float64Array.from({ length: packed.samples }, (_, i) => whole.getFloat32(4 * i, true));
   }
 
-  /** Rows of numbers from the form of `reports.drawing.packed.packed`; what is missing is NaN. */
+  /** Rows of numbers from the form of `reports.drawing.moving.packed`; what is missing is NaN. */
   function unpacked(packed) {
     const whole = viewed(packed.base64);
     return packed.scales.map((scale, row) => {

@@ -17,7 +17,7 @@ from reports.results.cost import MEANS, Costs
 from reports.results.fits.line import LineFit
 from reports.results.lines import Line, lines
 from reports.results.overview import Report
-from reports.way.result_kind import TARGETS
+from reports.way.way import TARGETS
 
 SHARES = {
     "L": "of longest link",

@@ -12,9 +12,15 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.free.drift import window_means
-from reports.drawing.moving import displacements, drawing, drawn_links, moving_points
-from reports.drawing.packed import packed, size_of
+from reports.compare.free.free_facts import window_means
+from reports.drawing.moving import (
+    displacements,
+    drawing,
+    drawn_links,
+    moving_points,
+    packed,
+    size_of,
+)
 from reports.drawing.shape import true_motion
 from reports.output.numbers import duration
 from reports.page.sections.section import chosen

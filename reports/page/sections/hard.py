@@ -10,12 +10,12 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from reports.drawing.packed import embedded
+from reports.drawing.moving import embedded
 from reports.output.numbers import count, error_text
 from reports.page.sections.section import PageReport, Section, fitting
-from reports.stability.critical import command
 from reports.stability.grades import MEANINGS
 from reports.stability.matrix import OUTCOMES, CaseFacts, Graded, Matrix, Outcome, Picture
+from reports.stability.running import command
 from reports.stability.table import LETTERS
 
 ROOM = 800_000

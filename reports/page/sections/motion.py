@@ -21,9 +21,10 @@ from reports.drawing.moving import (
     drawn_links,
     instants,
     moving_points,
+    packed,
+    size_of,
     told_places,
 )
-from reports.drawing.packed import packed, size_of
 from reports.output.numbers import error_text
 from reports.page.sections.section import BUDGET, Section, chosen, steps_held
 from reports.results.error_parts import CurveBody, Parts, Split, split, worst_body

@@ -10,9 +10,8 @@ from collections.abc import Mapping, Sequence
 
 from reports.output.provenance import crankcheck_version
 from reports.page.sections.section import Section
-from reports.results.lines import Line, left_out
+from reports.results.lines import Line, Look, left_out, usual, value_text
 from reports.results.overview import Report
-from reports.results.variants import Look, usual, value_text
 
 
 def provenance(report: Report) -> Section:

@@ -9,7 +9,7 @@ import pandas as pd
 
 from reports.page.sections.section import Section
 from reports.results.overview import Report
-from reports.way.clock import SECONDS, clock_of
+from reports.way.length import SECONDS, clock_of
 
 
 @dataclass(frozen=True)

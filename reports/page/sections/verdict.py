@@ -10,10 +10,9 @@ import pandas as pd
 
 from reports.output.numbers import count, duration, error_text, listed
 from reports.page.sections.section import Section
-from reports.results.lines import Line, named
+from reports.results.lines import Line, Look, named
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation
-from reports.results.variants import Look
 
 ASKED = 1e-4
 """The target that the sentence of an engine speaks of."""

@@ -16,10 +16,9 @@ from models.files.inputs import UnreadableError, regular_bytes
 from models.files.reading import scene_texts
 from reports.plan.grid import digest
 from reports.results.changes.runs import CellName, CellRow, StoredCell, StoredRun, stored_cell, text
-from reports.store.examine import STOPPED
 from reports.store.folder import has_parts
 from reports.store.manifest import MANIFEST
-from reports.store.reader import read_store
+from reports.store.reader import STOPPED, read_store
 
 CELLS, FACTS = "verify.csv", "verify.json"
 MOST_BYTES = 100_000_000

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from reports.results.fits.curves import Curve, curvature, straight
-from reports.results.fits.floor_fit import ORDERS, added, opposed
+from reports.results.fits.floor_fit import ORDERS, Curve, added, curvature, opposed, straight
 
 LEAST_SCATTER = 0.02
 """The largest error of a run is not known better than this: samples miss its peak."""

@@ -4,7 +4,7 @@ A fit stands on points that ended well, at their own and at every finer step, an
 rounding; from the finest on, on as many coarser ones as one curve goes through. A floor is said to
 be seen only where it is most of the finest error, the error has all but stopped to fall, and no
 power of dt alone goes through the same points. Where the two parts work against each other
-(`reports.results.fits.curves`), five points can tell.
+(`reports.results.fits.floor_fit`), five points can tell.
 """
 
 from __future__ import annotations
@@ -19,8 +19,7 @@ import numpy as np
 from models.array import Array
 from reports.judge.three_steps import AT_ROUNDING
 from reports.output.numbers import count, short
-from reports.results.fits.curves import Curve, reach, straight
-from reports.results.fits.floor_fit import ALIGNMENTS, ORDERS, within
+from reports.results.fits.floor_fit import ALIGNMENTS, ORDERS, Curve, reach, straight, within
 from reports.results.fits.forms import (
     FLAT,
     FLOOR,

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from analytic.free.window_chain import ChainMotion
+from analytic.free.exact_motions import ChainMotion
 from models.scene import Scene
 from models.scene.hard import (
     SOURCE,

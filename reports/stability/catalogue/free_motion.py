@@ -10,8 +10,8 @@ from functools import lru_cache, partial
 import numpy as np
 
 from analytic.forces.force_elements import spring_lengths
+from analytic.free.exact_motions import ToggleBarrier
 from analytic.free.machine import Machine
-from analytic.free.toggle_barrier import ToggleBarrier
 from analytic.mechanism.fourbar import FourBar
 from models.files.reading import load_scene
 from models.scene import Scene

@@ -24,12 +24,10 @@ from reports.plan.singular import (
     refuse_singular,
 )
 from reports.plan.steps import TURNS, counted
-from reports.quantities import MOVES, named
-from reports.quantities.limits import DEFAULTS
+from reports.quantities import DEFAULTS, MOVES, named
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
-from reports.way.result_kind import ResultKind
-from reports.way.way import StudyLengths, Way
+from reports.way.way import ResultKind, StudyLengths, Way
 from sim.engine import Drive
 
 

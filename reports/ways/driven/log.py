@@ -18,9 +18,8 @@ from reports.logs.channel import Channel, OwnLog
 from reports.logs.log_beside import AtCrank, LogBeside
 from reports.output.numbers import error_text, listed
 from reports.own_log.drives import DriveFit, truth_of_log
-from reports.own_log.log_kind import HeldLog, LogRequest
-from reports.own_log.log_limits import limits_by_column
-from reports.own_log.rows import column_text
+from reports.own_log.judged import column_text
+from reports.own_log.log_limits import HeldLog, LogRequest, limits_by_column
 from reports.quantities import named
 from sim.engine import Run
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from reports.compare.errors import largest
 from reports.judge.cell import Checked
 from reports.quantities import MOVES, QUANTITIES
-from reports.verify.cell_table import STEPS, UNITS, CellTable, span
+from reports.verify.table import STEPS, UNITS, CellTable, span
 
 ANGLE, GAP = QUANTITIES["angle"].head, QUANTITIES["gap"].head
 NUMBERS = {

@@ -17,10 +17,9 @@ from reports.plan.elastic import (
     logged_every,
     refuse_unelastic,
 )
-from reports.quantities.limits import ELASTIC
+from reports.quantities import ELASTIC
 from reports.way.length import SEGMENTS, GivenAs, Length, Planned
-from reports.way.result_kind import ResultKind
-from reports.way.way import StudyLengths, StudyLinks
+from reports.way.way import ResultKind, StudyLengths, StudyLinks
 from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 

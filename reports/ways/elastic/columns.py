@@ -3,7 +3,7 @@ error, as shares of the largest."""
 
 from __future__ import annotations
 
-from reports.compare.elastic.elastic_facts import ElasticFacts
+from reports.compare.elastic.elastic_errors import ElasticFacts
 from reports.judge.cell import Checked
 
 

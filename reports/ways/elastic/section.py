@@ -8,13 +8,12 @@ import numpy as np
 
 from models.array import Array
 from reports.compare.last_turn import Trace
-from reports.drawing.moving import first_turn
-from reports.drawing.packed import packed
+from reports.drawing.moving import first_turn, packed
 from reports.output.numbers import duration
 from reports.page.sections.section import Section, WaySection
 from reports.results.lines import Line
 from reports.results.overview import Report
-from reports.way.clock import SECONDS, TURNS, Clock, clock_of
+from reports.way.length import SECONDS, TURNS, Clock, clock_of
 from reports.ways.free.section import cost_row, fits_of
 
 KIND = "elastic"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from reports.compare.elastic.elastic_facts import BENT, ElasticFacts
+from reports.compare.elastic.elastic_errors import BENT, ElasticFacts
 from reports.judge.cell import Checked
 from reports.judge.rules.reference import TruthEnds
 from reports.quantities import QUANTITIES
-from reports.verify.cell_table import LINK_UNITS, CellTable
+from reports.verify.table import LINK_UNITS, CellTable
 from reports.ways.driven.table import STEPPED
 
 ELASTIC_NUMBERS = {

@@ -19,12 +19,10 @@ from reports.compare.free.free_facts import FreeFacts
 from reports.compare.free.free_truth import kept_motion, released_state
 from reports.plan.free import refuse_unreleased, under_control
 from reports.plan.steps import counted_free
-from reports.quantities import named
-from reports.quantities.limits import FREE
+from reports.quantities import FREE, named
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import LEAST_STEPS, GivenAs, Length, Planned
-from reports.way.result_kind import ResultKind
-from reports.way.way import StudyLengths
+from reports.way.way import ResultKind, StudyLengths
 from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 

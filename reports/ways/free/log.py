@@ -22,8 +22,7 @@ from reports.logs.kinds import KINDS
 from reports.logs.log_beside import LogBeside
 from reports.output.numbers import error_text, listed, short
 from reports.own_log.drives import DriveFit
-from reports.own_log.log_kind import HeldLog, LogRequest
-from reports.own_log.log_limits import EVERY
+from reports.own_log.log_limits import EVERY, HeldLog, LogRequest
 from reports.plan.free import refuse_unreleased
 from reports.quantities.free import GEOMETRY
 from sim.engine import Run

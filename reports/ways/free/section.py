@@ -10,9 +10,8 @@ from reports.page.sections.free_courses import FreeCourses, sizes_of
 from reports.page.sections.section import BUDGET, Section, WaySection, steps_held
 from reports.results.lines import Line, lines
 from reports.results.overview import Report
-from reports.results.recommend import Recommendation
-from reports.results.table import short_target
-from reports.way.clock import clock_of
+from reports.results.recommend import Recommendation, short_target
+from reports.way.length import clock_of
 
 KIND = "let go"
 SHOWN = (

@@ -11,7 +11,7 @@ from models.errors import CrankcheckError
 from models.motion import Motion, State
 from reports.compare.beside import first_samples
 from reports.compare.branch import free_departure
-from reports.compare.free.drift import window_means
+from reports.compare.free.free_facts import window_means
 from reports.compare.free.free_truth import FreeBeside, FreeTruth, free_truth
 from reports.compare.tracks import Track, length, tracks
 from reports.quantities.free import GEOMETRY, PHASE

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from reports.compare.free.free_facts import FreeFacts
 from reports.judge.cell import Checked
 from reports.quantities import QUANTITIES, named
-from reports.verify.cell_table import MORE_STEPS, MORE_UNITS, CellTable, span
+from reports.verify.table import MORE_STEPS, MORE_UNITS, CellTable, span
 from reports.ways.driven.table import words
 from reports.ways.free.columns import precision
 

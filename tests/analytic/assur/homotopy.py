@@ -18,7 +18,7 @@ from collections.abc import Sequence
 import numpy as np
 from pypolsys import polsys, utils
 
-from analytic.assur.leg_rows import AngleRow, CircleRow, LegRow, LegRows, LineRow
+from analytic.assur.eliminant import AngleRow, CircleRow, LegRow, LegRows, LineRow
 from models.array import Array
 
 Powers = tuple[int, int, int, int]

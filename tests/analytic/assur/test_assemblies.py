@@ -13,8 +13,15 @@ import numpy as np
 import pytest
 
 from analytic.assur.assemblies import Assembly, assemblies
-from analytic.assur.eliminant import ContinuumError
-from analytic.assur.leg_rows import AngleRow, CircleRow, LegRow, LegRows, LineRow, ThroughRow
+from analytic.assur.eliminant import (
+    AngleRow,
+    CircleRow,
+    ContinuumError,
+    LegRow,
+    LegRows,
+    LineRow,
+    ThroughRow,
+)
 from models.errors import CrankcheckError
 from models.scene import Point
 from tests.analytic.assur.homotopy import real, solutions

@@ -12,7 +12,7 @@ from hypothesis import given
 from analytic import kinematics
 from analytic.dyads.parts import MovingLine
 from analytic.dyads.plane import EPS
-from analytic.free.window_chain import ChainMotion
+from analytic.free.exact_motions import ChainMotion
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError

@@ -9,8 +9,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from analytic.free.exact_motions import ChainMotion
 from analytic.free.release import release
-from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve
 from analytic.multibody.assembly import JointEquations
 from analytic.multibody.bodies import Configuration, RigidBodies

@@ -26,8 +26,8 @@ from analytic.lectures.synthesis.path.candidate import Candidate, drafted, in_or
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, assembled, cognates
 from analytic.lectures.synthesis.path.fit import _Problem, placed
 from analytic.lectures.synthesis.path.pieces import open_starts, pieces
+from analytic.lectures.synthesis.path.search import _costs, timed_starts
 from analytic.lectures.synthesis.path.task import PathTask, UnitPath
-from analytic.lectures.synthesis.path.timed_starts import _costs, timed_starts
 from analytic.lectures.synthesis.path.unit_four_bar import FULL, Complexes, Family, lengths
 from models.array import Array
 from models.errors import CrankcheckError

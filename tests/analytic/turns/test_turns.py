@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from analytic import prepared
+from analytic.change_points.turns import CellSolver
 from analytic.kinematics import reach, solve, solve_driven
-from analytic.turns.count import CellSolver
 from models.array import Array
 from models.files.reading import load_scene, parse_scene, shipped
 from models.motion import Motion

@@ -23,9 +23,8 @@ from reports.causes.cause import Case, Cause
 from reports.causes.find import causes
 from reports.compare.beside import Truth
 from reports.logs.channel import Channel, OwnLog, Reading
-from reports.logs.kinds import KINDS
+from reports.logs.kinds import KINDS, UNITS
 from reports.logs.log_beside import AtCrank, beside_truth
-from reports.logs.units import UNITS
 from tests.reports.causes.infected_sheets import diagnosed
 from tests.worlds.sheets import SCENE, angle, at, later, of, omega, only, sheet
 from tests.worlds.tiers import slowly

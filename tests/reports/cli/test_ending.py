@@ -109,7 +109,7 @@ def test_a_fault_of_crankcheck_asks_to_be_reported(
     def fault(*_: object) -> object:
         raise ZeroDivisionError(text)
 
-    monkeypatch.setattr("reports.requests.scenes.ScenesRequest.run", fault)
+    monkeypatch.setattr("reports.requests.export.ScenesRequest.run", fault)
     monkeypatch.setenv("CRANKCHECK_TRACEBACK", "")
     result = crank("scenes")
     assert result.exit_code == 70

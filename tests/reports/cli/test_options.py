@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from reports.lectures.machine.cycle import CycleRequest
-from reports.lectures.machine.flywheel import FlywheelRequest
+from reports.lectures.machine.regulation import CycleRequest, FlywheelRequest
 from reports.requests.advise import AdviseRequest
 from reports.requests.diff import DiffRequest
 from reports.requests.history import HistoryRequest

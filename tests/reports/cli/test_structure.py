@@ -14,7 +14,7 @@ from analytic.structure.mobility import analyse
 from models.files.reading import load_scene
 from models.lectures.scheme_files import SCHEMES, shipped_schemes
 from models.lectures.touching import CONTACTS, shipped_contacts
-from reports.lectures.drawing.assemblies import all_assemblies
+from reports.lectures.drawing.structure import all_assemblies
 from tests.worlds.command_line import crank, flat, refused, told
 from tests.worlds.without_pdf import without_pdf
 

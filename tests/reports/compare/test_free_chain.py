@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analytic.free.window_chain import ChainMotion
+from analytic.free.exact_motions import ChainMotion
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError

@@ -13,10 +13,9 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.diff.junit import suite
-from reports.diff.terminal import markdown, show
+from reports.diff.document import markdown, show, suite
 from reports.diff.words import cost_text, left_out, lines
-from reports.output.junit import junit
+from reports.output.for_ci import junit
 from reports.requests.diff import DiffRequest
 from reports.results.changes.changes import Diff, compare
 from reports.results.changes.runs import CellCost, StoredCell, StoredRun

@@ -11,7 +11,7 @@ import re
 import numpy as np
 import pytest
 
-from reports.drawing.packed import LEVELS, embedded, packed, policy, singles, size_of
+from reports.drawing.moving import LEVELS, embedded, packed, policy, singles, size_of
 from reports.output import numbers
 from reports.output.numbers import DIGITS, NONE, count, finite, listed
 from tests.reports.drawing.test_moving import unpacked

@@ -20,7 +20,7 @@ from reports.requests.compare import compare
 from reports.requests.judge import judge
 from reports.requests.run import run as simulated
 from reports.selftest.segment_changes import in_chain, springs, stiffer
-from reports.verify.cell_table import footer
+from reports.verify.table import footer
 from reports.way.way import way_of
 from tests.worlds.facts import with_facts
 from tests.worlds.tiers import slowly

@@ -17,14 +17,13 @@ from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 from models.files.reading import find_scene, load_scene, read_text
-from reports.figures.all_figures import FIGURES
+from reports.figures.drawing import COLOURS, marks
 from reports.figures.error_parts import LOOKS
-from reports.figures.marks import COLOURS, marks
 from reports.figures.mechanism import draw
 from reports.figures.style import cut, styled, width_in
-from reports.results.lines import lines
+from reports.requests.figures import FIGURES
+from reports.results.lines import label, lines
 from reports.results.overview import Report
-from reports.results.variants import label
 from reports.store.manifest import Manifest
 from reports.store.reader import read_store
 from tests.reports.results.made import cell, stored

@@ -30,14 +30,14 @@ from reports.figures.elastic_figures import ELASTIC_FIGURES
 from reports.figures.force_figures import FORCE_FIGURES, mean_torque
 from reports.figures.force_turn import force_turn
 from reports.lectures.drawing.workbook.family import FamilyCurves, family_curves
-from reports.lectures.drawing.workbook.family_report import (
+from reports.lectures.drawing.workbook.live_workbook import formulas_of
+from reports.lectures.drawing.workbook.solve_family import (
     draw_family,
     family_drawing,
     family_page_of,
 )
-from reports.lectures.drawing.workbook.live_workbook import formulas_of
-from reports.lectures.machine.figures import vibration as figures
-from reports.lectures.machine.figures.regulation import REGULATION_FIGURES, Regulated
+from reports.lectures.machine import vibration_figures as figures
+from reports.lectures.machine.regulation_figures import REGULATION_FIGURES, Regulated
 from tests.reports.figures.test_files import texts
 from tests.reports.figures.test_looks import has_room
 from tests.worlds.tiers import few, slowly

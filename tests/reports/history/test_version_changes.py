@@ -14,8 +14,8 @@ from rich.console import Console
 from models.errors import CrankcheckError
 from reports.history.environments import EngineVersion
 from reports.history.table import page, ranking, show, table_text
+from reports.history.verification import VersionResult, errors_of, read_version
 from reports.history.version_changes import FollowedChange, headlines, steps
-from reports.history.version_result import VersionResult, errors_of, read_version
 from reports.results.changes.changes import compare
 from reports.results.changes.runs import CellName, StoredCell, StoredRun
 

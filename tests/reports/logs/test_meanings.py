@@ -16,7 +16,7 @@ from models.errors import CrankcheckError
 from models.files.reading import load_scene
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.describe.frame import motion_frame
+from reports.describe.motion_tables import motion_frame
 from reports.logs.channel import OwnLog
 from reports.logs.columns import columns_of
 from reports.logs.kinds import LENGTH, Meaning

@@ -17,12 +17,12 @@ from crankcheck.testing import assert_within
 from models.array import Array
 from models.files.reading import load_scene
 from models.scene import Scene
-from reports.describe.frame import motion_frame
+from reports.describe.motion_tables import motion_frame
 from reports.describe.with_forces import with_forces
 from reports.judge.rules import RULES
 from reports.own_log import drives
 from reports.own_log.drives import moved
-from reports.own_log.rows import log_rows
+from reports.own_log.judged import log_rows
 from tests.reports.own_log.conftest import Judge
 from tests.worlds.tiers import few, slowly
 

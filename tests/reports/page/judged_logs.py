@@ -16,8 +16,7 @@ from reports.logs.columns import columns_of
 from reports.logs.map_file import Map
 from reports.logs.meanings import understood
 from reports.own_log.judged import JudgedLog, judge_log
-from reports.own_log.log_kind import LogRequest
-from reports.own_log.log_limits import EVERY
+from reports.own_log.log_limits import EVERY, LogRequest
 
 SCENE = load_scene("fourbar-lecture-1")
 FACTS = {"crankcheck": "0.0.0", "made": "2026-01-02T03:04:05+00:00"}

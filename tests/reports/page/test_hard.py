@@ -11,16 +11,16 @@ from typing import Any
 
 import pytest
 
-from reports.drawing.packed import embedded
+from reports.drawing.moving import embedded
 from reports.output.numbers import DIGITS, finite
 from reports.page import build
 from reports.page.build import page, stability_page
 from reports.page.sections import SECTIONS
 from reports.page.sections.hard import SHADES, SIGNS, hard, heat, same, shade
 from reports.page.sections.section import fitting
-from reports.stability.critical import command
 from reports.stability.grades import MEANINGS
 from reports.stability.matrix import FILE, OUTCOMES, Matrix, read_matrix, to_json
+from reports.stability.running import command
 from reports.store.reader import Stored
 from tests.reports.page.hostile import EVIL, Outline, embedded_in, shown_and_not_read, stands_alone
 from tests.reports.page.test_page import MEGABYTES_8

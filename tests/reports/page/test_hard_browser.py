@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import Locator, Page
 
 from models.array import Array
-from reports.drawing.packed import packed
+from reports.drawing.moving import packed
 from reports.page.build import stability_page
 from reports.stability.matrix import Matrix
 from tests.reports.page.conftest import Write

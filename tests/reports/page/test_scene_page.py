@@ -15,11 +15,15 @@ from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.free.release import release
 from analytic.lectures.synthesis.design import Proposal
 from models.files.reading import load_scene
-from reports.lectures.design.constructions.construction_page import construction_page
+from reports.describe.elastic_course import closely_sampled, drawn_course
+from reports.figures.elastic_figures import ELASTIC_FIGURES
+from reports.figures.force_figures import FORCE_FIGURES
+from reports.figures.force_turn import force_turn
+from reports.figures.free_figures import FREE_FIGURES, free_course
+from reports.lectures.design.construction_page import construction_page
 from reports.lectures.drawing.sheets.polygons.polygon_instant import placed_at_time
 from reports.lectures.drawing.sheets.polygons.polygon_page import polygon_page
-from reports.page.scene_page import factors
-from reports.requests.scene_report import elastic_page_of, free_page_of, page_of
+from reports.page.scene_page import elastic_page, factors, free_page, scene_page
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.reports.page.conftest import Write
 from tests.reports.page.tab import Tab
@@ -46,7 +50,8 @@ def elastic(written: Write) -> Path:
     scene = load_scene("fourbar-elastic")
     turn_s = scene.driver.law.period_s
     motion = DrivenElasticMotion(scene, turn_s, Modes(3), "periodic", stiffened=True)
-    return written(elastic_page_of(motion))
+    course = drawn_course(motion, closely_sampled(scene, motion.until_s))
+    return written(elastic_page(motion, course, ELASTIC_FIGURES.pictures(course)))
 
 
 def moved(wide: Tab, places: tuple[int, int], shapes: str, told: str) -> tuple[list[str], list]:
@@ -63,11 +68,13 @@ def moved(wide: Tab, places: tuple[int, int], shapes: str, told: str) -> tuple[l
 
 
 def test_a_page_moves_with_its_forces_or_tells_the_time(wide: Tab, written: Write) -> None:
-    wide.open(written(page_of(load_scene("shaper"), with_forces=True)))
+    scene = load_scene("shaper")
+    wide.open(written(scene_page(scene, FORCE_FIGURES.pictures(force_turn(scene)))))
     words, drawn = moved(wide, (0, 61), "#motion-picture .force path", "#motion-torque")
     assert all(len(arrows) >= 6 for arrows in drawn)
     assert "Driving torque here: 1.93 N m." in words[0]
-    wide.open(written(free_page_of(release(load_scene("fourbar-swing"), 0.5))))
+    free = release(load_scene("fourbar-swing"), 0.5)
+    wide.open(written(free_page(free, FREE_FIGURES.pictures(free_course(free)))))
     words, _ = moved(wide, (0, 60), "#motion-picture .reference path", "#motion-angle")
     assert words == ["0.00 s", "0.250 s"]
 
@@ -77,11 +84,11 @@ def test_a_page_has_the_figures_that_there_are(propped: bool, pictures: int) -> 
     scene = replace(parallelogram(1), gravity_m_s2=(0.0, -9.81))
     if propped:
         scene = with_strut(scene, "B0", "B1")
-    text = page_of(scene, with_forces=True)
+    text = scene_page(scene, FORCE_FIGURES.pictures(force_turn(scene)))
     assert text.count("data:image/svg+xml;base64,") == pictures
     assert ("Reactions: none" in text) == propped
     assert "nan" not in text.partition("<main")[2].partition("<script")[0].lower().split()
-    plain = page_of(load_scene("tangent"), with_forces=False)
+    plain = scene_page(load_scene("tangent"))
     assert "force-figures" not in plain.partition("<main")[2]
     assert 'id="forces"' not in plain
     assert "<h2" in plain

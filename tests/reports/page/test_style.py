@@ -11,7 +11,7 @@ import pytest
 from models.array import Array
 from reports.page.build import HERE
 from reports.page.sections.hard import SHADES
-from reports.results.variants import FAMILIES, FAMILY
+from reports.results.lines import FAMILIES, FAMILY
 from reports.stability.matrix import OUTCOMES
 
 CSS = (HERE / "assets" / "page.css").read_text(encoding="utf-8")

@@ -16,8 +16,7 @@ from reports.judge.cell import Cell
 from reports.results.candidates import candidates, front, front_over_all, performance_profile
 from reports.results.cost import costs_of, equal, noise, reached, time_to
 from reports.results.lines import Line, lines
-from reports.results.recommend import recommendations
-from reports.results.table import noise_line, recommendation_table
+from reports.results.recommend import noise_line, recommendation_table, recommendations
 from reports.sweep.measured import timed
 from tests.reports.results.made import Row, cell, stored, table, untimed
 

@@ -16,7 +16,7 @@ from reports.plan.study import Variant, load_study
 from reports.requests.sweep import SweepRequest
 from reports.results.recommend import Recommendation, recommendations
 from reports.store.reader import Stored, read_store
-from reports.way.result_kind import TARGETS
+from reports.way.way import TARGETS
 from sim.engine import Drive
 from sim.engine.settings import profile_of, resolved
 from sim.mujoco.settings import writing

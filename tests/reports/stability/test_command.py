@@ -15,9 +15,9 @@ import pytest
 from typer.testing import Result
 
 from models.errors import CrankcheckError
-from reports.stability.critical import critical
 from reports.stability.grading import CATALOGUE, graded
 from reports.stability.matrix import FILE, Matrix, label, read_matrix, to_json
+from reports.stability.running import critical
 from reports.workers.isolated import Lost
 from tests.worlds.command_line import crank, crank_alone, flat, refused
 from tests.worlds.in_process import Here, in_this_process

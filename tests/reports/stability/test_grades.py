@@ -13,10 +13,10 @@ import pytest
 from models.files.reading import load_scene
 from reports.compare.errors import Departure
 from reports.stability.case import Case, Trial
-from reports.stability.critical import critical, line
 from reports.stability.error_series import ErrorSeries
 from reports.stability.grades import MEANINGS, drift, outcome
 from reports.stability.matrix import OUTCOMES, Critical, Graded, Outcome, label
+from reports.stability.running import critical, line
 
 WITHIN = 1e-2
 TURNS, SAMPLES = 8, 60

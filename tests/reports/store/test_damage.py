@@ -23,10 +23,9 @@ from models.files.inputs import UnreadableError
 from reports.requests.diff import DiffRequest
 from reports.requests.report import ReportRequest
 from reports.requests.verify import VerifyRequest
-from reports.store.examine import UNASKED, examine
 from reports.store.folder import open_part, write_part
 from reports.store.manifest import MANIFEST, notice
-from reports.store.reader import Stored, read_store
+from reports.store.reader import UNASKED, Stored, examine, read_store
 from tests.reports.store.damages import CASES, CUT, QUICK, cases, cut, first
 from tests.worlds.tiers import at_length, slowly
 

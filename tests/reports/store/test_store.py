@@ -24,11 +24,9 @@ from reports.requests.report import ReportRequest
 from reports.store import folder as lock
 from reports.store import folder as part
 from reports.store import writer as mending
-from reports.store.examine import examine
 from reports.store.folder import Part, open_part, write_part
-from reports.store.manifest import BUSY, Manifest, read_manifest
-from reports.store.reader import read_store, stored_costs, stored_keys
-from reports.store.schema import NESTED
+from reports.store.manifest import BUSY, NESTED, Manifest, read_manifest
+from reports.store.reader import examine, read_store, stored_costs, stored_keys
 from reports.store.writer import Writer
 from reports.sweep.measured import MeasuredCell, measured
 from tests.reports.store.damages import LATER, cut, first, gone

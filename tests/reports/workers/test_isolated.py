@@ -17,9 +17,9 @@ import psutil
 import pytest
 
 from models.errors import CrankcheckError, SceneError
+from reports.workers import CHOICES, THREADS, one_thread
 from reports.workers import isolated as isolation
 from reports.workers.isolated import FEW, Isolated, Limits, Lost, as_they_end, run_all
-from reports.workers.one_thread import CHOICES, THREADS, one_thread
 from reports.workers.signals import Stopped, run_child
 from tests.worlds import jobs
 from tests.worlds.programs import ROOT, until
@@ -195,7 +195,7 @@ def test_a_worker_has_one_thread_unless_the_user_says_more(monkeypatch: pytest.M
 
 def test_the_command_asks_before_numpy_is_imported() -> None:
     program = (
-        "import os, sys, crankcheck.__main__ as command, reports.workers.one_thread as own\n"
+        "import os, sys, crankcheck.__main__ as command, reports.workers as own\n"
         "def seen(variables):\n"
         "    print('numpy' in sys.modules, variables is os.environ)\n"
         "own.one_thread = seen\n"

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from analytic.forces import kinetostatics
-from analytic.free.window_chain import ChainMotion
+from analytic.free.exact_motions import ChainMotion
 from models.errors import EngineError
 from models.files.reading import load_scene, shipped
 from models.mjcf import forces, tree

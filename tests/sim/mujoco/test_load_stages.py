@@ -10,8 +10,8 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 import pytest
 
+from analytic.free.exact_motions import ChainMotion
 from analytic.free.release import release
-from analytic.free.window_chain import ChainMotion
 from models.array import Array
 from models.files.reading import load_scene, parse_scene
 from models.scene.characteristics import Characteristic, Polynomial, Pulse, Sine, Staircase

@@ -13,7 +13,7 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.way.length import Planned
-from reports.way.result_kind import ResultKind
+from reports.way.way import ResultKind
 from reports.ways.free import FreeWay
 from sim.engine import Drive
 from tests.worlds.bead.limits import LIMITS

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from reports.figures.drawing import Drawing
-from reports.figures.marks import marks
+from reports.figures.drawing import Drawing, marks
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import PAGE_IN
 from reports.results.lines import named

@@ -11,7 +11,7 @@ from reports.compare.beside import Truth
 from reports.logs.channel import Channel, OwnLog
 from reports.logs.log_beside import LogBeside
 from reports.own_log.drives import DriveFit
-from reports.own_log.log_kind import HeldLog, LogRequest
+from reports.own_log.log_limits import HeldLog, LogRequest
 from sim.engine import Run
 from tests.worlds.bead.truth import BeadBeside, BeadTruth
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from reports.judge.cell import Checked
 from reports.quantities import QUANTITIES
-from reports.verify.cell_table import CellTable
+from reports.verify.table import CellTable
 from tests.worlds.bead.columns import columns
 
 NUMBERS = {QUANTITIES["phase"].head: ["phase"], "place\n/ L": ["angle", "position"]}

@@ -27,8 +27,12 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import GROUND
 from reports.figures.style import INK, SMALL, cut
-from reports.lectures.drawing.sheets.canvas import (
+from reports.lectures.drawing.sheets.letters import Letter, together, write_letters
+from reports.lectures.drawing.sheets.paper import (
+    MM_PER_IN,
+    Box,
     Canvas,
+    Paper,
     arc_places,
     draw_border,
     inner_box,
@@ -37,10 +41,7 @@ from reports.lectures.drawing.sheets.canvas import (
     text,
     write_head,
 )
-from reports.lectures.drawing.sheets.driver_range import assembled, range_about
-from reports.lectures.drawing.sheets.letters import Letter, together, write_letters
-from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper
-from reports.lectures.drawing.sheets.scheme import draw_scheme, extent_of
+from reports.lectures.drawing.sheets.scheme import assembled, draw_scheme, extent_of, range_about
 
 POLYGON_MM = 42.0
 """Height of the polygon of centres, which is at the top."""

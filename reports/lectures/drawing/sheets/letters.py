@@ -21,8 +21,7 @@ from matplotlib.textpath import TextPath
 
 from models.array import Array
 from reports.figures.style import FONT, INK, POINTS, QUIET, styled
-from reports.lectures.drawing.sheets.canvas import Canvas, line, text
-from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box
+from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Canvas, line, text
 
 PIXEL_MM = 0.2
 TINT, FAINT = 0.08, 0.36

@@ -21,15 +21,22 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.figures.style import INK, QUIET
-from reports.lectures.drawing.sheets.canvas import Canvas, draw_border, inner_box, write_head
-from reports.lectures.drawing.sheets.driver_range import range_of_law, sense_of_law
 from reports.lectures.drawing.sheets.letters import NUMBER, Letter, write_letters
-from reports.lectures.drawing.sheets.paper import Box, Paper
+from reports.lectures.drawing.sheets.paper import (
+    Box,
+    Canvas,
+    Paper,
+    draw_border,
+    inner_box,
+    write_head,
+)
 from reports.lectures.drawing.sheets.scheme import (
     draw_outline,
     draw_scheme,
     extent_of,
     point_letters,
+    range_of_law,
+    sense_of_law,
     symbol_radius,
 )
 

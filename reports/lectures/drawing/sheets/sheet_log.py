@@ -15,7 +15,7 @@ from reports.logs.channel import OwnLog, Reading
 from reports.logs.columns import read_columns
 from reports.logs.map_file import Map
 from reports.logs.meanings import understood, wanted
-from reports.own_log.log_kind import LogRequest, log_kind
+from reports.own_log.log_limits import LogRequest, log_kind
 
 LOGGED = "#8e24aa"
 """The colour of all that a log says."""

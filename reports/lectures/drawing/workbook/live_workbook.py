@@ -5,9 +5,21 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from openpyxl import Workbook  # type: ignore[import-untyped]  # ships no stubs
+from openpyxl import Workbook  # type: ignore[import-untyped]  # ships no stubs  # type: ignore[import-untyped]  # ships no stubs  # type: ignore[import-untyped]  # ships no stubs
+from openpyxl.chart import (  # type: ignore[import-untyped]  # as above
+    Reference,
+    ScatterChart,
+    Series,
+)
+from openpyxl.chart.axis import ChartLines  # type: ignore[import-untyped]  # as above
+from openpyxl.chart.shapes import GraphicalProperties  # type: ignore[import-untyped]  # as above
+from openpyxl.drawing.line import LineProperties  # type: ignore[import-untyped]  # as above
+from openpyxl.worksheet.properties import (  # type: ignore[import-untyped]  # as above
+    PageSetupProperties,
+)
 
 from analytic.mechanism.fourbar import FourBar
 from analytic.prepared import prepared
@@ -17,16 +29,100 @@ from models.array import Array
 from models.errors import StructureError
 from models.scene import GROUND, Scene
 from models.scene.laws import ConstantSpeed
-from reports.lectures.drawing.workbook.charts import Curves, add_chart, add_value_charts, widen
+from reports.describe.motion_tables import motion_frame
 from reports.lectures.drawing.workbook.formula_cells import TABLE, write_columns, write_inputs
 from reports.lectures.drawing.workbook.formula_table import FormulaTable
-from reports.lectures.drawing.workbook.four_bar_formulas import four_bar_table
-from reports.lectures.drawing.workbook.slider_crank_formulas import slider_crank_table
-from reports.lectures.drawing.workbook.slotted_lever_formulas import slotted_lever_table
+from reports.lectures.drawing.workbook.formulas import (
+    four_bar_table,
+    slider_crank_table,
+    slotted_lever_table,
+)
+from reports.lectures.drawing.workbook.scene_family import SceneFamily
+from reports.output.frame_file import workbook
 from reports.output.provenance import crankcheck_version
 from reports.output.write import clean
 
-TIME = "time"
+CHART_SHEET = "charts"
+WIDE_CM, HIGH_CM, ROWS_EACH = 24.0, 9.0, 19
+GRID, LINE_EMU = "D9DDE3", 15875
+"""Colour of the lines of a grid, and width of a curve, 1.25 pt."""
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Pairs of columns of a sheet by number, across and up, in rows below a head."""
+
+    sheet: str
+    pairs: Sequence[tuple[int, int]]
+    rows: int
+
+
+def _on_one_page(sheet: Any) -> Any:
+    """The sheet, set to be printed on one page."""
+    sheet.sheet_properties.pageSetUpPr = PageSetupProperties(fitToPage=True)
+    return sheet
+
+
+def add_chart(book: Workbook, number: int, title: str, curves: Curves) -> None:
+    """The chart below ``number`` others."""
+    sheet = (
+        book[CHART_SHEET]
+        if CHART_SHEET in book.sheetnames
+        else _on_one_page(book.create_sheet(CHART_SHEET))
+    )
+    source, last = book[curves.sheet], curves.rows + 1
+    chart = ScatterChart()
+    chart.title, chart.style, chart.scatterStyle = title, 2, "lineMarker"
+    chart.width, chart.height = WIDE_CM, HIGH_CM
+    chart.x_axis.title, chart.legend.position = "time [s]", "b"
+    for axis in (chart.x_axis, chart.y_axis):
+        axis.delete, axis.tickLblPos = False, "low"
+        axis.number_format = "General"  # its own, and not the many digits of the cells
+        axis.numFmt.sourceLinked = False
+        grey = GraphicalProperties(ln=LineProperties(solidFill=GRID))
+        axis.majorGridlines = ChartLines(spPr=grey)
+    for over, up in curves.pairs:
+        across = Reference(source, min_col=over, min_row=2, max_row=last)
+        drawn = Reference(source, min_col=up, min_row=1, max_row=last)
+        series = Series(drawn, across, title_from_data=True)
+        series.marker.symbol, series.smooth = "none", False
+        series.graphicalProperties.line.width = LINE_EMU
+        chart.series.append(series)
+    sheet.add_chart(chart, f"A{1 + ROWS_EACH * number}")
+
+
+KINDS = (
+    ("angles of links [rad]", "_theta_rad"),
+    ("angular velocities [rad/s]", "_omega_rad_s"),
+    ("angular accelerations [rad/s^2]", "_alpha_rad_s2"),
+    ("displacements of sliders [m]", "_displacement_m"),
+    ("speeds of sliders [m/s]", "_speed_m_s"),
+    ("accelerations of sliders [m/s^2]", "_acceleration_m_s2"),
+)
+MOST_CURVES = 8
+MARGIN, NARROWEST = 2, 12
+"""Of the width of a column over that of its head, and the smallest [characters]."""
+
+
+def add_value_charts(book: Workbook, sheet: str, columns: Sequence[str], rows: int) -> None:
+    """A chart for each kind of column that the sheet has, over its first."""
+    number = 0
+    for title, ending in KINDS:
+        places = [k for k, name in enumerate(columns, 1) if name.endswith(ending)]
+        if places:
+            pairs = [(1, place) for place in places[:MOST_CURVES]]
+            add_chart(book, number, title, Curves(sheet, pairs, rows))
+            number += 1
+
+
+def widen(sheet: Any) -> None:
+    """Columns as wide as their heads."""
+    for cell in sheet[1]:
+        width = max(len(str(cell.value)) + MARGIN, NARROWEST)
+        sheet.column_dimensions[cell.column_letter].width = width
+
+
+TIME_COLUMN = "time"
 
 
 def formulas_of(scene: Scene, count: int, step_deg: float) -> FormulaTable | None:
@@ -86,8 +182,8 @@ def add_live(book: Workbook, table: FormulaTable) -> None:
 
 def _time_of(column: str, table: FormulaTable) -> str:
     """The times of a column: those of its member, where members have their own."""
-    own = f"{TIME}_{column.rpartition('_')[2]}"
-    return own if any(each.name == own for each in table.columns) else TIME
+    own = f"{TIME_COLUMN}_{column.rpartition('_')[2]}"
+    return own if any(each.name == own for each in table.columns) else TIME_COLUMN
 
 
 def live_workbook(table: FormulaTable, origin: Mapping[str, str]) -> bytes:
@@ -147,3 +243,41 @@ def live_sheet(
 ) -> tuple[str, Callable[[Any], None]]:
     """What a workbook does not have, in words, and what puts formulas and charts into it."""
     return left_out(time_s.size), beside_values(scene, time_s, columns)
+
+
+SHEET, TIME = "family", "time_s"
+
+
+def scene_family_workbook(family: SceneFamily, origin: dict[str, str]) -> bytes:
+    """The content of the workbook: the times of each member, the angles and displacements of all
+    with their rates, and a chart for each of these with all members."""
+    import pandas as pd
+
+    scene = family.scene
+    kept = [
+        f"{name}{ending}"
+        for name in (*(f"{slider}_slider" for slider in scene.sliders), *scene.links)
+        if name != scene.driver.link
+        for _, ending in KINDS
+    ]
+    members = {
+        f"{family.name} = {value:.10g}": motion_frame(motion)
+        for value, motion in zip(family.values, family.motions, strict=True)
+    }
+    kept = [name for name in kept if name in members[next(iter(members))]]
+    frame = pd.DataFrame(
+        {
+            f"{column}, {member}": own[column]
+            for member, own in members.items()
+            for column in (TIME, *kept)
+        }
+    )
+    places = {name: place for place, name in enumerate(frame.columns, 1)}
+
+    def put(book: Any) -> None:
+        widen(book[SHEET])
+        for number, name in enumerate(kept):
+            pairs = [(places[f"{TIME}, {each}"], places[f"{name}, {each}"]) for each in members]
+            add_chart(book, number, name, Curves(SHEET, pairs, len(frame)))
+
+    return workbook(frame, SHEET, origin, put)

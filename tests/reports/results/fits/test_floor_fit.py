@@ -6,8 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reports.results.fits.curves import Allowed, Curve
-from reports.results.fits.floor_fit import ALIGNMENTS, added, opposed, within
+from reports.results.fits.floor_fit import ALIGNMENTS, Allowed, Curve, added, opposed, within
 
 DTS = 1e-2 / 2.0 ** np.arange(6)[::-1]
 FLOOR = 1e-3

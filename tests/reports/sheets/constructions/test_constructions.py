@@ -21,19 +21,26 @@ from models.array import Array
 from models.errors import CrankcheckError
 from reports.drawing.shape import turn_of
 from reports.figures.style import width_in
-from reports.lectures.design.constructions.construction_looks import strokes, xy
-from reports.lectures.design.constructions.construction_page import (
+from reports.lectures.design.construction_page import (
     INSTANTS,
     MOVES,
     construction_page,
 )
-from reports.lectures.design.constructions.construction_sheet import construction_sheet, laid_out
-from reports.lectures.design.constructions.construction_view import (
+from reports.lectures.design.construction_sheet import construction_sheet, laid_out
+from reports.lectures.design.construction_view import (
     ConstructionView,
     positions_on_way,
+    strokes,
+    xy,
 )
-from reports.lectures.drawing.sheets.canvas import Canvas, arc_places, cut_line, near_angles
-from reports.lectures.drawing.sheets.paper import MM_PER_IN, Paper
+from reports.lectures.drawing.sheets.paper import (
+    MM_PER_IN,
+    Canvas,
+    Paper,
+    arc_places,
+    cut_line,
+    near_angles,
+)
 from tests.reports.sheets.constructions import constructed as made
 from tests.reports.sheets.measured import TENTH_MM, drawn_lines, overlaps
 from tests.worlds.tiers import few

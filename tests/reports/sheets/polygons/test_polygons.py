@@ -27,7 +27,6 @@ from models.files.reading import load_scene
 from models.motion import Motion
 from reports.drawing.shape import true_motion
 from reports.lectures.drawing.sheets.paper import Paper
-from reports.lectures.drawing.sheets.polygons.polygon_course import polygon_file, turning_file
 from reports.lectures.drawing.sheets.polygons.polygon_instant import (
     DIFFERENCED,
     REPORTED,
@@ -36,7 +35,12 @@ from reports.lectures.drawing.sheets.polygons.polygon_instant import (
     placed_at_angle,
     placed_at_time,
 )
-from reports.lectures.drawing.sheets.polygons.polygon_page import INSTANTS, polygon_page
+from reports.lectures.drawing.sheets.polygons.polygon_page import (
+    INSTANTS,
+    polygon_file,
+    polygon_page,
+    turning_file,
+)
 from reports.lectures.drawing.sheets.polygons.polygon_sheet import (
     PolygonSheet,
     draw_lines,
@@ -44,7 +48,7 @@ from reports.lectures.drawing.sheets.polygons.polygon_sheet import (
     laid_out,
 )
 from reports.logs.map_file import Map
-from reports.logs.of_motion import log_of_motion
+from reports.requests.any_log import log_of_motion
 from tests.reports.sheets.measured import TENTH_MM, drawn_lines
 from tests.worlds.tiers import few, slow
 

@@ -15,15 +15,14 @@ from analytic.lectures.drawings.graphical import Method
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.figures.style import QUIET, SIZE, logarithmic, styled
-from reports.lectures.drawing.sheets.canvas import Canvas, inner_box, write_head
 from reports.lectures.drawing.sheets.graphs.graph_drawing import DrawnGraphs, GraphLog, drawn_graphs
-from reports.lectures.drawing.sheets.graphs.graph_lines import DRAWN, RAY
+from reports.lectures.drawing.sheets.graphs.graph_page import DRAWN, RAY
 from reports.lectures.drawing.sheets.graphs.graph_span import GraphSpan
 from reports.lectures.drawing.sheets.graphs.graph_words import NOTHING, share
-from reports.lectures.drawing.sheets.paper import Paper
+from reports.lectures.drawing.sheets.paper import Canvas, Paper, inner_box, write_head
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
 from reports.output.console import plain_table
-from reports.results.fits.curves import straight
+from reports.results.fits.floor_fit import straight
 
 Whose = Literal["reference", "log", "its own part"]
 """What errors are of: the drawing of the reference, that of a log, or the part of the log's that is

@@ -22,9 +22,8 @@ from analytic.lectures.drawings.graphical import ORDERS, Method, derivative_scal
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Order
-from reports.lectures.drawing.sheets.canvas import inner_box
 from reports.lectures.drawing.sheets.graphs.graph_drawing import READ, DrawnGraphs
-from reports.lectures.drawing.sheets.paper import ROUNDING, Box, Paper, round_scale
+from reports.lectures.drawing.sheets.paper import ROUNDING, Box, Paper, inner_box, round_scale
 
 POLES_MM = (40.0, 35.0, 30.0, 25.0, 20.0, 15.0, 12.0, 10.0, 8.0, 6.0, 5.0)
 """Distances that are taken; with less a ray is too steep to be drawn well."""

@@ -14,9 +14,8 @@ from models.errors import harmless
 from models.motion import Order
 from models.scene.driver import driver_unit
 from reports.figures.style import INK, QUIET, TINY, width_in
-from reports.lectures.drawing.sheets.canvas import line, text
 from reports.lectures.drawing.sheets.graphs.graph_drawing import READ, DrawnGraphs
-from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box
+from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, line, text
 from reports.output.console import plain_table
 from reports.output.numbers import listed
 

@@ -12,9 +12,16 @@ from matplotlib.patches import Circle
 from analytic.lectures.drawings.polygon import SUPERSCRIPTS, Kind, Polygon, Quantity, Vector
 from models.array import Array
 from reports.figures.style import INK, QUIET, SIZE, SMALL, TINY, width_in
-from reports.lectures.drawing.sheets.canvas import Canvas, arrow, layer_words, line, text
 from reports.lectures.drawing.sheets.letters import Letter, together
-from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box
+from reports.lectures.drawing.sheets.paper import (
+    MM_PER_IN,
+    Box,
+    Canvas,
+    arrow,
+    layer_words,
+    line,
+    text,
+)
 from reports.lectures.drawing.sheets.polygons.polygon_on_paper import (
     STAR,
     DrawnPolygon,

@@ -25,9 +25,19 @@ from analytic.lectures.drawings.drawn_polygons import DrawnPolygons
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.figures.style import QUIET, SMALL, TINY, cut
-from reports.lectures.drawing.sheets.canvas import Canvas, draw_border, inner_box, text, write_head
 from reports.lectures.drawing.sheets.letters import Letter, ink_of, write_letters
-from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper, book_scales, of_elastic
+from reports.lectures.drawing.sheets.paper import (
+    MM_PER_IN,
+    Box,
+    Canvas,
+    Paper,
+    book_scales,
+    draw_border,
+    inner_box,
+    of_elastic,
+    text,
+    write_head,
+)
 from reports.lectures.drawing.sheets.polygons.polygon_drawing import draw_polygon, polygon_letters
 from reports.lectures.drawing.sheets.polygons.polygon_instant import LoggedInstant
 from reports.lectures.drawing.sheets.polygons.polygon_on_paper import (

@@ -19,8 +19,7 @@ from analytic.lectures.drawings.polygon import SYMBOLS, UNITS, Quantity
 from models.errors import CrankcheckError
 from models.scene import GROUND
 from reports.figures.style import POINTS, QUIET, TINY, width_in
-from reports.lectures.drawing.sheets.canvas import text
-from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper
+from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Paper, text
 from reports.lectures.drawing.sheets.polygons.polygon_drawing import lower_case
 from reports.lectures.drawing.sheets.polygons.polygon_on_paper import STAR, DrawnPolygon
 from reports.lectures.drawing.sheets.sheet_log import LOGGED

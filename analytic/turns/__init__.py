@@ -1,1 +1,0 @@
-"""Whole turns of the links, as functions of the driver's angle."""

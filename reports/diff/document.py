@@ -1,0 +1,179 @@
+"""A diff on the terminal, as Markdown short enough for a comment on a pull request, and as JUnit
+XML."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Literal
+from xml.etree.ElementTree import Element
+
+from rich.console import Console
+from rich.text import Text
+
+from reports.diff.words import (
+    HEADS,
+    PrintedRow,
+    footer,
+    headline,
+    left_out,
+    lines,
+    ratio,
+    remarks,
+    size,
+    told,
+    verdict,
+)
+from reports.output.console import hanging, plain_table, say
+from reports.output.for_ci import case_of, counted, folded, plain, remark, suite_of, table
+from reports.results.changes.changes import CellPair, Diff
+from reports.results.changes.runs import CellName, StoredCell
+
+MOST = {"worse": 200, "better": 10}
+"""Rows of a table; all that is worse is named, unless that is more than anyone reads."""
+LEFT_OUT = 8
+NARROW = 76
+"""Columns below which old and new give way to their ratio."""
+STYLES = {"worse": "bold red", "better": "green"}
+
+
+def show(console: Console, diff: Diff, strict: bool = False) -> None:
+    """Print the whole diff."""
+    style = STYLES["worse"] if diff.code(strict) else "bold green"
+    console.print(Text(f"{verdict(diff, strict)}: {headline(diff)}", style))
+    for line in remarks(diff):
+        hanging(console, "  ", line)
+    console.print()
+    _grid(console, "worse", lines(diff, "worse"))
+    _grid(console, "better", lines(diff, "better"))
+    _left_out(console, "new", diff.added)
+    _left_out(console, "missing", diff.missing)
+    console.print(Text("\n".join(footer(diff)), "dim"), highlight=False)
+
+
+def _grid(console: Console, word: str, rows: Sequence[PrintedRow]) -> None:
+    """The rows of what is worse, or better, and the reasons of engines that gave up."""
+    if not rows:
+        return
+    wide = console.width >= NARROW
+    shown = rows[: MOST[word]]
+    table = plain_table(word, STYLES[word])
+    for head in HEADS:
+        number = head in ("old", "new", "ratio")
+        if wide or not number or head == "ratio":
+            side: Literal["left", "right"] = "right" if number else "left"
+            table.add_column(head, overflow="fold", justify=side, no_wrap=number)
+    for line in shown:
+        middle = (line.old, line.new) if wide else ()
+        table.add_row(
+            *map(Text, (line.scene, line.engine, line.steps, line.quantity, *middle, line.ratio))
+        )
+    console.print(table)
+    if len(rows) > len(shown):
+        more = f"and {len(rows) - len(shown)} more rows; --junit FILE names every cell"
+        say(console, more, "dim")
+    for text in dict.fromkeys(f"{line.engine}: {line.reason}" for line in shown if line.reason):
+        hanging(console, "  ", text)
+    console.print()
+
+
+def _left_out(console: Console, word: str, cells: Sequence[StoredCell]) -> None:
+    """The cells of one run only."""
+    texts = left_out(cells)
+    if not texts:
+        return
+    console.print(Text(word, "bold"))
+    for text in texts[:LEFT_OUT]:
+        hanging(console, "  ", text)
+    if len(texts) > LEFT_OUT:
+        console.print(f"  and {len(texts) - LEFT_OUT} more lines like these", style="dim")
+    console.print()
+
+
+BUDGETS = {"worse": 30_000, "better": 8_000, "new": 4_000, "missing": 4_000}
+"""Bytes of each part: all of them with the heads stay below the 65,536 of a comment on GitHub."""
+NUMBERS = 3
+"""Columns of numbers, which are the last."""
+HEAD = 6_000
+"""Bytes that the remarks may take, and the footer."""
+
+
+def markdown(diff: Diff, strict: bool = False) -> str:
+    """The whole diff; what exceeds its room is counted."""
+    parts = [f"## crankcheck diff: {verdict(diff, strict).lower()}", f"**{headline(diff)}**"]
+    parts.append(_fitted((f"- {plain(text)}" for text in remarks(diff)), HEAD))
+    worse, better = lines(diff, "worse"), lines(diff, "better")
+    if worse:
+        parts.append(f"### worse\n\n{_rows(worse, BUDGETS['worse'])}")
+    if better:
+        parts.append(folded(f"{len(better)} better", _rows(better, BUDGETS["better"])))
+    for word, cells in (("new", diff.added), ("missing", diff.missing)):
+        texts = (f"- {plain(text)}" for text in left_out(cells))
+        if listed := _fitted(texts, BUDGETS[word]):
+            parts.append(folded(f"{len(cells)} {word}", listed))
+    parts.append(_fitted((f"{plain(text)}  " for text in footer(diff)), HEAD))
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def _rows(rows: Sequence[PrintedRow], room: int) -> str:
+    """Rows as a table; what is compared are numbers."""
+    heads = [head.replace("\n", " ") for head in HEADS]
+    heads[-NUMBERS:] = [f"{head}:" for head in heads[-NUMBERS:]]
+    return table(heads, map(_cells, rows), room, "rows")
+
+
+def _cells(line: PrintedRow) -> tuple[str, ...]:
+    quantity = f"{line.quantity}: {line.reason}" if line.reason else line.quantity
+    return line.scene, line.engine, line.steps, quantity, line.old, line.new, line.ratio
+
+
+def _fitted(texts: Iterable[str], room: int) -> str:
+    """As many lines as there is room for, then how many there was none for."""
+    return "\n".join(counted(texts, room, "lines"))
+
+
+def suite(diff: Diff, strict: bool = False) -> Element:
+    """One test case per cell of either run: a failure where it is worse, skipped where there is
+    nothing to compare it with; ``strict`` makes failures of those but the new ones."""
+    lost = "failure" if strict else "skipped"
+    cases = [
+        *map(_compared, diff.pairs),
+        *_uncompared(diff.missing, lost, "missing: only the old run has it"),
+        *_uncompared(diff.other_scene, lost, "the scene changed in between"),
+        *_uncompared(diff.added, "skipped", "new: only the new run has it"),
+    ]
+    facts = {
+        f"{side} {name}": value
+        for side, run in (("old", diff.old), ("new", diff.new))
+        for name, value in {"run": run.label, **run.facts}.items()
+    }
+    return suite_of("diff", cases, facts)
+
+
+def _compared(pair: CellPair) -> Element:
+    """A cell of both runs."""
+    case = _case(pair.name)
+    if pair.word == "worse":
+        versions = f"{pair.name.engine} {pair.old.version} -> {pair.new.version}"
+        rows = [
+            f"{change.quantity}: {size(change.old)} -> {size(change.new)}, ratio {ratio(change)}"
+            f" ({change.word(pair.factor)})"
+            for change in pair.changes
+        ]
+        kind = "status" if pair.turned else "error"
+        message = f"{pair.name.label}: {told(pair)}"
+        remark(case, "failure", "\n".join([versions, *rows]), message=message, type=kind)
+    elif pair.word == "better":
+        remark(case, "system-out", f"better: {told(pair)}")
+    return case
+
+
+def _uncompared(cells: Sequence[StoredCell], tag: str, why: str) -> list[Element]:
+    """Cells that there is nothing to compare with."""
+    cases = [_case(cell.name) for cell in cells]
+    for case in cases:
+        remark(case, tag, message=why)
+    return cases
+
+
+def _case(name: CellName) -> Element:
+    return case_of(f"diff.{name.engine}.{name.variant}", name.label)

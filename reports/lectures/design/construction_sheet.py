@@ -1,0 +1,279 @@
+"""The sheet of a construction: a layer for each step, the mechanism that it finds, its letters.
+
+Source of the way of drawing: lecture "Tong hop co cau" (synthesis), examples 2 to 6.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle as Round
+
+from analytic.lectures.synthesis.design import Circle, Curve, Dot, Element, Proposal, Step
+from analytic.lectures.synthesis.examine import Examined
+from models.array import Array
+from models.errors import CrankcheckError
+from reports.figures.style import INK, LARGE, QUIET, cut
+from reports.lectures.design.construction_view import (
+    GIVEN,
+    OTHERS,
+    OTHERS_WIDTH,
+    ConstructionView,
+    look_of,
+    strokes,
+    xy,
+)
+from reports.lectures.design.step_column import (
+    Part,
+    height_of,
+    parts_of,
+    write_column,
+)
+from reports.lectures.drawing.sheets.letters import NUMBER, Letter, write_letters
+from reports.lectures.drawing.sheets.paper import (
+    MARGIN,
+    MM_PER_IN,
+    Box,
+    Canvas,
+    Paper,
+    draw_border,
+    inner_box,
+    layer_words,
+    sheet_note,
+    write_head,
+)
+from reports.lectures.drawing.sheets.scheme import PIN_MM, draw_foot, draw_outline, draw_scheme
+
+NEAR_MM = 0.5
+"""Points that stand nearer have their letters in one label."""
+NUMBERED, NUMBER_PLACES = 2, 14
+"""So many lines of a step have its number, at one of so many places along them."""
+
+
+def dot_letters(
+    steps: Sequence[Step], points: Mapping[str, Array], at: Callable[[Array], Array], box: Box
+) -> list[Letter]:
+    """The letters of all dots in the box, and of the mechanism's ``points`` [m] that have no letter
+    by then: C1 is also the letter of a point C in the first position."""
+    low, high = box.corners
+    dots = [each for step in steps for each in step.elements if isinstance(each, Dot)]
+    named = [(dot.letter, at(xy(dot.place)), dot.look) for dot in dots if dot.letter]
+    named += [(name, at(place), "result") for name, place in points.items()]
+    spots: list[tuple[list[str], Array, str]] = []
+    for letter, place, look in named:
+        if np.any((place < low) | (place > high)):
+            continue
+        spot = next((each for each in spots if np.hypot(*(each[1] - place)) < NEAR_MM), None)
+        if spot is None:
+            spots.append(([letter], place, look))
+        elif letter not in spot[0] and f"{letter}1" not in spot[0]:
+            spot[0].append(letter)
+    return [
+        Letter(", ".join(names), place, PIN_MM, color=GIVEN if look == "given" else INK)
+        for names, place, look in spots
+    ]
+
+
+def step_numbers(steps: Sequence[Step], drawn: Mapping[int, Sequence[Array]]) -> list[Letter]:
+    """The number of each step at its longest lines [mm] that are no links; ``drawn`` are the lines
+    of elements, by their identity."""
+    letters = []
+    for number, step in enumerate(steps, 1):
+        every = [each for each in step.elements if not isinstance(each, Dot)]
+        some = [each for each in every if each.look != "result"]
+        longest = sorted(
+            ((max(map(_length, lines)), each) for each in some if (lines := drawn[id(each)])),
+            key=lambda pair: -pair[0],
+        )
+        for _, each in longest[:NUMBERED]:
+            line = max(drawn[id(each)], key=_length)
+            colour = look_of(each, steps).colour if isinstance(each, Curve) else QUIET
+            letters.append(Letter(f"({number})", _along(line), 0.1, NUMBER, colour))
+    return letters
+
+
+def _length(line: Array) -> float:
+    return float(np.sum(np.hypot(*np.diff(line, axis=0).T)))
+
+
+def _along(line: Array) -> Array:
+    """Places along a line, evenly, off its ends."""
+    way = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
+    there = np.linspace(0.06, 0.94, NUMBER_PLACES) * way[-1]
+    return np.stack([np.interp(there, way, line[:, k]) for k in (0, 1)], axis=1)
+
+
+PADDING, GAP = 11.0, 3.0
+COLUMNS_MM = (54.0, 64.0, 76.0, 90.0, 106.0)
+"""Widths of the column of words, the least that does is taken."""
+MOST_SHARE = 0.5
+"""Of the sheet that words may take."""
+DOT_MM = {"given": 0.7, "auxiliary": 0.6, "result": PIN_MM}
+LAYER_WORDS = 40
+"""Letters of a step's words that its layer is called by."""
+FRONT = 6
+"""Dots lie over lines."""
+
+
+@dataclass(frozen=True)
+class ConstructionSheet:
+    """A construction on paper: its scale [m/mm], what is in the middle of its box [m], and the
+    words of the column beside or below it."""
+
+    view: ConstructionView
+    scale: float
+    middle: Array
+    box: Box
+    column: Box
+    words: list[list[Part]]
+    paper: Paper
+
+    def at(self, places: Array) -> Array:
+        """Where places [m], (..., 2), stand on the sheet [mm]."""
+        return np.asarray(self.box.middle + (places - self.middle) / self.scale)
+
+    @property
+    def cut(self) -> tuple[Array, Array]:
+        """The corners of what is on the paper [m]."""
+        half = self.scale * np.array([self.box.width, self.box.height]) / 2
+        return self.middle - half, self.middle + half
+
+
+def laid_out(proposed: Examined | Proposal, paper: Paper) -> ConstructionSheet:
+    """The construction of a mechanism on paper, with the words of its steps on the right, or below
+    on paper that is higher than wide.
+
+    Raises CrankcheckError for a proposal that can not be assembled in its first position, and for
+    paper that its words do not fit on.
+    """
+    view = ConstructionView.of(proposed)
+    inner = inner_box(paper)
+    tried = _below(view, inner) if paper.height > paper.width else _beside(view, inner)
+    for box, column in tried:
+        sheet = _in(view, box, column, paper)
+        if height_of(sheet.words, column.width) <= column.height:
+            return sheet
+    larger = "A3" if paper.width < 420.0 else "A2"
+    raise CrankcheckError(
+        f"--paper {paper.width:g}x{paper.height:g}: the words of {len(view.steps)} steps do not "
+        f"fit beside their figure; take a larger one, such as {larger}"
+    )
+
+
+def _in(view: ConstructionView, box: Box, column: Box, paper: Paper) -> ConstructionSheet:
+    """The sheet with its figure in a box, and its words in another."""
+    scale, middle = box.fitted(view.shown, PADDING)
+    half = scale * np.array([box.width, box.height]) / 2
+    words = parts_of(view, [words for _, words in view.far(middle - half, middle + half)])
+    return ConstructionSheet(view, scale, middle, box, column, words, paper)
+
+
+def _beside(view: ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
+    """Boxes of the figure with columns of several widths on its right."""
+    boxes = []
+    for width in COLUMNS_MM:
+        wide = inner.width - width - GAP
+        if width <= MOST_SHARE * inner.width:
+            left = inner.left + wide + GAP
+            figure = Box(inner.left, inner.bottom, wide, inner.height)
+            boxes.append((figure, Box(left, inner.bottom, width, inner.height)))
+    return boxes
+
+
+def _below(view: ConstructionView, inner: Box) -> list[tuple[Box, Box]]:
+    """The box of the figure over one of the words that is as high as these need."""
+    tall = height_of(parts_of(view, [words for _, words in view.far(*_corners(view))]), inner.width)
+    boxes = []
+    for spare in (1.0, 1.25, 1.6):
+        high = spare * tall
+        if high <= MOST_SHARE * inner.height:
+            bottom = inner.bottom + high + GAP
+            figure = Box(inner.left, bottom, inner.width, inner.height - high - GAP)
+            boxes.append((figure, Box(inner.left, inner.bottom, inner.width, high)))
+    return boxes
+
+
+def _corners(view: ConstructionView) -> tuple[Array, Array]:
+    return view.shown.min(axis=0), view.shown.max(axis=0)
+
+
+def construction_sheet(proposed: Examined | Proposal, paper: Paper) -> Canvas:
+    """The sheet of a construction on paper. Raises CrankcheckError as `laid_out`."""
+    sheet = laid_out(proposed, paper)
+    return draw_construction(sheet, sheet_note(sheet.view.examined.scene))
+
+
+def draw_construction(sheet: ConstructionSheet, note: str) -> Canvas:
+    """The sheet, in layers: frame and words, other positions, the steps, the mechanism, letters."""
+    canvas = Canvas(sheet.paper)
+    _frame(canvas.layer("frame"), sheet, note)
+    others = canvas.layer("positions")
+    for placed in sheet.view.others:
+        places = {name: sheet.at(place) for name, place in placed.points.items()}
+        draw_outline(others, placed.scene.links.values(), places, OTHERS, OTHERS_WIDTH)
+    drawn: dict[int, list[Array]] = {}
+    for number, step in enumerate(sheet.view.steps, 1):
+        name = layer_words(f"step-{number}-{step.words[:LAYER_WORDS]}")
+        axes = canvas.layer(name)
+        for k, element in enumerate(step.elements, 1):
+            drawn[id(element)] = _draw(axes, sheet, element, f"step-{number}.{k}")
+    draw_scheme(canvas.layer("mechanism"), sheet.view.first, sheet.at, plate="none")
+    letters = dot_letters(sheet.view.steps, sheet.view.first.points, sheet.at, sheet.box)
+    letters += step_numbers(sheet.view.steps, drawn)
+    write_letters(canvas, canvas.layer("letters"), letters, sheet.box)
+    return canvas
+
+
+def _frame(axes: Axes, sheet: ConstructionSheet, note: str) -> None:
+    """Title, note, borders and words."""
+    told = f": construction, position 1 of {len(sheet.view.placements)}, K_l = {sheet.scale:g} m/mm"
+    room = (sheet.paper.width - 2 * MARGIN) / MM_PER_IN / 1.15  # bold is so much wider
+    name = cut(sheet.view.examined.scene.name, room / 2, LARGE)
+    write_head(axes, sheet.paper, cut(name + told, room, LARGE), note)
+    for box in (sheet.box, sheet.column):
+        draw_border(axes, box)
+    write_column(axes, sheet.words, sheet.column)
+
+
+def _draw(axes: Axes, sheet: ConstructionSheet, element: Element, gid: str) -> list[Array]:
+    """An element of a step; gives its lines on the sheet [mm]."""
+    if isinstance(element, Dot):
+        _draw_dot(axes, sheet, element, gid)
+        return []
+    look = look_of(element, sheet.view.steps)
+    lines = [sheet.at(part) for part in strokes(element, *sheet.cut)]
+    if isinstance(element, Circle) and element.arc is None and _is_whole(sheet, element):
+        # a drawing program is to have it as a circle
+        middle, radius = sheet.at(xy(element.centre)), element.radius / sheet.scale
+        axes.add_patch(
+            Round(tuple(middle), radius, fill=False, ec=look.colour, lw=look.width, gid=gid)
+        )
+        return lines
+    for part in lines:
+        axes.plot(*part.T, color=look.colour, lw=look.width, solid_capstyle="butt", gid=gid)
+    return lines
+
+
+def _is_whole(sheet: ConstructionSheet, circle: Circle) -> bool:
+    """Whether all of a circle is on the paper."""
+    low, high = sheet.cut
+    middle = xy(circle.centre)
+    return bool(np.all((middle - circle.radius > low) & (middle + circle.radius < high)))
+
+
+def _draw_dot(axes: Axes, sheet: ConstructionSheet, dot: Dot, gid: str) -> None:
+    """A point as a small circle, a pivot of the ground on its foot; none of what is off."""
+    low, high = sheet.cut
+    place = xy(dot.place)
+    if np.any((place < low) | (place > high)):
+        return
+    spot = sheet.at(place)
+    if dot.fixed:
+        draw_foot(axes, spot)
+    colour = GIVEN if dot.look == "given" else INK
+    radius = PIN_MM if dot.fixed else DOT_MM[dot.look]
+    face = colour if dot.look == "given" and not dot.fixed else "white"
+    axes.add_patch(Round(tuple(spot), radius, fc=face, ec=colour, lw=0.7, zorder=FRONT, gid=gid))

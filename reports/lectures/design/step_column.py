@@ -1,0 +1,115 @@
+"""The column of words beside a construction: its steps, its looks, what is off the paper."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from analytic.lectures.synthesis.design import Dot, Look
+from reports.figures.style import INK, QUIET, SMALL, wrapped
+from reports.lectures.design.construction_view import (
+    LOOKS,
+    OTHERS,
+    OTHERS_WIDTH,
+    ConstructionView,
+    Stroke,
+    curves_of,
+)
+from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, line, text
+
+ROW_MM, GAP_MM = 3.1, 1.3
+"""A line of the column, and what is left between its parts."""
+INSET_MM, HANGING_MM, SAMPLE_MM = 2.0, 5.5, 7.0
+"""At both sides of the column, before the words of a step, and of a line's sample."""
+SPARE = 0.95
+"""Of the room that lines take: what shows the file may have wider type."""
+KEY: dict[Look, str] = {"given": "given", "auxiliary": "construction"}
+
+
+@dataclass(frozen=True)
+class Part:
+    """A paragraph of the column: what hangs before it, a number or the sample of a line."""
+
+    words: str
+    before: str | Stroke = ""
+    colour: str = INK
+    weight: str = "normal"
+
+    @property
+    def hanging(self) -> float:
+        """How far its words are from the left [mm]."""
+        if isinstance(self.before, Stroke):
+            return SAMPLE_MM + 1.5
+        return HANGING_MM if self.before else 0.0
+
+    def lines(self, width: float) -> list[str]:
+        """Its words in a column of a width [mm]."""
+        room = SPARE * (width - 2 * INSET_MM - self.hanging) / MM_PER_IN
+        return wrapped(self.words, room, SMALL)
+
+
+def parts_of(view: ConstructionView, far: Iterable[str]) -> list[list[Part]]:
+    """What is told of a construction, in groups."""
+    proposal = view.examined.proposal
+    steps = [Part(step.words, f"({k})") for k, step in enumerate(view.steps, 1)]
+    chosen = [Part(f"{name}: {value}") for name, value in proposal.chosen.items()]
+    doubts = [proposal.doubt] * bool(proposal.doubt) + view.examined.defects
+    off = [Part(words) for words in far]
+    groups = [
+        steps,
+        [_titled("Chosen"), *chosen] if chosen else [],
+        [_titled("Doubts"), *map(Part, doubts)] if doubts else [],
+        [_titled("Off the paper"), *off] if off else [],
+        _key(view),
+    ]
+    return [group for group in groups if group]
+
+
+def _key(view: ConstructionView) -> list[Part]:
+    """What the lines are, of those that there are."""
+    coloured = {id(curve) for curve in curves_of(view.steps)}  # by the numbers of their steps
+    every = [each for step in view.steps for each in step.elements if id(each) not in coloured]
+    looks = {each.look for each in every if not isinstance(each, Dot)}
+    key = [(words, LOOKS[look]) for look, words in KEY.items() if look in looks]
+    key.append(("mechanism in position 1", LOOKS["result"]))
+    key += [("in the other positions", Stroke(OTHERS, OTHERS_WIDTH))] * bool(view.others)
+    return [Part(words, look, QUIET) for words, look in key]
+
+
+def _titled(words: str) -> Part:
+    return Part(words, weight="bold")
+
+
+def height_of(groups: Sequence[Sequence[Part]], width: float) -> float:
+    """What groups need in a column of a width [mm]."""
+    rows = sum(len(part.lines(width)) for group in groups for part in group)
+    parts = sum(len(group) for group in groups)
+    return 2 * INSET_MM + ROW_MM * rows + GAP_MM * (0.5 * parts + len(groups))
+
+
+def write_column(axes: Axes, groups: Sequence[Sequence[Part]], column: Box) -> None:
+    """All groups from the top of a column that is high enough."""
+    left, y = column.left + INSET_MM, column.bottom + column.height - INSET_MM
+    for group in groups:
+        for part in group:
+            rows = part.lines(column.width)
+            _hang(axes, part, left, y - 0.75 * ROW_MM)
+            for row in rows:
+                y -= ROW_MM
+                base = y + 0.25 * ROW_MM
+                look = {"color": part.colour, "weight": part.weight}
+                text(axes, left + part.hanging, base, row, SMALL, **look)
+            y -= 0.5 * GAP_MM
+        y -= GAP_MM
+
+
+def _hang(axes: Axes, part: Part, left: float, base: float) -> None:
+    """What stands before a paragraph, on the base line of its first row."""
+    if isinstance(part.before, Stroke):
+        start, end = np.array([left, base + 0.8]), np.array([left + SAMPLE_MM, base + 0.8])
+        line(axes, start, end, color=part.before.colour, linewidth=part.before.width)
+    elif part.before:
+        text(axes, left, base, part.before, SMALL, color=QUIET)

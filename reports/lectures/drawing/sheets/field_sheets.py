@@ -1,0 +1,253 @@
+"""Sheets of schemes, each in a field of its own with its name below: chains, and the assemblies of
+a scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle
+from matplotlib.patches import Polygon as Patch
+
+from analytic.lectures.chains.chain import Chain, Joint
+from analytic.lectures.chains.layout import joints_at
+from analytic.lectures.drawings.placed_mechanism import PlacedMechanism, quarter_turn
+from models.array import Array
+from models.errors import CrankcheckError
+from reports.figures.style import INK, QUIET, SMALL, TINY, cut, width_in
+from reports.lectures.drawing.sheets.letters import write_letters
+from reports.lectures.drawing.sheets.paper import (
+    MM_PER_IN,
+    SIZES,
+    Box,
+    Canvas,
+    Paper,
+    draw_border,
+    inner_box,
+    line,
+    text,
+    write_head,
+)
+from reports.lectures.drawing.sheets.scheme import draw_scheme, extent_of, point_letters
+
+PIN_MM, BLOCK_MM = 0.75, (3.4, 2.2)
+HATCH_MM, EVERY_MM = 1.1, 1.1
+"""Length of the strokes beside a bar of the ground, and their distance."""
+PLATE, GROUND_PLATE = "#dfe6ee", "white"
+FRONT = 6
+
+
+def draw_chain(
+    axes: Axes, chain: Chain, at: Mapping[Joint, Array], ground: int | None = None
+) -> None:
+    """The chain with its joints at places [mm]; the ground, if there is one, hatched."""
+    for link in range(chain.links):
+        corners = _around(np.array([at[joint] for joint in chain.joints_of(link)]))
+        if len(corners) == 2:
+            line(axes, corners[0], corners[1], linewidth=1.5)
+            if link == ground:
+                _strokes(axes, corners, np.mean(list(at.values()), axis=0))
+        else:
+            _plate(axes, corners, is_ground=link == ground)
+    for joint in chain.joints:
+        if joint in chain.sliders:
+            _block(axes, at[joint], _along(chain, joint, at))
+        else:
+            axes.add_patch(
+                Circle(tuple(at[joint]), PIN_MM, fc="white", ec=INK, lw=0.7, zorder=FRONT)
+            )
+
+
+def _around(corners: Array) -> Array:
+    """The corners in order around their middle."""
+    to = corners - corners.mean(axis=0)
+    return np.asarray(corners[np.argsort(np.arctan2(to[:, 1], to[:, 0]))])
+
+
+def _plate(axes: Axes, corners: Array, *, is_ground: bool) -> None:
+    look = {"hatch": "///////", "fc": GROUND_PLATE} if is_ground else {"fc": PLATE}
+    plate = Patch(corners, closed=True, ec=INK, lw=1.3, joinstyle="round", **look)
+    plate.set_hatch_linewidth(0.45)
+    axes.add_patch(plate)
+
+
+def _strokes(axes: Axes, ends: Array, middle: Array) -> None:
+    """The strokes of a bar that is the ground, on its side away from the chain's middle."""
+    along = ends[1] - ends[0]
+    length = float(np.hypot(*along))
+    unit = along / length
+    side = quarter_turn(unit)
+    if side @ (middle - ends[0]) > 0.0:
+        side = -side
+    stroke = HATCH_MM * (side - unit) / np.sqrt(2)
+    for share in np.linspace(0.0, 1.0, max(int(length / EVERY_MM), 2) + 1)[1:-1]:
+        at = ends[0] + share * along
+        line(axes, at, at + stroke, linewidth=0.45)
+
+
+def _block(axes: Axes, place: Array, along: Array) -> None:
+    """A slider: a block on the bar that it slides on."""
+    half, aside = 0.5 * BLOCK_MM[0] * along, 0.5 * BLOCK_MM[1] * quarter_turn(along)
+    signs = ((1, 1), (-1, 1), (-1, -1), (1, -1))
+    corners = [place + a * half + b * aside for a, b in signs]
+    axes.add_patch(Patch(corners, closed=True, fc="white", ec=INK, lw=0.8, zorder=FRONT))
+    line(axes, place - half, place + half, linewidth=0.5, zorder=FRONT)
+
+
+def _along(chain: Chain, joint: Joint, at: Mapping[Joint, Array]) -> Array:
+    """The direction of a slider: that of an edge of its first link, of a bar where one is."""
+    link = min(joint, key=lambda one: chain.degrees[one])
+    others = [one for one in chain.joints_of(link) if one != joint]
+    way = np.asarray(at[others[0]] - at[joint])
+    return np.asarray(way / np.hypot(*way))
+
+
+LEAST_MM = (24.0, 24.0)
+"""A field that can be read."""
+WORDS_MM, LINE_MM, PAD_MM = 8.5, 2.7, 3.5
+"""Height of the words below a scheme, of a line of them, and what is left blank around it."""
+BAR_MM = 22.0
+"""The longest that a bar of common length is drawn."""
+NAME = 6.5
+ASPECT = 1.25
+"""Width over height of a field, about."""
+
+
+@dataclass(frozen=True)
+class DrawnChain:
+    """A chain to draw: its name, a second line of words, and its ground if it has one."""
+
+    chain: Chain
+    name: str
+    words: str
+    ground: int | None = None
+
+
+def check_room(many: int, paper: Paper) -> None:
+    """Raise CrankcheckError for paper on which so many fields can not be read."""
+    field = _fields(many, paper)[0]
+    if field.width >= LEAST_MM[0] and field.height >= LEAST_MM[1]:
+        return
+    fit = [name for name, size in SIZES.items() if _is_enough(many, Paper(*size))]
+    cure = f"--paper {fit[0]} would do" if fit else "ask for fewer, or give a larger WIDTHxHEIGHT"
+    raise CrankcheckError(
+        f"{many} schemes do not fit on {paper.width:g} x {paper.height:g} mm: a field would be "
+        f"{field.width:.0f} x {field.height:.0f} mm, and one that can be read is "
+        f"{LEAST_MM[0]:g} x {LEAST_MM[1]:g} mm; {cure}"
+    )
+
+
+def _is_enough(many: int, paper: Paper) -> bool:
+    field = _fields(many, paper)[0]
+    return field.width >= LEAST_MM[0] and field.height >= LEAST_MM[1]
+
+
+def _fields(many: int, paper: Paper) -> list[Box]:
+    """A field for each, row by row from the top."""
+    inner = inner_box(paper)
+    columns = max(1, math.ceil(math.sqrt(many * inner.width / (inner.height * ASPECT))))
+    columns = min(columns, many)
+    rows = math.ceil(many / columns)
+    wide, tall = inner.width / columns, inner.height / rows
+    top = inner.bottom + inner.height
+    return [
+        Box(inner.left + (k % columns) * wide, top - (k // columns + 1) * tall, wide, tall)
+        for k in range(many)
+    ]
+
+
+def draw_chains(chains: Sequence[DrawnChain], title: str, note: str, paper: Paper) -> Canvas:
+    """The sheet, in layers; all chains with bars of one length."""
+    check_room(len(chains), paper)
+    canvas = Canvas(paper)
+    write_head(canvas.layer("frame"), paper, title, note)
+    schemes, letters = canvas.layer("chains"), canvas.layer("letters")
+    fields = _fields(len(chains), paper)
+    places = [joints_at(one.chain) for one in chains]
+    room = np.array([fields[0].width, fields[0].height - WORDS_MM]) - 2 * PAD_MM
+    sizes = [np.ptp(np.array(list(at.values())), axis=0) for at in places]
+    bar = min(BAR_MM, *(float(np.min(room / np.maximum(size, 0.3))) for size in sizes))
+    for one, field, at in zip(chains, fields, places, strict=True):
+        middle = np.array(
+            [field.middle[0], field.bottom + WORDS_MM + (field.height - WORDS_MM) / 2]
+        )
+        draw_chain(
+            schemes, one.chain, {joint: middle + bar * way for joint, way in at.items()}, one.ground
+        )
+        low = field.bottom + WORDS_MM - LINE_MM
+        for words, size, color, y in (
+            (one.name, NAME, "black", low),
+            (one.words, TINY, QUIET, low - LINE_MM),
+        ):
+            short = cut(words, (field.width - 2.0) / MM_PER_IN, size)
+            left = field.middle[0] - MM_PER_IN * width_in(short, size) / 2
+            text(letters, left, y, short, size, color=color)
+    return canvas
+
+
+PADDING, NAME_MM = 11.0, 7.0
+LEAST_SIDE_MM = 34.0
+"""A field that can be read is so wide and high."""
+
+
+def draw_assemblies(
+    drawn: Sequence[tuple[PlacedMechanism, str, bool]], title: str, note: str, paper: Paper
+) -> Canvas:
+    """The sheet of placements, each with its words, and whether it is the scene's own.
+
+    Raises CrankcheckError for paper on which they can not be read.
+    """
+    fields = _square_fields(len(drawn), paper)
+    if min(fields[0].width, fields[0].height) < LEAST_SIDE_MM:
+        raise CrankcheckError(
+            f"{len(drawn)} assemblies do not fit on {paper.width:g} x {paper.height:g} mm; take a "
+            "larger --paper, such as A2"
+        )
+    canvas = Canvas(paper)
+    frame = canvas.layer("frame")
+    write_head(frame, paper, title, note)
+    schemes, letters = canvas.layer("mechanism"), canvas.layer("letters")
+    boxes = [Box(one.left, one.bottom + NAME_MM, one.width, one.height - NAME_MM) for one in fields]
+    everything = np.concatenate([extent_of(placement) for placement, _, _ in drawn])
+    scale, middle = boxes[0].fitted(everything, PADDING)
+    for (placement, words, is_own), field, box in zip(drawn, fields, boxes, strict=True):
+        draw_border(frame, field)
+        at = partial(_at, box=box, scale=scale, middle=middle)
+        draw_scheme(schemes, placement, at)
+        short = cut(words, (field.width - 4.0) / MM_PER_IN, SMALL)
+        left = field.middle[0] - MM_PER_IN * width_in(short, SMALL) / 2
+        weight, color = ("bold", INK) if is_own else ("normal", QUIET)
+        text(frame, left, field.bottom + 2.5, short, weight=weight, color=color)
+    for (placement, _, _), box in zip(drawn, boxes, strict=True):
+        places = {name: _at(place, box, scale, middle) for name, place in placement.points.items()}
+        write_letters(canvas, letters, point_letters(placement, places), box)
+    return canvas
+
+
+def _at(places: Array, box: Box, scale: float, middle: Array) -> Array:
+    """Where places [m], (..., 2), stand on the sheet [mm]."""
+    return np.asarray(box.middle + (places - middle) / scale)
+
+
+def _square_fields(many: int, paper: Paper) -> list[Box]:
+    """A field for each, side by side and then below, about as wide as high."""
+    inner = inner_box(paper)
+    columns = min(range(1, many + 1), key=lambda n: _unlike(many, n, inner))
+    rows = math.ceil(many / columns)
+    wide, tall = inner.width / columns, inner.height / rows
+    top = inner.bottom + inner.height
+    return [
+        Box(inner.left + (k % columns) * wide, top - (k // columns + 1) * tall, wide, tall)
+        for k in range(many)
+    ]
+
+
+def _unlike(many: int, columns: int, inner: Box) -> float:
+    """How far so many columns are from fields as wide as high, with none of them blank."""
+    rows = math.ceil(many / columns)
+    aspect = inner.width / columns * rows / inner.height
+    return abs(math.log(aspect)) + (rows * columns - many) / many

@@ -1,1 +1,0 @@
-"""The steady cycle of a machine and its flywheel, drawn for a paper."""

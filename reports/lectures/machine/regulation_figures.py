@@ -1,0 +1,275 @@
+"""What figures of regulation are drawn of: a cycle, the one without a flywheel, and their axis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MultipleLocator
+
+from analytic.lectures.regulation.flywheel import EnergyMass, WantedFlywheel, energy_mass
+from analytic.lectures.regulation.steady_cycle import SteadyCycle
+from models.array import Array
+from reports.figures.figure_set import FORMATS, saved
+from reports.figures.sheet import Panels, sheet
+from reports.figures.style import COLUMN_IN, INK, QUIET, SMALL, TINY, styled
+from reports.lectures.machine.cycle_rows import CycleSeries, cycle_series
+from reports.output.numbers import count, readable
+from reports.output.provenance import crankcheck_version
+from reports.output.write import write
+
+SIDES = (0.58, 0.1)
+"""Room on the left and on the right of a panel over the angle [inch]."""
+CURVE = {"color": "#1f5f9e", "linewidth": 1.3}
+OTHER = {"color": "#c04a1d", "linewidth": 1.0, "linestyle": (0, (4.0, 1.5))}
+RETURNING = {"color": "#2f7d4c", "linewidth": 0.8, "linestyle": (0, (6.0, 1.5, 1.0, 1.5))}
+
+
+@dataclass(frozen=True)
+class Regulated:
+    """A steady cycle to be drawn; ``wanted`` is its flywheel, where it is one's."""
+
+    cycle: SteadyCycle
+    wanted: WantedFlywheel | None = None
+
+    @cached_property
+    def series(self) -> CycleSeries:
+        return cycle_series(self.cycle)
+
+    @property
+    def bare(self) -> SteadyCycle | None:
+        """The cycle without the flywheel, where there is one."""
+        return None if self.wanted is None else self.wanted.bare
+
+    @property
+    def degrees(self) -> Array:
+        """What curves go over: the driver's angle, as it goes on from the start [deg]."""
+        return np.degrees(self.series.theta)
+
+    def plot(self, axes: Axes, curve: Array, **look: Any) -> None:
+        """Draw a series of the cycle (T,)."""
+        axes.plot(self.degrees, curve, **look)
+
+    def mark_axis(self, axes: Axes) -> None:
+        """Limits and ticks of the angle; short numbers on the other axis."""
+        ends = self.degrees[[0, -1]]
+        axes.set_xlim(*sorted(ends))
+        axes.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=False)
+        axes.yaxis.get_offset_text().set_fontsize(SMALL)
+        turns = round(self.cycle.machine.cycle_rad / math.tau)
+        axes.xaxis.set_major_locator(MultipleLocator(60.0 if turns == 1 else 90.0 * turns / 2.0))
+
+    @property
+    def label(self) -> str:
+        return f"angle of {self.cycle.machine.scene.driver.link} [deg]"
+
+    @property
+    def notes(self) -> list[str]:
+        """What stands under each figure."""
+        cycle, scene = self.cycle, self.cycle.machine.scene
+        parts = [
+            f"crankcheck {crankcheck_version()}; steady cycle at a mean speed of "
+            f"{readable(cycle.mean_rad_s, 5)} rad/s",
+            f"loads: {', '.join(scene.loads)}" if scene.loads else "no loads",
+        ]
+        if cycle.drive_n_m:
+            parts.append(f"drive: a constant torque of {readable(cycle.drive_n_m, 5)} N m")
+        if self.wanted is not None:
+            parts.append(f"flywheel: {readable(self.wanted.inertia_kg_m2, 5)} kg m²")
+        return [f"{'; '.join(parts)}."]
+
+
+TOUCH = {"color": "#1f5f9e", "marker": "o", "markersize": 3.0, "linestyle": "none"}
+NARROW = 1e-6
+"""A moment of inertia that varies by less than this, over its size, is constant: no diagram."""
+EVERY_DEG = 90
+PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.3, "alpha": 0.85}
+ROOM = 0.12
+"""Room around the curve, over its size."""
+
+
+def draw_energy_mass(of: Regulated) -> Figure | None:
+    """The diagram; None of a machine of constant moment of inertia."""
+    cycle = of.cycle
+    diagram = energy_mass(cycle)
+    if np.ptp(diagram.inertia) <= NARROW * float(diagram.inertia.max()):
+        return None
+    high, low = cycle.extreme_speeds_rad_s
+    slopes = ((0.5 * high**2, True, OTHER, "max"), (0.5 * low**2, False, RETURNING, "min"))
+    entries: list[tuple[Artist, str]] = [(Line2D([], [], **CURVE), "over the cycle")]  # type: ignore[arg-type]  # looks of a line
+    for slope, _, look, which in slopes:
+        words = f"tan psi {which} = {readable(slope, 5)} J/(kg m²)"
+        entries.append((Line2D([], [], **look), words))  # type: ignore[arg-type]  # as above
+    notes = [*of.notes, f"The tangents meet in {_origin(cycle)}, the origin of the diagram."]
+    title = f"Energy and mass: {cycle.machine.scene.name}"
+    figure, (axes,) = sheet(COLUMN_IN, Panels(1, 1, 2.6, *SIDES, 0.2), title, entries, notes)
+    axes.plot(diagram.inertia, diagram.work, **CURVE)  # type: ignore[arg-type]  # as above
+    _limits(axes, diagram)
+    for slope, above, look, _ in slopes:
+        height, at = diagram.tangent(slope, above=above)
+        axes.axline((0.0, height), slope=slope, **look)  # type: ignore[arg-type]  # as above
+        axes.plot(diagram.inertia[at], diagram.work[at], **TOUCH)  # type: ignore[arg-type]  # as above
+    _angles(of, axes)
+    axes.ticklabel_format(scilimits=(-3, 4), useMathText=False)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.get_offset_text().set_fontsize(SMALL)
+    axes.set_xlabel("own reduced moment of inertia [kg m²]")
+    axes.set_ylabel("work since the start [J]")
+    return figure
+
+
+def _limits(axes: Axes, diagram: EnergyMass) -> None:
+    """Room around the curve; tangents run out of it."""
+    for put, series in ((axes.set_xlim, diagram.inertia), (axes.set_ylim, diagram.work)):
+        room = ROOM * (float(np.ptp(series)) or 1.0)
+        put(float(series.min()) - room, float(series.max()) + room)
+
+
+def _angles(of: Regulated, axes: Axes) -> None:
+    """Where the driver stands at some angles; numbers stand to the right of their dots."""
+    cycle = of.cycle
+    first = cycle.machine.start_rad
+    ends = sorted((first, first + cycle.machine.way * cycle.machine.cycle_rad))
+    low, high = (math.degrees(each) for each in ends)
+    degrees = np.arange(math.ceil(low / EVERY_DEG - 1e-9) * EVERY_DEG, high - 1e-6, EVERY_DEG)
+    u = np.clip(cycle.machine.way * (np.radians(degrees) - first), 0.0, cycle.machine.cycle_rad)
+    inertia, work = cycle.machine.inertia(u)[0], cycle.energy(u) - cycle.solution.at_borders[0]
+    axes.plot(inertia, work, "o", color=QUIET, markersize=2.0, zorder=3)
+    for deg, x, y in zip(degrees, inertia, work, strict=True):
+        look: dict[str, Any] = {"size": TINY, "color": QUIET, "va": "center", "bbox": PAPER}
+        axes.annotate(
+            f"{deg:.0f}",
+            (x, y),
+            (3.0, 0.0),
+            textcoords="offset points",
+            annotation_clip=True,
+            **look,
+        )
+
+
+def _origin(cycle: SteadyCycle) -> str:
+    """Where the tangents meet, in the numbers of the axes."""
+    inertia = readable(0.0 - cycle.solution.flywheel, 5)
+    return f"{inertia} kg m² and {readable(-float(cycle.solution.at_borders[0]), 5)} J"
+
+
+MEAN = {"color": INK, "linewidth": 0.7, "linestyle": (0, (5.0, 2.0))}
+EXTREME = {"color": "#1f5f9e", "marker": "o", "markersize": 3.2, "linestyle": "none"}
+APART = 6.0
+"""Fluctuations that differ by more than this have no room in one panel."""
+
+
+def draw_speed(of: Regulated) -> Figure:
+    """One panel; a second one, closer, where the flywheel takes nearly all of the fluctuation."""
+    cycle, bare = of.cycle, of.bare
+    with_it = "with the flywheel" if of.wanted is not None else "speed"
+    entries: list[tuple[Artist, str]] = [
+        (Line2D([], [], **CURVE), f"{with_it}, delta = {readable(cycle.delta)}"),  # type: ignore[arg-type]  # looks of a line
+        (Line2D([], [], **MEAN), f"mean {readable(cycle.mean_rad_s, 5)} rad/s"),  # type: ignore[arg-type]  # as above
+        (Line2D([], [], **EXTREME), _extremes(of)),  # type: ignore[arg-type]  # as above
+    ]
+    if bare is not None:
+        entries.append((Line2D([], [], **OTHER), f"without, delta = {readable(bare.delta)}"))  # type: ignore[arg-type]  # as above
+    notes = list(of.notes)
+    if of.wanted is not None and bare is None:
+        notes.append("Without the flywheel there is no steady cycle at this speed.")
+    rows = 2 if bare is not None and bare.delta > APART * cycle.delta else 1
+    shape = Panels(rows, 1, 2.1 if rows == 1 else 1.5, *SIDES, 0.15, between=(0, 0.2))
+    title = f"Speed over a cycle: {cycle.machine.scene.name}"
+    figure, axes = sheet(COLUMN_IN, shape, title, entries, notes)
+    for k, one in enumerate(axes):
+        if bare is not None and (rows == 1 or k == 0):
+            of.plot(one, bare.solution.speed_at(of.series.turned), **OTHER)
+        of.plot(one, of.series.speed, **CURVE)
+        one.axhline(cycle.mean_rad_s, **MEAN)  # type: ignore[arg-type]  # as above
+        at = np.array([cycle.fastest, cycle.slowest])
+        if k == len(axes) - 1:
+            one.plot(np.degrees(cycle.machine.theta(at)), cycle.extreme_speeds_rad_s, **EXTREME)  # type: ignore[arg-type]  # as above
+        of.mark_axis(one)
+        one.tick_params(labelbottom=k == len(axes) - 1)
+        one.set_ylabel(f"{cycle.machine.scene.driver.link} [rad/s]")
+    axes[-1].set_xlabel(of.label)
+    return figure
+
+
+def _extremes(of: Regulated) -> str:
+    """Where the speed is extreme."""
+    high, low = (math.degrees(of.cycle.driver_rad(u)) for u in (of.cycle.fastest, of.cycle.slowest))
+    return f"extreme at {readable(high, 4)} and {readable(low, 4)} deg"
+
+
+WORK = {"color": INK, "linewidth": 1.2}
+
+
+def draw_torques(of: Regulated) -> Figure:
+    """Torques above, work below with its surplus."""
+    series, cycle = of.series, of.cycle
+    curves = [
+        (series.driving, CURVE, "driving torque"),
+        (-series.resisting, OTHER, "resisting torque"),
+        (series.returning, RETURNING, "of weights and springs"),
+    ]
+    curves = [each for each in curves if np.any(np.abs(each[0]) > 0.0)]
+    entries: list[tuple[Artist, str]] = [
+        (Line2D([], [], **look), words)  # type: ignore[arg-type]  # looks of a line
+        for _, look, words in curves
+    ]
+    words = f"work since the start, surplus {readable(cycle.surplus_j, 4)} J"
+    entries.append((Line2D([], [], **WORK), words))  # type: ignore[arg-type]  # as above
+    shape = Panels(2, 1, 1.5, *SIDES, 0.15, between=(0, 0.2))
+    title = f"Torques and work: {cycle.machine.scene.name}"
+    figure, (upper, lower) = sheet(COLUMN_IN, shape, title, entries, of.notes)
+    for curve, look, _ in curves:
+        of.plot(upper, curve, **look)
+    of.plot(lower, series.work, **WORK)
+    for one, label in ((upper, "torque [N m]"), (lower, "work [J]")):
+        one.axhline(0.0, color=QUIET, linewidth=0.5)
+        of.mark_axis(one)
+        one.set_ylabel(label)
+    upper.tick_params(labelbottom=False)
+    lower.set_xlabel(of.label)
+    return figure
+
+
+REGULATION_FIGURES: Mapping[str, Callable[[Regulated], Figure | None]] = {
+    "speed": draw_speed,
+    "torques": draw_torques,
+    "energy-mass": draw_energy_mass,
+}
+"""Each gives None where there is nothing to draw: a machine of constant moment of inertia has no
+energy-mass diagram."""
+
+
+def figure_files() -> list[str]:
+    """The names of all files that may be written."""
+    return [f"{name}.{kind}" for name in REGULATION_FIGURES for kind in FORMATS]
+
+
+def drawn_figures(of: Regulated) -> Iterator[tuple[str, Figure]]:
+    """Each figure by its name, without those that have nothing to draw."""
+    for name, draw in REGULATION_FIGURES.items():
+        with styled():
+            figure = draw(of)
+        if figure is not None:
+            yield name, figure
+
+
+def written_figures(of: Regulated, folder: Path) -> str:
+    """Write all figures; returns what was written, in a line. Raises CrankcheckError where the
+    system refuses."""
+    names, title = [], of.cycle.machine.scene.name
+    for name, figure in drawn_figures(of):
+        names.append(name)
+        for kind in FORMATS:
+            write(folder / f"{name}.{kind}", saved(figure, kind, f"{title}: {name}"))
+    kinds = " and ".join(f".{kind}" for kind in FORMATS)
+    return f"{folder}: {count(len(names), 'figure')}, each as {kinds}: {', '.join(names)}"

@@ -1,0 +1,288 @@
+"""What figures of vibration share: how they are written, and what stands under them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator, MultipleLocator
+
+from analytic.lectures.vibration.floquet import STABLE
+from analytic.lectures.vibration.over_speeds import InertiaMap, OverSpeeds, spectra
+from analytic.lectures.vibration.steady_vibration import SteadyVibration
+from models.array import Array
+from models.scene import Scene
+from reports.figures.figure_set import FORMATS, saved
+from reports.figures.sheet import Panels, sheet
+from reports.figures.style import COLUMN_IN, PAGE_IN, SMALL, logarithmic, styled
+from reports.lectures.machine.vibration_rows import unstable_speeds
+from reports.output.provenance import crankcheck_version
+from reports.output.write import write
+
+COLOURS = ("#1f5f9e", "#c04a1d", "#2f7d4c", "#7a4d9e")
+"""Of the links, one after the other."""
+SIDES = (0.58, 0.1)
+"""Room on the left and on the right of a panel [inch]."""
+ORDERS = 24
+"""Orders that are drawn."""
+SMALLEST = 1e-7
+"""Amplitudes over the length that are still drawn."""
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure by its name, and what draws it."""
+
+    name: str
+    draw: Callable[[], Figure]
+
+
+def write_figures(folder: Path, drawings: Iterable[Drawing], title: str) -> list[str]:
+    """Write figures in all formats; returns the names of the files. Raises CrankcheckError where
+    the system refuses."""
+    names = []
+    for each in drawings:
+        with styled():
+            figure = each.draw()
+        for kind in FORMATS:
+            names.append(f"{each.name}.{kind}")
+            write(folder / names[-1], saved(figure, kind, f"{title}: {each.name}"))
+    return names
+
+
+def notes(scene: Scene, said: str) -> list[str]:
+    """What stands under a figure."""
+    links = ", ".join(scene.elastic)
+    return [f"crankcheck {crankcheck_version()}; elastic: {links}; {said}."]
+
+
+def whole_orders(axes: Axes, which: str, highest: int) -> None:
+    """Ticks at whole orders."""
+    axis = axes.xaxis if which == "x" else axes.yaxis
+    axis.set_major_locator(MaxNLocator(nbins=min(12, highest), integer=True))
+
+
+SHOWN = "#b8860b"
+UNSTABLE = "#c0392b"
+LINEAR = "linear in the deflection, about the rigid motion, with the stiffness that pull gives"
+
+
+def draw_over_speed(over: OverSpeeds) -> Figure:
+    """The largest deflection of each link, and below it the largest multiplier."""
+    scene, links = over.scene, list(over.points[0].swings)
+    entries: list[tuple[Artist, str]] = [
+        (Line2D([], [], color=colour), f"{name}, largest over length")
+        for name, colour in zip(links, COLOURS * len(links), strict=False)
+    ]
+    entries.append((Line2D([], [], color="#8a8a8a", linestyle=":"), "critical speed, with order"))
+    if unstable_speeds(over):
+        entries.append((Line2D([], [], color=UNSTABLE, linewidth=3.0, alpha=0.4), "unstable"))
+    shape = Panels(2, 1, 1.6, *SIDES, 0.2, between=(0, 0.12))
+    title = f"Vibration over speed: {scene.name}"
+    figure, (upper, lower) = sheet(COLUMN_IN, shape, title, entries, notes(scene, LINEAR))
+    everything = []
+    for name, colour in zip(links, COLOURS * len(links), strict=False):
+        shares = np.array([point.swings[name].share for point in over.points])
+        everything.append(shares[shares > 0.0])
+        upper.plot(over.speeds, np.maximum(shares, 1e-300), color=colour)
+    values = np.concatenate(everything)
+    logarithmic(upper, "y", 0.5 * float(values.min(initial=1.0)), 2.0 * float(values.max()))
+    _mark_critical(upper, over)
+    upper.set_ylabel("deflection / length")
+    upper.tick_params(labelbottom=False)
+    multipliers = np.array([point.stability.largest for point in over.points])
+    lower.plot(over.speeds, multipliers, color="#1a1a1a")
+    top = float(multipliers.max())
+    if top > 10.0:
+        logarithmic(lower, "y", 0.5, 2.0 * top)
+    else:
+        low = float(multipliers.min())
+        lower.set_ylim(min(0.9, low - 0.05), max(1.1, 1.05 * top))
+    lower.set_ylabel("largest multiplier")
+    lower.set_xlabel(f"speed of {scene.driver.link} [rad/s]")
+    for axes in (upper, lower):
+        axes.set_xlim(over.speeds[0], over.speeds[-1])
+        for each in unstable_speeds(over):
+            axes.axvspan(each.low_rad_s, each.high_rad_s, color=UNSTABLE, alpha=0.15, linewidth=1.0)
+    return figure
+
+
+def _mark_critical(axes: Axes, over: OverSpeeds) -> None:
+    """Dotted lines at the strongest critical speeds, with the order above those that have room."""
+    low, high = over.speeds[0], over.speeds[-1]
+    taken: list[float] = []
+    for each in over.critical[:12]:
+        axes.axvline(each.speed_rad_s, color="#8a8a8a", linestyle=":", linewidth=0.8)
+        place = (each.speed_rad_s - low) / (high - low)
+        if all(abs(place - other) > 0.04 for other in taken) and 0.02 < place < 0.98:
+            taken.append(place)
+            axes.text(
+                each.speed_rad_s, 1.02, str(each.order), size=SMALL, ha="center", va="bottom",
+                transform=axes.get_xaxis_transform(),
+            )  # fmt: skip
+
+
+def draw_waterfall(over: OverSpeeds) -> Figure:
+    """The spectrum at every speed, a panel for each link, and the orders of the modes."""
+    scene, links = over.scene, list(over.points[0].swings)
+    entries: list[tuple[Artist, str]] = [
+        (Line2D([], [], color=SHOWN, linestyle="--"), "order that a mode vibrates at"),
+    ]
+    shape = Panels(1, len(links), 2.6, 0.48, 0.62, 0.2, between=(0.75, 0.25))
+    title = f"Spectrum of the deflection over speed: {scene.name}"
+    width = COLUMN_IN if len(links) == 1 else PAGE_IN
+    figure, axes = sheet(width, shape, title, entries, notes(scene, LINEAR))
+    for panel, name in zip(axes, links, strict=True):
+        amplitudes = np.log10(np.maximum(spectra(over, name), SMALLEST))[:, : ORDERS + 1]
+        highest = max(min(math.ceil(np.percentile(amplitudes, 99.9)), 0), -5)
+        orders = np.arange(amplitudes.shape[1])
+        image = panel.pcolormesh(
+            orders, over.speeds, amplitudes, shading="nearest", cmap="viridis",
+            vmin=math.log10(SMALLEST), vmax=highest, rasterized=True,
+        )  # fmt: skip
+        _draw_modes(panel, over)
+        panel.grid(visible=False)
+        panel.set_title(name)
+        panel.set_xlim(-0.5, orders[-1] + 0.5)
+        panel.set_ylim(over.speeds[0], over.speeds[-1])
+        whole_orders(panel, "x", ORDERS)
+        panel.set_xlabel(f"order of {scene.driver.link}")
+        bar = figure.colorbar(image, cax=panel.inset_axes((1.03, 0.0, 0.04, 1.0)))
+        bar.set_label("log₁₀ amplitude / length", size=SMALL)
+    axes[0].set_ylabel(f"speed of {scene.driver.link} [rad/s]")
+    return figure
+
+
+def _draw_modes(axes: Axes, over: OverSpeeds) -> None:
+    orders = np.array([[each.order for each in point.deviations] for point in over.points])
+    for own in orders.T:
+        axes.plot(own, over.speeds, color=SHOWN, linestyle="--", linewidth=0.9)
+
+
+LOWEST, HIGHEST = -5.0, 0.0
+"""Decades of the deflection over the length that are told apart."""
+MOST_GROWTH = 3.0
+"""Decades of a turn's growth that are told apart."""
+
+
+def draw_over_inertia(found: InertiaMap) -> Figure:
+    """Deflection on the left, multipliers on the right."""
+    scene, driver = found.scene, found.scene.driver.link
+    entries: list[tuple[Artist, str]] = [
+        (Line2D([], [], color="#eeeeee", marker="s", linestyle=""), "deviations do not grow"),
+    ]
+    shape = Panels(1, 2, 2.5, 0.55, 0.62, 0.2, between=(1.15, 0.25))
+    title = f"Vibration over speed and inertia of {found.link}: {scene.name}"
+    figure, (left, right) = sheet(PAGE_IN, shape, title, entries, notes(scene, LINEAR))
+    ratios = np.array([point.ratio for point in found.over[0].points])
+    height = np.log10(found.factors)
+    shares = np.log10(np.clip(found.shares, 10.0**LOWEST, 10.0**HIGHEST))
+    low, high = math.floor(shares.min()), math.ceil(shares.max())
+    drawn = left.pcolormesh(
+        ratios, height, shares, shading="nearest", cmap="viridis", vmin=low,
+        vmax=max(high, low + 1), rasterized=True,
+    )  # fmt: skip
+    growth = np.log10(np.maximum(found.multipliers, 1.0))
+    growth = np.where(found.multipliers > 1.0 + STABLE, growth, np.nan)
+    right.pcolormesh(
+        ratios, height, np.zeros_like(shares), shading="nearest", cmap=ListedColormap(["#eeeeee"]),
+        rasterized=True,
+    )  # fmt: skip
+    grown = right.pcolormesh(
+        ratios, height, growth, shading="nearest", cmap="YlOrRd", vmin=0.0, vmax=MOST_GROWTH,
+        rasterized=True,
+    )  # fmt: skip
+    bars = ((left, drawn, "largest deflection / length"), (right, grown, "growth in a turn"))
+    for panel, image, told in bars:
+        panel.grid(visible=False)
+        panel.set_xlim(ratios.min(), ratios.max())
+        panel.set_ylim(height.min(), height.max())
+        ticks = found.factors[:: max(1, len(found.factors) // 5)]
+        panel.set_yticks(np.log10(ticks), [f"{tick:.3g}" for tick in ticks])
+        panel.set_xlabel(f"lowest natural frequency / speed of {driver}")
+        panel.set_ylabel(f"{found.link}, times its inertia")
+        bar = figure.colorbar(image, cax=panel.inset_axes((1.03, 0.0, 0.04, 1.0)))
+        bar.set_label(f"log₁₀ {told}", size=SMALL)
+    return figure
+
+
+FINE = 361
+"""Points of a curve."""
+LOOKS = {"": "-", "linear": (0, (1.0, 1.2)), "linear, not stiffened": (0, (4.0, 1.5))}
+
+
+def draw_over_turn(vibration: SteadyVibration) -> Figure:
+    """Deflection of the middle over the driver's angle, a panel for each link."""
+    scene = vibration.scene
+    entries: list[tuple[Artist, str]] = [
+        (Line2D([], [], color="#1a1a1a", linestyle=look), name or "unlinearised")  # type: ignore[arg-type]  # a pattern of dashes
+        for name, look in LOOKS.items()
+    ]
+    shape = Panels(len(vibration.swings), 1, 1.7, *SIDES, 0.17, between=(0, 0.25))
+    said = notes(scene, f"{scene.driver.link} at {vibration.speed_rad_s:.5g} rad/s")
+    title = f"Deflection over a turn: {scene.name}"
+    figure, axes = sheet(COLUMN_IN, shape, title, entries, said)
+    law = scene.driver.law
+    turn = np.linspace(0.0, 1.0, FINE)
+    degrees = np.degrees(law.at(turn * law.period_s)[0])
+    for panel, (name, own), colour in zip(
+        axes, vibration.swings.items(), COLOURS * len(axes), strict=False
+    ):
+        for theory, look in LOOKS.items():
+            swing = vibration.theories[theory][name] if theory else own
+            curve = 1e3 * between(swing.series, turn)
+            panel.plot(degrees, curve, color=colour, linestyle=look, linewidth=1.0)
+        panel.set_ylabel(f"{name} {'middle' if own.bends else 'extension'} [mm]")
+        panel.set_xlim(*sorted(degrees[[0, -1]]))
+        panel.xaxis.set_major_locator(MultipleLocator(60.0))
+        panel.tick_params(labelbottom=panel is axes[-1])
+    axes[-1].set_xlabel(f"angle of {scene.driver.link} [deg]")
+    return figure
+
+
+def draw_spectrum(vibration: SteadyVibration) -> Figure:
+    """Amplitudes over the length at orders of the driver, and the orders of the modes."""
+    scene, each = vibration.scene, list(vibration.swings.values())
+    entries: list[tuple[Artist, str]] = [
+        (Line2D([], [], color=colour, marker="o", markersize=3, linestyle="-"), own.link)
+        for own, colour in zip(each, COLOURS * len(each), strict=False)
+    ]
+    shown = [d for d in vibration.stability.deviations if d.order <= ORDERS]
+    if shown:
+        entries.append((Line2D([], [], color="#8a8a8a", linestyle=":"), "modes of the mechanism"))
+    said = notes(scene, f"{scene.driver.link} at {vibration.speed_rad_s:.5g} rad/s")
+    title = f"Spectrum of the deflection: {scene.name}"
+    figure, (panel,) = sheet(COLUMN_IN, Panels(1, 1, 2.0, *SIDES, 0.08), title, entries, said)
+    tops = []
+    for k, (own, colour) in enumerate(zip(each, COLOURS * len(each), strict=False)):
+        orders = np.arange(min(ORDERS + 1, len(own.amplitudes)))
+        orders = orders[own.amplitudes[orders] > SMALLEST * own.length_m]
+        heights = own.amplitudes[orders] / own.length_m
+        shift = 0.18 * (k - 0.5 * (len(each) - 1))
+        panel.vlines(orders + shift, SMALLEST, heights, color=colour, linewidth=1.2)
+        panel.plot(orders + shift, heights, color=colour, marker="o", markersize=2.4, linestyle="")
+        tops.append(heights.max(initial=SMALLEST))
+    for deviation in shown:
+        panel.axvline(deviation.order, color="#8a8a8a", linestyle=":", linewidth=0.9)
+    logarithmic(panel, "y", SMALLEST, max(3.0 * max(tops), 1e2 * SMALLEST))
+    panel.set_xlim(-0.7, ORDERS + 0.7)
+    whole_orders(panel, "x", ORDERS)
+    panel.set_xlabel(f"order of {scene.driver.link}")
+    panel.set_ylabel("amplitude / length")
+    return figure
+
+
+def between(series: Array, shares: Array) -> Array:
+    """What is periodic (N,) at shares of the period (T,)."""
+    found = np.fft.rfft(series) / len(series)
+    found[1:] *= 2.0
+    wave = np.exp(2j * np.pi * np.outer(shares, np.arange(len(found))))
+    return np.asarray((wave @ found).real)
