@@ -11,7 +11,7 @@ import pytest
 
 import crankcheck
 from crankcheck import engine, testing
-from tests.worlds.pages import blocks, faults_of, scripts
+from tests.worlds.pages import IN_PARTS, blocks, faults_of, scripts
 from tests.worlds.tiers import few
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -20,7 +20,9 @@ PAGES = {
     for path in sorted(DOCS.rglob("*.md"))
 }
 EXAMPLE = re.compile("^```(console|python)", re.M)
-WITH_EXAMPLES = [name for name, page in PAGES.items() if EXAMPLE.search(page)]
+WITH_EXAMPLES = [
+    name for name, page in PAGES.items() if EXAMPLE.search(page) and name not in IN_PARTS
+]
 (ENGINES,) = (page for page in PAGES.values() if "`examples/engine/penalty_engine.py` is" in page)
 MADE = {"forces": "figs", "elastic": "figs", "how-to/own-model": "out"}
 """Folders that a page has made, and names all files of."""

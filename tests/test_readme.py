@@ -1,90 +1,91 @@
-"""The README is true: every command in it runs, and prints what stands below it.
+"""The README and the tour are true: every command in them runs, and prints what stands below it.
 
 A block of ``console`` starts with ``$ command``; below it stands what the command prints
-(`tests.worlds.pages`).
+(`tests.worlds.pages`). Examples that share no file are tried each by themselves, so that those that
+take their time can wait for `make slow`.
 """
 
 from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from reports.selftest.trial import FAULTS
 from reports.stability.grading import CATALOGUE
-from tests.worlds.command import PYTHON
-from tests.worlds.pages import blocks, commands, follows, ran, same, threads, words
+from tests.worlds.pages import IN_PARTS, blocks, commands, faults_of, parts, same, threads
 from tests.worlds.tiers import slowly
 
 ROOT = Path(__file__).parents[1]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
-SCRIPTS = blocks(README, "python")
-THREADS = threads([command for command, _, _ in commands(README)], SCRIPTS)
-LONG: dict[str, str] = {
-    "crankcheck run fourbar-lecture-1 --engine mujoco --turns 1 -o log.csv": "15 s: a sweep, shown "
-    "in every way; each is tested by its room",
+README, *PAGES = (
+    (ROOT / name).read_text(encoding="utf-8")
+    for name in ("README.md", *(f"docs/{page}.md" for page in IN_PARTS))
+)
+LONG = {
+    "crankcheck sweep fourbar-lecture-1 slotted-lever -o out --steps-per-turn 90,180,360": "15 s: "
+    "a sweep, shown in every way; each is tested by its room",
     "crankcheck selftest": "26 s: every fault is planted by tests/reports/selftest",
     "crankcheck stability grashof-excess n-fourbar": "10 s: every case runs in tests/reports",
-    "crankcheck advise --dt 1/60 --speed 10 --target 1e-3": "6 s: tests/reports/advise",
-    "crankcheck verify --free fourbar-pulse --profile tuned": "3 s: tests/reports/cli",
-    "crankcheck solve shaper-cutting --forces --figures figs": "2 s: tests/reports/figures",
 }
 """Commands that take their time, and where else what they do is tested."""
+MOST_BYTES = 12_000
+"""Of the README, which points on: what needs more has a page."""
 
 
-def _thread(steps: list[str]) -> object:
-    """Commands and scripts that use what earlier ones of them leave."""
-    name = re.sub(r"\s+", " ", steps[0])[:60]
-    reason = LONG.get(steps[0])
-    return slowly(steps, reason=reason, id=name) if reason else pytest.param(steps, id=name)
+def _cases(page: str) -> Iterator[object]:
+    """The parts of a page, by their first command or script."""
+    for first, part in parts(page).items():
+        name = re.sub(r"\s+", " ", first)[:60]
+        reason = LONG.get(first)
+        yield slowly(part, reason=reason, id=name) if reason else pytest.param(part, id=name)
 
 
-@pytest.mark.parametrize("steps", [_thread(steps) for steps in THREADS])
-def test_readme_is_true(steps: list[str], tmp_path: Path) -> None:
+@pytest.mark.parametrize("part", [case for page in (README, *PAGES) for case in _cases(page)])
+def test_readme_and_tour_are_true(part: str, tmp_path: Path) -> None:
     """One after the other in one folder, as a reader would: later commands use what earlier ones
-    left. What uses nothing of the others is tried by itself, beside them."""
-    shown = {command: (lines, code) for command, lines, code in commands(README)}
-    faults = []
-    for step in steps:
-        if step in SCRIPTS:
-            done = ran([PYTHON, "-c", step], tmp_path)
-            if done.returncode != 0:
-                faults.append(f"{step}\n{done.stderr}")
-            continue
-        lines, code = shown[step]
-        done = ran(words(step), tmp_path)
-        if done.returncode != code:
-            faults.append(f"$ {step}\nexit {done.returncode}\n{done.stdout}{done.stderr}")
-        printed = [line.rstrip() for line in done.stdout.splitlines()]
-        if fault := follows([line.rstrip() for line in lines], printed):
-            faults.append(f"$ {step}\n{fault}")
-    assert not faults, "\n\n".join(faults)
+    left."""
+    assert not faults_of(part, tmp_path)
 
 
-def test_every_command_of_the_readme_is_tried_once() -> None:
-    tried = sorted(step for steps in THREADS for step in steps)
-    assert tried == sorted([*(command for command, _, _ in commands(README)), *SCRIPTS])
-    assert len(set(tried)) == len(tried)
-    assert min(len(commands(README)), len(SCRIPTS)) >= 3
-    assert not set(LONG) - {steps[0] for steps in THREADS}
+@pytest.mark.parametrize("page", [README, *PAGES])
+def test_every_command_of_a_page_is_tried_once_in_one_of_its_parts(page: str) -> None:
+    whole, tried = (commands(page), blocks(page, "python")), (list[object](), list[str]())
+    for part in parts(page).values():
+        tried[0].extend(commands(part))
+        tried[1].extend(blocks(part, "python"))
+    assert [sorted(each, key=str) for each in tried] == [sorted(each, key=str) for each in whole]
+    assert len({command for command, _, _ in whole[0]}) == len(whole[0])
 
 
-def test_the_readme_counts_all_faults_that_are_planted_and_hard_cases_that_run_unnamed() -> None:
+def test_what_takes_long_stands_on_a_page() -> None:
+    assert not set(LONG) - {first for page in PAGES for first in parts(page)}
+
+
+def test_the_readme_is_short_and_has_no_example_that_takes_long() -> None:
+    assert len(README.encode()) <= MOST_BYTES
+    assert len(parts(README)) >= 3
+    assert not set(LONG) & set(parts(README))
+
+
+def test_pages_count_all_faults_that_are_planted_and_hard_cases_that_run_unnamed() -> None:
     of = Counter(fault.kind for fault in FAULTS.values())
     motions = of["motion"]
     driven = sum(case.way == "driven" for case in CATALOGUE.values())
-    counts = (
-        f"plants {motions} faults",
-        f" {motions} of {motions} faults caught by the named rule ",
-        f"plants {of['forces']} faults of force",
-        f"plants {of['free']} faults of dynamics",
-        f"`selftest --elastic` plants {of['elastic']} faults",
-        f"in them, and {of['beam']} in beams",
-        f"The whole catalogue, {driven} families",
-    )
-    assert [words for words in counts if words not in " ".join(README.split())] == []
+    counts = {
+        f"plants {motions} faults": "reference/tolerances",
+        f" {motions} of {motions} faults caught by the named rule ": "reference/tolerances",
+        f"plants {of['forces']} faults of force": "forces",
+        f"plants {of['free']} faults of dynamics": "free",
+        f"`selftest --elastic` plants {of['elastic']} faults": "elastic",
+        f"in them, and {of['beam']} in beams": "elastic",
+        f"The whole catalogue, {driven} families": "tour",
+    }
+    text = {name: (ROOT / "docs" / f"{name}.md").read_text("utf-8") for name in counts.values()}
+    lost = [said for said, name in counts.items() if said not in " ".join(text[name].split())]
+    assert lost == []
 
 
 def test_what_uses_a_file_comes_after_what_writes_it() -> None:

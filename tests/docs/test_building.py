@@ -100,7 +100,7 @@ def test_what_there_is_no_mathml_for_is_refused(latex: str) -> None:
 
 
 def test_every_formula_of_every_page_has_mathml_and_one_without_is_named() -> None:
-    faults = {path: fault_of(page) for path, page in sources().text.items()}
+    faults = {path: fault_of(page) for path, page in sources().items()}
     assert not {path: fault for path, fault in faults.items() if fault}
     assert fault_of("# A\n\nso $x$ and\n\n$$\\nonsense$$\n").endswith(r"\nonsense in $\nonsense$")
     assert fault_of("# A\n\nso $x$ and `$\\nonsense$`\n") == ""

@@ -1,5 +1,6 @@
-"""Every page has a place in the site, and its links lead somewhere, there and in the checkout; the
-references are whole: every command with every option, every name of the face."""
+"""Every page has a place in the site, and its links lead somewhere, there and in the checkout, as
+those of the README do; the references are whole: every command with every option, every name of the
+face."""
 
 from __future__ import annotations
 
@@ -38,13 +39,19 @@ def leaves(entries: list[Any]) -> Iterator[str]:
 def test_every_page_stands_in_the_navigation_once_and_begins_with_its_title() -> None:
     config = tomllib.loads((HERE / "zensical.toml").read_text(encoding="utf-8"))
     assert sorted(leaves(config["project"]["nav"])) == sorted(SITE)
-    assert not [path for path, page in WRITTEN.text.items() if not page.startswith("# ")]
+    assert not [path for path, page in WRITTEN.items() if not page.startswith("# ")]
 
 
 def anchors(page: str) -> set[str]:
     prose = re.sub(r"^```.*?^```", "", page, flags=re.DOTALL | re.MULTILINE)
     titles = re.findall(r"^#+ (.+)$", prose, re.MULTILINE)
-    return {staging.anchor_of(title.replace("`", "")) for title in titles}
+    return {anchor_of(title.replace("`", "")) for title in titles}
+
+
+def anchor_of(title: str) -> str:
+    """The anchor of a heading, as GitHub and the site make it."""
+    kept = re.sub(r"[^\w\- ]", "", title.strip().lower())
+    return kept.replace(" ", "-")
 
 
 def dead_links(text: Mapping[str, str]) -> Iterator[str]:
@@ -63,7 +70,8 @@ def dead_links(text: Mapping[str, str]) -> Iterator[str]:
 
 
 def test_every_link_leads_somewhere_and_dead_ones_are_seen() -> None:
-    assert not list(dead_links(WRITTEN.text))
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert not list(dead_links({**WRITTEN, "README.md": readme}))
     page = "# A\n[x](nowhere.md) [y](#b) [z](#a) `[in code](none.md)` [w](https://example.org)\n"
     faults = ["nowhere.md: there is no docs/nowhere.md", "#b: no such heading"]
     found = list(dead_links({"docs/a.md": page}))
@@ -71,7 +79,7 @@ def test_every_link_leads_somewhere_and_dead_ones_are_seen() -> None:
 
 
 def test_every_name_of_code_that_a_page_refers_to_is_there_and_public() -> None:
-    names = {name for page in WRITTEN.text.values() for name in references(page)}
+    names = {name for page in WRITTEN.values() for name in references(page)}
     assert not sorted(name for name in names if not home(name) or "._" in name)
 
 
@@ -84,32 +92,24 @@ def test_names_of_code_are_found_in_both_ways_of_writing() -> None:
 
 
 @pytest.mark.parametrize(
-    ("link", "path", "place", "sited"),
+    ("link", "path", "sited"),
     [
-        ("[a](docs/free.md#b)", "README.md", "tour.md", "[a](free.md#b)"),
-        ("[a](#scenes)", "README.md", "tour.md", "[a](reference/scenes.md)"),
-        ("[a](#speed)", "README.md", "tour.md", "[a](#speed)"),
-        ("[a](../README.md)", "docs/free.md", "free.md", "[a](tour.md)"),
-        ("[a](../README.md#scenes)", "docs/free.md", "free.md", "[a](reference/scenes.md)"),
-        ("[a](../../README.md#scenes)", "docs/reference/scenes.md", "reference/scenes.md", "a"),
-        ("[a](../examples/engine)", "docs/free.md", "free.md", "a"),
-        ("[a](nowhere.md)", "docs/free.md", "free.md", "[a](nowhere.md)"),
-        ("`[a](docs/free.md)`", "README.md", "tour.md", "`[a](docs/free.md)`"),
-        ("![a](a.svg)", "docs/free.md", "free.md", "![a](a.svg)"),
+        ("[a](docs/free.md#b)", "CHANGELOG.md", "[a](free.md#b)"),
+        ("[a](../CHANGELOG.md)", "docs/free.md", "[a](changes.md)"),
+        ("[a](reference/scenes.md#b)", "docs/free.md", "[a](reference/scenes.md#b)"),
+        ("[a](../free.md)", "docs/reference/scenes.md", "[a](../free.md)"),
+        ("[a](#speed)", "docs/free.md", "[a](#speed)"),
+        ("[a](https://example.org)", "docs/free.md", "[a](https://example.org)"),
+        ("[a](../README.md#b)", "docs/free.md", "a"),
+        ("[a](../examples/engine)", "docs/free.md", "a"),
+        ("[a](nowhere.md)", "docs/free.md", "[a](nowhere.md)"),
+        ("`[a](docs/free.md)`", "CHANGELOG.md", "`[a](docs/free.md)`"),
+        ("![a](a.svg)", "docs/free.md", "![a](a.svg)"),
     ],
 )
-def test_links_are_as_the_site_has_its_places(link: str, path: str, place: str, sited: str) -> None:
-    text = {"README.md": "", "docs/free.md": "", "docs/reference/scenes.md": ""}
-    written = staging.Sources(text, {"scenes": "reference/scenes.md"})
-    assert relinked(link, path, place, written) == sited
-
-
-def test_a_section_of_the_readme_stands_on_one_page() -> None:
-    assert "my-slider-crank" in SITE["reference/scenes.md"]
-    assert "my-slider-crank" not in SITE["tour.md"]
-    assert "\n## Hard cases\n" in SITE["tour.md"]
-    with pytest.raises(ValueError, match="no section 'Never'"):
-        staging.section(WRITTEN.text["README.md"], "Never")
+def test_links_are_as_the_site_has_its_places(link: str, path: str, sited: str) -> None:
+    written = {"CHANGELOG.md", "docs/free.md", "docs/reference/scenes.md"}
+    assert relinked(link, path, written) == sited
 
 
 def test_what_is_made_is_on_its_page() -> None:

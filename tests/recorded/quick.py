@@ -26,7 +26,10 @@ from tests.recorded.recording import OURS, ROOT
 FOLDER = ROOT / ".recorded"
 DONE = FOLDER / "done"
 TIER = "not slow and not long"
-DOCUMENTS = {"README.md": ["tests/test_readme.py"], "docs": ["tests/test_docs.py", "tests/docs"]}
+DOCUMENTS = {
+    "README.md": ["tests/test_readme.py", "tests/docs/test_pages.py"],
+    "docs": ["tests/test_readme.py", "tests/test_docs.py", "tests/docs"],
+}
 """What no line of code stands for, and its tests."""
 
 

@@ -22,6 +22,8 @@ from typer.testing import CliRunner
 from reports.cli import app
 from tests.worlds.command import COMMAND, PYTHON, VARIABLE
 
+IN_PARTS = ("tour", "reference/tolerances")
+"""Pages of docs that tests/test_readme.py tries part by part, and tests/test_docs.py leaves out."""
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 ANY = "..."
 
@@ -49,6 +51,25 @@ def scripts(page: str) -> list[tuple[str, list[str] | None]]:
     one."""
     found = re.findall(r"```python\n(.*?)```(?:\n\n```text\n(.*?)```)?", page, flags=re.DOTALL)
     return [(code, text.rstrip("\n").split("\n") if text else None) for code, text in found]
+
+
+def parts(page: str) -> dict[str, str]:
+    """The page taken apart: pages of those examples that share a file, by the first of them. Each
+    runs without the others."""
+    shown = {command: _console(command, lines, code) for command, lines, code in commands(page)}
+    told, code = list(shown), []
+    for script, text in scripts(page):
+        code.append(script)
+        shown[script] = f"```python\n{script}```\n"
+        if text is not None:
+            shown[script] += "\n```text\n{}\n```\n".format("\n".join(text))
+    return {steps[0]: "\n".join(shown[step] for step in steps) for steps in threads(told, code)}
+
+
+def _console(command: str, lines: Sequence[str], code: int) -> str:
+    """What `commands` has read, as a page has it."""
+    ended = ["$ echo $?", str(code)] if code else []
+    return "\n".join(["```console", f"$ {command}", *lines, *ended, "```", ""])
 
 
 def threads(told: Sequence[str], code: Sequence[str]) -> list[list[str]]:
