@@ -281,6 +281,14 @@ def certify(
 ) -> tuple[Real, Real]:
     """Bounds on the errors of a dyad's two unknowns at position level.
 
+    The certificate is a posteriori. The residual of the computed position, plus the rounding of its
+    evaluation, plus the errors of the inputs, is a bound on f at the exact inputs; multiplied by
+    the inverse of the Jacobian it bounds the error of the unknowns to first order, and up to twice
+    that bounds it fully as long as the curvature of f over that distance spends no more than the
+    residual itself (Newton-Kantorovich). Where that fails the dyad is within about the square root
+    of rounding of its toggle: each dyad then gives the width of its fold, and rates are not certain
+    at all (infinite).
+
     Parameters
     ----------
     jacobian : Jacobian
@@ -294,14 +302,6 @@ def certify(
         no longer says anything; asked for only where it matters.
     lost : Array or float
         What the errors of the inputs may take off the determinant, where its columns hold any.
-
-    The certificate is a posteriori. The residual of the computed position, plus the rounding of its
-    evaluation, plus the errors of the inputs, is a bound on f at the exact inputs; multiplied by
-    the inverse of the Jacobian it bounds the error of the unknowns to first order, and up to twice
-    that bounds it fully as long as the curvature of f over that distance spends no more than the
-    residual itself (Newton-Kantorovich). Where that fails the dyad is within about the square root
-    of rounding of its toggle: each dyad then gives the width of its fold, and rates are not certain
-    at all (infinite).
     """
     n1, n2 = jacobian.c1.norm(), jacobian.c2.norm()
     inverse = 1.0 / np.maximum(np.abs(jacobian.det) - lost, 0.0)
