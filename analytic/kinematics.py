@@ -5,8 +5,6 @@ stay in cache, and writes what was asked for. With ``bound`` every number carrie
 error, propagated from group to group (`analytic.dyads.parts`).
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator

@@ -8,8 +8,6 @@ milliseconds, and times those of the rigid reference and of the engine. On a mac
 nothing else: ``OPENBLAS_NUM_THREADS=1 python benchmarks/elastic.py``.
 """
 
-from __future__ import annotations
-
 import sys
 
 sys.path.pop(0)  # this folder, whose logging.py would hide the standard library's

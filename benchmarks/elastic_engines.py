@@ -12,8 +12,6 @@ within 1 % of the beam with 16 plain segments, or not within 1e-3 of the exact c
 `--beams` all segments.
 """
 
-from __future__ import annotations
-
 import sys
 
 sys.path.pop(0)  # this folder, whose logging.py would hide the standard library's

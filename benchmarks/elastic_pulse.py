@@ -6,8 +6,6 @@ of a straight start is left after each turn, over the periodic motion, for sever
 tables; they take minutes.
 """
 
-from __future__ import annotations
-
 import sys
 
 sys.path.pop(0)  # this folder, whose logging.py would hide the standard library's

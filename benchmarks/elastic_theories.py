@@ -14,8 +14,6 @@ what the deflection of the coupler's middle is off that of the unlinearised beam
 Whole ratios resonate. About two minutes.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 import time

@@ -6,8 +6,6 @@ them. Prints nanoseconds a position and the cost of the forces over that of the 
 A/A pair that shows the noise. Exits with 1 where a ratio asked for is missed.
 """
 
-from __future__ import annotations
-
 import sys
 
 sys.path.pop(0)  # this folder, whose logging.py would hide the standard library's

@@ -8,8 +8,6 @@ angle is within a target, and what that costs over the reference. The third show
 terms cost in the multibody form. About two minutes. It judges nothing and exits with 0.
 """
 
-from __future__ import annotations
-
 import sys
 
 sys.path.pop(0)  # this folder, whose logging.py would hide the standard library's

@@ -10,8 +10,6 @@ the profile were chosen on the shipped scenes; the random ones had no part in it
 It judges nothing and exits with 0, with 2 for a COUNT that is none.
 """
 
-from __future__ import annotations
-
 import statistics
 import sys
 from collections.abc import Iterator, Sequence

@@ -8,8 +8,6 @@ comprehensions that name what makes the kind of a scene: `is_free`, `free`, `ela
 `with_forces`, as a name, an attribute or a text.
 """
 
-from __future__ import annotations
-
 import ast
 import sys
 from collections import Counter, defaultdict

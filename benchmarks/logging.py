@@ -6,8 +6,6 @@ noise. It exits with 1 if a ratio is over its limit, and with 2 if the noise is 
 machine is too busy to tell.
 """
 
-from __future__ import annotations
-
 import gc
 import platform
 import statistics

@@ -5,8 +5,6 @@
 Runs the tests that are marked long, and prints what each took; the exit code is that of pytest.
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -10,8 +10,6 @@ moves. All stands in `out/mutants`: three records of what tests reach (`tests/re
 to spoil, and a line for each verdict.
 """
 
-from __future__ import annotations
-
 import ast
 import json
 import os

@@ -7,8 +7,6 @@ what a triad takes, which is followed along its crank, beside a six-bar of two d
 peak over the arrays returned. Exits with 1 where a ratio asked for is missed.
 """
 
-from __future__ import annotations
-
 import sys
 
 sys.path.pop(0)  # this folder, whose logging.py would hide the standard library's

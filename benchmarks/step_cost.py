@@ -5,8 +5,6 @@ they ask for; each is timed in several rounds, far apart, and the least time cou
 minutes on a machine that does nothing else.
 """
 
-from __future__ import annotations
-
 import statistics
 from collections.abc import Iterator, Sequence
 from contextlib import closing

@@ -8,8 +8,6 @@ squares comes to 50 points of a known coupler curve, plain and blurred. About a 
 nothing and exits with 0.
 """
 
-from __future__ import annotations
-
 import sys
 
 sys.path.pop(0)  # this folder, whose logging.py would hide the standard library's

@@ -9,8 +9,6 @@ on all are right. About four minutes on two processors. It judges no engine, and
 where the two truths disagree.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from collections import Counter

@@ -7,8 +7,6 @@ the ratio of the medians. Without arguments: `verify --jobs 1`, of all scenes. `
 stands for a scene file of a chain of 100 links.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import importlib._bootstrap  # what all imports go through

@@ -10,8 +10,6 @@ eight minutes on two idle processors. It judges nothing and exits with 0, with 2
 none of them.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import platform

@@ -1,7 +1,5 @@
 """Arrays that are passed about, and numbers that a caller hands in as one."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

@@ -1,8 +1,6 @@
 """The pages of docs are true: their examples run from top to bottom, and every name of the face is
 shown."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The engine of examples/engine as its reader has it: spelled, installed, swept, with faults."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

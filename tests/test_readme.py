@@ -5,8 +5,6 @@ A block of ``console`` starts with ``$ command``; below it stands what the comma
 take their time can wait for `make slow`.
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterator

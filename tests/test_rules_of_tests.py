@@ -4,8 +4,6 @@ A verdict must be the same on a machine of any speed. What is meant by "at once"
 held by counts (calls, bytes, steps); seconds stand in `benchmarks/`, as ratios.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from collections import Counter

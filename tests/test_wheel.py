@@ -1,7 +1,5 @@
 """The wheel: built once without a network, listed, and installed beside this environment."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

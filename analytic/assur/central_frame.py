@@ -4,8 +4,6 @@ Of a `Compound` the frame is that of its base. Points and directions of the othe
 driver's coordinate q has them: turned by q about the driven pin, or shifted by it along the line.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

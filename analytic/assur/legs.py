@@ -4,8 +4,6 @@ Each makes its rows at the samples of a chunk, and, when the central link is pla
 link and sliders to the chunk.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from typing import Protocol

@@ -1,7 +1,5 @@
 """How the central link of a group is mounted: its frame, and the legs or joints that hold it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

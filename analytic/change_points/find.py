@@ -17,8 +17,6 @@ Source: C. Galloway's mechanism and the parallelogram, e.g. Norton, Design of Ma
 2.12 (the Grashof condition, special case).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

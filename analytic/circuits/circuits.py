@@ -12,8 +12,6 @@ Source: T. R. Chase and J. A. Mirth, Circuits and branches of single-degree-of-f
 linkages, Journal of Mechanical Design 115 (1993), pages 223 to 230, whose words these are.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Mapping, Sequence

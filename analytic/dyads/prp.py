@@ -9,8 +9,6 @@
 One assembly only; singular where the lines are parallel.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from analytic.dyads.parts import (

@@ -12,8 +12,6 @@ d . v = 0 and d . a + v . v = 0, all to within what is known of them and `FIT`: 
 with some ten digits. A misfit within `FIT` is part of the bounds of the link.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

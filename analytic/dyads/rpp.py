@@ -11,8 +11,6 @@ The directions e and k both turn with the known body, so this is the crossing of
 the known one, and the line through P1 along k. One assembly only; the conditioning is constant.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

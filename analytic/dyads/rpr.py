@@ -10,8 +10,6 @@
 Singular where s = 0: the line is tangent to the circle about P2 of radius h.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from analytic.dyads.parts import (

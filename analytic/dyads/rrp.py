@@ -10,8 +10,6 @@
 Singular where the link stands across the line.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from analytic.dyads.parts import (

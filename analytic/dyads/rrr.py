@@ -11,8 +11,6 @@ Position from the triangle's sides (its area in Heron's form, so that no angle i
 where C lies on the line P1 P2 (toggle).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from analytic.dyads.parts import (

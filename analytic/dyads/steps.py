@@ -1,7 +1,5 @@
 """From a structural group to its closed-form step: geometry prepared once, solved per chunk."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace

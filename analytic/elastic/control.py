@@ -4,8 +4,6 @@ Nothing tells the driver's angle: it is one of the freedoms, as in what is let g
 of the controller on it. What the rigid mechanism needs comes from its kinetostatics.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import lru_cache
 

@@ -7,8 +7,6 @@ across, and too little to be seen: Radau's nodes let that die out, so that windo
 for what bends. Loads over time are smooth within each window.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator

@@ -5,8 +5,6 @@ moves the rocker more or less, and w with it; the means over a turn are what the
 moving mechanism are near to.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -8,8 +8,6 @@ rounding are alike, once extrapolated. Source: Thesis on vibration of planar mec
 links (2018), chapter 4.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial

@@ -12,8 +12,6 @@ the multibody form with multipliers but for the equations of the joints themselv
 R. von Schwerin, MultiBody System SIMulation, chapter 2 (coordinate partitioning).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

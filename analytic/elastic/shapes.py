@@ -5,8 +5,6 @@ coefficients that are looked for. Whether these are sines over the whole link or
 parts of it, the rest asks for their values, slopes and curvatures alone.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

@@ -14,8 +14,6 @@ on, the tangent is taken anew. Source: E. J. Haug, J. Yen, Implicit Numerical In
 Constrained Equations of Motion, Mech. Struct. Mach. 19, 1991 (tangent space parametrisation).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -8,8 +8,6 @@ Letters: e along a line, n = e turned by +90 deg; K a force that is known and x 
 wrench u on the central link; M about the point O of it that moments are taken about.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol

@@ -10,8 +10,6 @@ Letters: e along a line, n = e turned by +90 deg; F the force on the first body 
 that in its outer pin; E and M what else acts on a body, with moments about the pin named.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 from analytic.forces.bounded import Bounded, BoundedVec

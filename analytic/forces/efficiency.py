@@ -1,7 +1,5 @@
 """What friction costs: its power, and the efficiency at an instant and over a cycle."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ A spring between two points pulls at the first body that has each of them: the g
 first link in the order of the scene, else a block.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass

@@ -7,8 +7,6 @@ By d'Alembert's principle that is its weight, its loads, and its inertia::
 Letters: e along a line, n = e turned by +90 deg.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

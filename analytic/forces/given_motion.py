@@ -1,7 +1,5 @@
 """A given motion as the chunks that forces are worked out of."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

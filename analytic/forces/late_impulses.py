@@ -11,8 +11,6 @@ Source: the energy of accelerations is Gauss' and Appell's, S = sum (m a^2 + I a
 measured against engines in `reports.judge.tolerance`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

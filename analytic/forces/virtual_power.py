@@ -8,8 +8,6 @@ and the force E and moment M that act on it, inertia among them::
 No reaction is in it, so it holds for redundant links too, and at rest.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,8 +1,6 @@
 """The free motion of a mechanism of several freedoms, or without a closed form, by the equations of
 motion of all its bodies."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property

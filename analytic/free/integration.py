@@ -5,8 +5,6 @@ stroke or friction goes over to another formula by where the machine is or how f
 solved again until it ends there. At rest friction may hold the machine.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field

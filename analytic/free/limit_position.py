@@ -16,8 +16,6 @@ there its unknowns come of interpolation from both sides, as in a change point
 section 4.10; u is the local coordinate of a fold.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -11,8 +11,6 @@ problem book "Bai tap co hoc may", chapter on real motion; I. I. Artobolevskii, 
 Mechanisms, on reduced masses.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -1,8 +1,6 @@
 """The free motion of a mechanism of one freedom, in the driver's angle, or the coordinate in its
 place: a high-precision integration, and no closed form."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 

@@ -5,8 +5,6 @@ which the other bodies tell. Near a limit the angle says little: there the body 
 what the coordinate is taken from.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -1,8 +1,6 @@
 """Let a mechanism go. With one freedom, by its own equation, integrated to rounding and held to a
 second integration with other nodes in other windows; else by those of all its bodies."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from functools import lru_cache

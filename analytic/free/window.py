@@ -10,8 +10,6 @@ coefficients in Legendre's, which tell by their decay whether a window is short 
 E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section II.7.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ For any mechanism that goes through a whole cycle (`analytic.mechanism.cycle`). 
 exists (`analytic.mechanism.fourbar`, slider-crank, slotted lever) the tests hold this to it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

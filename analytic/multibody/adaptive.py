@@ -6,8 +6,6 @@ the order of the method stays. Source: E. Hairer, G. Wanner, Solving Ordinary Di
 II, VII.2 (projection); the same and S. P. Norsett, I, II.5 (the method of order 8).
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass

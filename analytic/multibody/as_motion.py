@@ -1,7 +1,5 @@
 """Coordinates of an assembly as the motion of its links, points and sliders."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -11,8 +11,6 @@ The equations and their derivatives come from those of markers. Source: E. J. Ha
 Kinematics and Dynamics of Mechanical Systems, chapters 3, 4 and 6.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field

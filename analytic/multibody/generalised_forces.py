@@ -1,7 +1,5 @@
 """Loads and springs of a scene as generalised forces on its coordinates, in an assembly."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The motion of a mechanism of any mobility that was let go, by the method that integrates it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -6,8 +6,6 @@ where Newton's method starts, and have to be as near as somebody writes them dow
 a drawing. The rates are those that the constraints allow, and have the named values.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

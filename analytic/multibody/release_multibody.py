@@ -1,7 +1,5 @@
 """Let a mechanism go, of any mobility, by the equations of motion of all its bodies at once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import numpy as np

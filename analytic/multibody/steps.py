@@ -1,7 +1,5 @@
 """The steps of an integration, passages through change points, and the state that they give."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from bisect import bisect_right

@@ -12,8 +12,6 @@ r"""The Assur groups and the redundant links of a mechanism, in solving order.
     two links, three pairs            four links, six pairs
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 

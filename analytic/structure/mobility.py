@@ -9,8 +9,6 @@ A link that is pinned at two or more points to bodies that move without it is re
 2 k - 3 freedoms from the count, k its pins, and none from the mechanism, if its length fits.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """From the tables of a scene file to a Scene: short forms written out, names checked."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """From tables `[elastic.LINK]` and `[start]` of a scene file to links and a start; their faults."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace

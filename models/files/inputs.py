@@ -1,7 +1,5 @@
 """What a user names or writes, held to bounds: plain files, TOML, names."""
 
-from __future__ import annotations
-
 import os
 import re
 import stat

@@ -4,8 +4,6 @@ Read from the raw tables, so that these faults are reported beside faults of num
 does not have the right shape is left out here, and is a fault of `models.files.schema`.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain, islice

@@ -1,7 +1,5 @@
 """Scene files: find them, read them, and say everything that is wrong with one at once."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from os import PathLike, fspath
 from pathlib import Path

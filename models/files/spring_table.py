@@ -3,8 +3,6 @@
 Read from the raw tables, as `models.files.names` does.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from typing import Any

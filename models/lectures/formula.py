@@ -11,8 +11,6 @@
 Nothing of a text is run: what is not in these rules is refused.
 """
 
-from __future__ import annotations
-
 import math
 import operator
 import re

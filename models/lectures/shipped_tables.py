@@ -1,7 +1,5 @@
 """Small files of tables besides scenes (schemes, contacts): find one, read it, say its faults."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import TypeVar
 

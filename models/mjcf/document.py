@@ -13,8 +13,6 @@ control is the angular acceleration of the crank. Loads are actuators too, const
 the joints, springs are tendons (`models.mjcf.forces`).
 """
 
-from __future__ import annotations
-
 from xml.sax.saxutils import quoteattr
 
 from models.errors import EngineError

@@ -1,7 +1,5 @@
 """Loads, springs and friction of a scene in its MJCF text."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from models.errors import EngineError

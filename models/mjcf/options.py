@@ -1,7 +1,5 @@
 """What may be chosen about the MJCF text of a scene, and how its crank is driven."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from xml.sax.saxutils import quoteattr

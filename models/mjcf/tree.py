@@ -7,8 +7,6 @@ four-bar A B C D this closes the loop at C. Where the masses differ by more than
 of the lightest bodies come first, so that loops close at heavy ones.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence

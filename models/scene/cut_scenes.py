@@ -1,7 +1,5 @@
 """Scenes whose elastic links are cut, as engines have them: into rigid segments, or beams."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property

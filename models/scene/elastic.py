@@ -11,8 +11,6 @@ Source: Thesis on vibration of planar mechanisms with elastic links (2018), chap
 shortening of a bent link by half the integral of w'^2, which is left out there, is kept here.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal

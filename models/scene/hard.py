@@ -5,8 +5,6 @@ at that circular frequency. Crank angles start off round numbers, so that no sam
 falls on a singular position.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

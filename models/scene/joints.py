@@ -8,8 +8,6 @@
     slot     a block without mass: point P of a body runs on the line of another body
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

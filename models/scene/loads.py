@@ -1,7 +1,5 @@
 """Loads, springs with dampers beside them, and friction in joints."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

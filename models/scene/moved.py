@@ -3,8 +3,6 @@
 A mechanism does not know where it stands, so errors as pure numbers must not change either.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 

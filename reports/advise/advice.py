@@ -1,7 +1,5 @@
 """Advice: what was found, cheapest first, with the best of each engine and its snippet."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing

@@ -1,7 +1,5 @@
 """What a stored study says of choices at any step: as far as it covers them, and why not else."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterable, Mapping

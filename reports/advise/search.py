@@ -1,7 +1,5 @@
 """What a choice reaches at the frame itself, and with how few sub-steps of it the target."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from contextlib import closing

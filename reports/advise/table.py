@@ -1,7 +1,5 @@
 """Advice on the terminal: a row for each choice, what is to be said of them, and the snippets."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterator, Mapping

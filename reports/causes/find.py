@@ -1,7 +1,5 @@
 """What explains the errors of a log."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Numbers that leave the least sum of squares, by Gauss-Newton steps."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

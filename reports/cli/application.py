@@ -1,7 +1,5 @@
 """The command itself: how it begins, and every way in which it may end."""
 
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import inspect

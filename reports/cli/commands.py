@@ -3,8 +3,6 @@
 None is loaded before it is called. Those of one word are listed in this order, and then the groups.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 # fmt: off

@@ -1,7 +1,5 @@
 """Whether a run stayed on its branch: the other assembly of a closed loop is closed as well."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import replace

@@ -7,8 +7,6 @@ What a run is beside (`Beside`) names the modules that compare it, which are loa
 needed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import fields

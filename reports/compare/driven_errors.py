@@ -1,8 +1,6 @@
 """The errors of a run whose driver follows a law: of the drive, of places at the same time and at
 the logged angle of the driver, and of rates."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

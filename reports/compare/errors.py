@@ -1,7 +1,5 @@
 """What a comparison found: one `Error` per quantity and body, and facts of the run in groups."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, field

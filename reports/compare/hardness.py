@@ -5,8 +5,6 @@ Driven exactly, a mechanism moves as it does whatever loads it; but a constraint
 way under them, and what a load over a displacement weighs hangs on where its slider is.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterable, Mapping

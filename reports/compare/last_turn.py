@@ -9,8 +9,6 @@ slider ``displacement.NAME`` and ``geometric.displacement.NAME`` [m]; per point 
 against it at the commanded time. What was let go has those of `free_series` as well.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 

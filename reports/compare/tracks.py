@@ -1,7 +1,5 @@
 """Error series: what an engine logged less the reference, and how large that is."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Put an engine to the clauses, each in a process apart: what ends it costs its clause alone."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass

@@ -1,8 +1,6 @@
 """Elastic links in words: how they are described, how they start, and how far that is to be
 trusted."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What the theory of machines says of a mechanism as a whole, in lines to be read."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Reactions and driving torque as tables on the terminal: at one position, and over time."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A free motion in words and columns: its energy, how sure it is, and what it meets on the way."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,8 +3,6 @@
 Over a turn, instants in dead points have no numbers; a single position in one is refused.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,8 +1,6 @@
 """A diff on the terminal, as Markdown short enough for a comment on a pull request, and as JUnit
 XML."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import Literal
 from xml.etree.ElementTree import Element

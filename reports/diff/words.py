@@ -1,7 +1,5 @@
 """A diff in words and rows, which the terminal, Markdown and JUnit share."""
 
-from __future__ import annotations
-
 import math
 import statistics
 from collections.abc import Iterable, Sequence

@@ -4,8 +4,6 @@ An arrow is the force on the body whose colour it has: at a pin of two bodies on
 the first; of more, on each, from the pin; at a guide the normal force on what slides.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -9,8 +9,6 @@ A point is drawn at ``rigid + factor * (elastic - rigid)``, an elastic link bent
 its deflection from the line between its pins.
 """
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import json

@@ -1,7 +1,5 @@
 """How a mechanism stands and moves on paper: a turn of it, the box that holds that, and colours."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence

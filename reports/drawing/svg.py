@@ -4,8 +4,6 @@ Lines and letters have the colour of the text around them, links one that is see
 black. It stands on its own: no script, no style sheet, nothing to load.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ sign: drive, model floor and discretisation add up to the total; the gap of the 
 them.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

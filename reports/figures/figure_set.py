@@ -1,7 +1,5 @@
 """Sets of figures of what is solved: as files of a folder, and what stands under each figure."""
 
-from __future__ import annotations
-
 import base64
 import io
 import logging

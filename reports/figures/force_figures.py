@@ -1,7 +1,5 @@
 """The figures of the forces of a turn, most of them over the driver's angle."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,8 +1,6 @@
 """A turn of a scene under forces: the axis that figures go over, and forces as vectors, in polar
 diagrams of pins and on the mechanism."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

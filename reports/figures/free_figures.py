@@ -1,7 +1,5 @@
 """The figures of a free motion: over time, its energy, and the phase diagram."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Figures of a store's free runs beside the truth: of each line its finest run that ended well."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -4,8 +4,6 @@ It is drawn with the parts of `reports.drawing.gif`; only letters and names are 
 figure of a column's width has little room for them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -10,8 +10,6 @@
     notes: versions, processor, study, settings
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

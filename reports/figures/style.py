@@ -1,7 +1,5 @@
 """How all figures look: type, lines and sizes of a paper; text stays text in both formats."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Iterator

@@ -6,8 +6,6 @@ broad grey stair is the Pareto front: whatever is below it takes longer. Source:
 Wanner, Solving Ordinary Differential Equations I, section II.4.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 

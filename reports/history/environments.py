@@ -1,7 +1,5 @@
 """An environment for one version of an engine: made once, complete or not there at all."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import platform

@@ -1,7 +1,5 @@
 """Versions side by side on the terminal: how each did, what stands out, the scenes that changed."""
 
-from __future__ import annotations
-
 import csv
 import io
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """The verification of one version, run with its own environment, and kept."""
 
-from __future__ import annotations
-
 import hashlib
 import math
 import os

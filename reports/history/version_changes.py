@@ -1,7 +1,5 @@
 """What changed from one version of an engine to the next."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What an error does when the step is halved: two finer runs of a cell, and what they show."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -5,8 +5,6 @@ dt/4 the model floor + C dt^p gives 2^p = (e1 - e2) / (e2 - e3) and the floor e3
 (2^p - 1).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

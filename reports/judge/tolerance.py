@@ -65,8 +65,6 @@ worst engine of profile tuned a factor of two. A number given by the scene or on
 is taken as it stands.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

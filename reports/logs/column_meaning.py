@@ -1,7 +1,5 @@
 """What a column is: what its name says, as the map corrects it; and its numbers in SI."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The columns of a log: read from a file of a bounded size, or taken from a frame."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace

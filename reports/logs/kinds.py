@@ -1,7 +1,5 @@
 """What a column of a log can be: of which bodies, in which units, and where a motion has it."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence

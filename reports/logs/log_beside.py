@@ -6,8 +6,6 @@ places and rates of the bodies themselves: of a point of which the log has one c
 is right, and so of a force.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property

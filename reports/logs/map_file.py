@@ -20,8 +20,6 @@
 What it does not say of a column is taken from the column's name.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Columns become readings: by their names, and by what the user's map says of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 

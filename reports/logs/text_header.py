@@ -1,7 +1,5 @@
 """What stands above the rows of a text: separator, names of the columns, and their units."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The lines of a text and their fields, and the most of a log that is read."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

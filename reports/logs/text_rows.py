@@ -1,7 +1,5 @@
 """The rows of a text below its header: what stands in them is read as numbers."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The columns of times: which they are, in which unit, and the instants in them."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

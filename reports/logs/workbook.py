@@ -1,7 +1,5 @@
 """A log that is a sheet of a workbook: its header, the units below it, and its cells."""
 
-from __future__ import annotations
-
 import io
 import warnings
 import zipfile

@@ -1,7 +1,5 @@
 """The terminal as wide as it is, or a file or pipe that may be full or closed; what is printed."""
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import os

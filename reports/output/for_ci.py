@@ -1,7 +1,5 @@
 """What continuous integration shows: JUnit XML, and Markdown that fits into a comment."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections import Counter

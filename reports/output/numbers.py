@@ -1,7 +1,5 @@
 """Numbers as a reader takes them in: short in tables and sentences, thinned in what is embedded."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 

@@ -5,8 +5,6 @@ one that stands where a file of ours goes is replaced, as a file would be. A fol
 may be a link, those of ours in it may not.
 """
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import os

@@ -1,7 +1,5 @@
 """What moves the truth that a log is held to: the scene's driver, or what the log says of it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Judge a user's own log: what it holds, against the closed form, within what he asks for."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """What the errors of a user's own log are held to, and what it has to hold."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field

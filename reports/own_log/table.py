@@ -1,7 +1,5 @@
 """A judged log on the terminal, as Markdown and as JUnit XML: what is wrong with it, and why."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from xml.etree.ElementTree import Element

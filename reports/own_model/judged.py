@@ -1,7 +1,5 @@
 """A model of the user's own with the lines that were run of it, and what they come to."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

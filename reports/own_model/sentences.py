@@ -1,8 +1,6 @@
 """What is told of an own model in words: how it was read, what can disturb it, what each line
 gains, the verdict."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """An own model on the terminal and as JSON: what was read, its lines, and what to change."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping

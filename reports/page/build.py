@@ -1,7 +1,5 @@
 """Put the page together: sections, style, scripts and Plotly, in one file that loads nothing."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

@@ -1,8 +1,6 @@
 """A store as Markdown for a comment on a pull request: verdict, what to set, orders and floors,
 failures, and where it all comes from."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """The page of a judged log: one HTML file with the verdict, every channel, and the motion."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import PurePath

@@ -12,8 +12,6 @@ Readings that contradict each other come apart in the picture, as they do in the
 logged points whose logged angle is out of tolerance is drawn at that angle as well.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -1,7 +1,5 @@
 """The page of a judged model: one HTML file with the verdict, its lines, the motion, the diff."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -1,8 +1,6 @@
 """The page of a solved scene: one HTML file with its motion, and its forces where asked for, or
 with its free motion, or with its elastic links."""
 
-from __future__ import annotations
-
 import base64
 import math
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """Check the names that a user gives, before anything runs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np

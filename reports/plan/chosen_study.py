@@ -1,7 +1,5 @@
 """A study with what a user says in place of it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 

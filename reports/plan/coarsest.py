@@ -5,8 +5,6 @@ the next should be. It need not fall: two errors of opposite sign cancel at one 
 constraint leaves a floor. So a step counts only when finer ones reach the target as well.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable

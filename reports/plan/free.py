@@ -1,7 +1,5 @@
 """What is asked of scenes that are let go."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The cells of a study, each with the key that names its result."""
 
-from __future__ import annotations
-
 import hashlib
 import itertools
 import json

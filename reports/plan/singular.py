@@ -3,8 +3,6 @@
 A change point is none for the reference, which goes through it on the smooth branch, and says so.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

@@ -1,7 +1,5 @@
 """How long a step is and how many there are, checked before anything runs."""
 
-from __future__ import annotations
-
 import math
 from numbers import Real
 

@@ -3,8 +3,6 @@
 A new quantity is an entry here. Its columns, rows, limit, rule and diagrams follow from it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 
 from reports.quantities.elastic import DEFLECTION, EXTENSION, SEGMENTS

@@ -4,8 +4,6 @@ Errors are shares of the largest deflection of the reference over the run (``D``
 link that passes through its straight line is as hard on an engine there as elsewhere.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -5,8 +5,6 @@ Errors are shares of the largest of the reference over the run (``F`` of reactio
 torque): a reaction that passes through 0 is as hard on an engine as any other.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable

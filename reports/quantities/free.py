@@ -1,7 +1,5 @@
 """What is compared of free motion alone: its phase, its geometry, and what it has to conserve."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from models.motion import Motion

@@ -1,8 +1,6 @@
 """Where a mechanism stands and how it moves: its crank, links, sliders and points, whether its
 joints hold, and the rates, as the engine reports them and by differencing the places."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

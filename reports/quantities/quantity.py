@@ -1,7 +1,5 @@
 """What a quantity is: one entry says all that the other rooms want to know of it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """`crankcheck advise`: what engines reach at a frame time, and the sub-steps to a target."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

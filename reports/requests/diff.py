@@ -1,7 +1,5 @@
 """`crankcheck diff`: two stored runs, and what became of every cell."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated

@@ -1,7 +1,5 @@
 """`crankcheck engines`: the engines."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated

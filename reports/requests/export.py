@@ -1,7 +1,5 @@
 """Commands that show a scene as an engine has it: `export`, `recipe forces`, `view`."""
 
-from __future__ import annotations
-
 import math
 import os
 import sys

@@ -1,7 +1,5 @@
 """`crankcheck figures`: the diagrams of a store for a paper, as SVG and PDF."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """`crankcheck history`: the same verification with several versions of an engine."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path

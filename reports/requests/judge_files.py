@@ -1,7 +1,5 @@
 """The files of a judged log: its map, JSON, JUnit XML and page."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Options that several requests have."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

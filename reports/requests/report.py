@@ -1,7 +1,5 @@
 """`report`: the page of a sweep, or its Markdown."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike

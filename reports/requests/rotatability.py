@@ -1,7 +1,5 @@
 """`crankcheck rotatability`: what turns fully, on which circuit, between which dead points."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """`crankcheck selftest`: plant faults, see which rule catches each, show, write."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

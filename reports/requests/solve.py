@@ -1,7 +1,5 @@
 """`solve`: the closed form alone, at one place of the driver or over time."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

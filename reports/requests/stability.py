@@ -1,7 +1,5 @@
 """`crankcheck stability`: hard cases, graded by rules, with the value up to which each is held."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

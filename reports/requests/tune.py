@@ -1,7 +1,5 @@
 """`crankcheck tune`: search an engine's settings for the cheapest that reach a target error."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from contextlib import closing

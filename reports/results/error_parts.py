@@ -11,8 +11,6 @@ order that was fitted to the line: Richardson's extrapolation to dt = 0 (Richard
 R. Soc. A 210, 1911), instant by instant and with sign. The parts add up to the total exactly.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

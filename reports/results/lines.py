@@ -1,7 +1,5 @@
 """The cells of a store as lines: a scene in one engine with one set of settings, at every step."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,8 +1,6 @@
 """Runs of elastic links that faults are planted in, and changes of what engines log of them, or are
 given as beams of their own."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache

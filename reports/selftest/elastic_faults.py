@@ -4,8 +4,6 @@ steps, and in what it logs.
 The pins of the scene move as they should to a millionth: only the bending tells.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Faults inside the engine, planted in a real session: in its model, its state, its settings."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import replace

@@ -4,8 +4,6 @@ A plant makes a runner of a size: something that runs a cell as `sim.run.run` do
 in it. A size of 0 goes the same way and changes nothing, which must not be noticed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache

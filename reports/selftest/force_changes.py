@@ -4,8 +4,6 @@ What leaves an inertia or a weight out, or comes of another mechanism, is the he
 difference that kinetostatics makes of it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

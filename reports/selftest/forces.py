@@ -1,7 +1,5 @@
 """Faults of forces: the engine moves as it should, and what it says of its joints is wrong."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Make another machine of a scene that is let go: its matter, its weight, its loads and springs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

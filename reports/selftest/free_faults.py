@@ -1,7 +1,5 @@
 """Faults of free motion: of the machine that an engine is given, in its steps, in what it logs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial

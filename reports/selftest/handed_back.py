@@ -1,7 +1,5 @@
 """Faults of a log that was taken from the reference, in whole or in part, as it is or rounded."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial

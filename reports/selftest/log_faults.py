@@ -1,7 +1,5 @@
 """Faults of a log: of its clock, of its numbers, and of what it is silent about."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """Change one thing of a log, and leave the rest."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

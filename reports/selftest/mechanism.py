@@ -1,8 +1,6 @@
 """Faults of what the engine is given, another mechanism than the scene, itself sound; and of right
 numbers in a wrong place of the log: of another body, axis or unit."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial

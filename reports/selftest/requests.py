@@ -1,7 +1,5 @@
 """Faults of what is run: another engine, profile, setting, drive or step than was asked for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """Make another chain of the segments that an engine is given: springs, matter, lengths, start."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The faults on the terminal: those that escape first, then the table, then the count."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from rich.console import Console

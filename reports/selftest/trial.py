@@ -6,8 +6,6 @@ rule that it names fails at the size planted, while the same run without it, and
 passes every rule.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """What no rule sees, and need not: planted all the same, and told with the reason."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What a hard case is: a family of runs with one number that is made harder, and what is right."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields

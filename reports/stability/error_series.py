@@ -1,7 +1,5 @@
 """What is seen of a hard run: errors over time, apart from how they are judged."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The rules that decide how a hard run is graded: the first that has something to say says it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """One hard run: what the engine does with it, its grade, and a picture where it fails."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Mapping

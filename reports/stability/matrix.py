@@ -1,7 +1,5 @@
 """What `crankcheck stability` finds and stores: cases, graded runs, critical values, pictures."""
 
-from __future__ import annotations
-
 import json
 import math
 import os

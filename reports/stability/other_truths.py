@@ -1,7 +1,5 @@
 """Hard runs beside another truth than a reference: a limit position, a falling chain, a toggle."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from analytic.free.exact_motions import ChainMotion

@@ -1,7 +1,5 @@
 """Run the catalogue: every case in every engine and profile, each run in a process apart."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing

@@ -1,7 +1,5 @@
 """The matrix on the terminal: case by case, a line per engine and profile."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -5,8 +5,6 @@ the lock for a moment, so each side has patience: a sweep waits longer for it th
 it, and a reader longer than another reader does.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import os

@@ -1,7 +1,5 @@
 """Read a store: cells with their costs, every error, and traces."""
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """One set of settings put to the test: the coarsest step at which it reaches the target."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from contextlib import closing

@@ -6,8 +6,6 @@ search is ended and taken up again. Only a run that the clock ends is none: its 
 place is open when the search is taken up again, to the same settings.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import sqlite3

@@ -1,7 +1,5 @@
 """What a search found, beside the profile, on the terminal."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

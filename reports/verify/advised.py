@@ -1,7 +1,5 @@
 """A failing cell is run again with what its engine has against that, and says what came of it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

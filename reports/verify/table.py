@@ -2,8 +2,6 @@
 numbers come from; and as JUnit XML.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """How long a run is, and by which steps, as it was requested."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal

@@ -4,8 +4,6 @@ A kind of scene is a folder of the room `ways`, found by its name, with a value 
 add the folder and its name in `WAYS`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cache

@@ -4,8 +4,6 @@ The matrices here are small. Where all processors are busy, as those of a verifi
 with a thread for each has its products wait for a processor, and burns it meanwhile.
 """
 
-from __future__ import annotations
-
 from collections.abc import MutableMapping
 
 THREADS = "OPENBLAS_NUM_THREADS"

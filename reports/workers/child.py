@@ -5,8 +5,6 @@ engines are that are not ours, and writes pickled answers to its standard output
 its input does, whatever it is doing. What engines print goes nowhere.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import pickle

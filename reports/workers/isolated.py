@@ -1,7 +1,5 @@
 """Run cells in a process of their own, which is ended when it fails or takes too long."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import pickle

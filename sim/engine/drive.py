@@ -5,8 +5,6 @@ for them up to rounding, because a crank that is heavy or kinematic does not fee
 free crank is told nothing.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How large those loads are that are known before a step; for the others see `Load.size`."""
 
-from __future__ import annotations
-
 from models.array import Array
 from models.scene import Scene
 from models.scene.loads import Load

@@ -1,7 +1,5 @@
 """From the poses of an engine's bodies to the mechanism's motion, joint gaps and energy."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, reduce

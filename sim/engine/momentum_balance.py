@@ -12,8 +12,6 @@ bodies counts as the k - 1 hinges that the engine has made of it, and a point on
 across it: a slider's block without mass is no body here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Settings of a run: those of a profile, overridden one by one."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from models.errors import EngineError, nearest, shown

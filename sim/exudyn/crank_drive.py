@@ -1,7 +1,5 @@
 """What turns the crank in exudyn: a constraint of its angle, or a motor; and the torque of it."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

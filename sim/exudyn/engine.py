@@ -1,7 +1,5 @@
 """exudyn: bodies in absolute coordinates, all joints constraints, solved for by implicit steps."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

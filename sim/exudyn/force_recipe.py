@@ -1,7 +1,5 @@
 """How to read forces out of exudyn: a program that holds a scene, as a user would write it."""
 
-from __future__ import annotations
-
 import textwrap
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What is searched of exudyn's settings, and what a step costs with them."""
 
-from __future__ import annotations
-
 import math
 
 from models.motion import State

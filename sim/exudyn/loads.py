@@ -1,7 +1,5 @@
 """The loads of a scene, as exudyn applies them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

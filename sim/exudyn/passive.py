@@ -1,7 +1,5 @@
 """The springs of a scene in exudyn, and its friction, as forces against the motion."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any
 

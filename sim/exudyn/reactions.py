@@ -6,8 +6,6 @@ frame; of a prismatic joint the guide's distance from the point that slides, and
 slides; of the drive the angle of the crank.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

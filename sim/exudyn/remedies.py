@@ -1,7 +1,5 @@
 """What may help in exudyn at the same step."""
 
-from __future__ import annotations
-
 from models.motion import State
 from models.scene import Scene
 from sim.engine import Settings

@@ -1,7 +1,5 @@
 """exudyn's settings: the two profiles, and what they are in its own structures."""
 
-from __future__ import annotations
-
 from sim.engine import Drive, Placing, Profile, Setting, Settings
 from sim.engine.settings import check_choices, check_ranges
 

@@ -1,7 +1,5 @@
 """A set of settings as exudyn's own structures, and read back from them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any

@@ -9,8 +9,6 @@ have a tangent in place of an angle.
 Its type stubs leave out ``self`` and its items are untyped, so all of it is `Any` here.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import math

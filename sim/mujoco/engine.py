@@ -1,7 +1,5 @@
 """MuJoCo: hinges and slides as joint coordinates, loops closed by soft `connect` constraints."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """How to read reactions and the driving torque out of MuJoCo, as a program."""
 
-from __future__ import annotations
-
 from models.errors import EngineError
 from models.mjcf.document import build
 from models.mjcf.forces import planned

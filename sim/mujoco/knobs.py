@@ -4,8 +4,6 @@ Solvers other than Newton are left out, as their passes depend on the state, not
 alone, and save nothing (PGS: 7 % of a step with 1 pass, and -15 % with 10).
 """
 
-from __future__ import annotations
-
 from models.mjcf.tree import plan
 from models.motion import State
 from models.scene import Scene

@@ -1,7 +1,5 @@
 """The sizes of a scene's loads while MuJoCo steps, as the controls of their actuators."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager

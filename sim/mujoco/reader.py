@@ -1,7 +1,5 @@
 """Reads an MJCF file that somebody else wrote."""
 
-from __future__ import annotations
-
 import copy
 import math
 from collections.abc import Mapping, Sequence

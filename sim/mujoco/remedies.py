@@ -5,8 +5,6 @@ of the two bodies as they hang in the tree. `models.mjcf.tree` closes where thes
 is the best pin mostly; which one it is depends on the forces.
 """
 
-from __future__ import annotations
-
 from itertools import islice
 
 from models.mjcf.tree import closings

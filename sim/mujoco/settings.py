@@ -1,7 +1,5 @@
 """MuJoCo's settings: the two profiles, and what a set of settings comes to in the MJCF text."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 

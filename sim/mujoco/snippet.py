@@ -1,7 +1,5 @@
 """MuJoCo settings as MJCF."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Mapping, Sequence
 

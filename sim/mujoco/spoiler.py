@@ -1,7 +1,5 @@
 """What can be broken in a session of MuJoCo: the compiled model and its state, in place."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import cast
 

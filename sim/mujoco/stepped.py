@@ -1,7 +1,5 @@
 """A compiled model in MuJoCo, stepped and logged in C, and read back as poses of its bodies."""
 
-from __future__ import annotations
-
 import os
 import time
 from abc import ABC, abstractmethod

@@ -1,7 +1,5 @@
 """MuJoCo's own viewer, for a person to look at a model."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs

@@ -4,8 +4,6 @@ The name that an engine gives itself stands in results, not how it was spelled. 
 to run one is told the spelling (`told`), as the name says nothing of where it is.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields

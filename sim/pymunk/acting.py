@@ -1,7 +1,5 @@
 """All that acts on the bodies of a space beside their weight and their joints, step by step."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

@@ -13,8 +13,6 @@ last. The idea is that of SHAKE: J.-P. Ryckaert, G. Ciccotti and H. J. C. Berend
 Computational Physics 23 (1977): constraints hold at the end of a step, whatever the way there.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

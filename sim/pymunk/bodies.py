@@ -11,8 +11,6 @@ The velocity of that instant itself, which dampers and motors follow, would be h
 is about to make. It is taken from the last three places, to the second order.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Generic, TypeVar
 

@@ -16,8 +16,6 @@ where it is larger, whatever the step is. So k has to be at least ln 2 / -ln rho
 segments that grows as n^2, and with the mass at its end over that of a segment.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -1,7 +1,5 @@
 """What drives a space: a crank or a slider that is told where it is, or a motor in a pin."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Protocol

@@ -1,7 +1,5 @@
 """pymunk (Chipmunk): every joint an impulse constraint, solved by iteration at each step."""
 
-from __future__ import annotations
-
 import math
 import time
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """How to read reactions and the driving torque out of pymunk, as a program of its own."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Iterator

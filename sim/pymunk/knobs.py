@@ -1,7 +1,5 @@
 """What is searched of pymunk's settings, and what a step costs with them."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping
 

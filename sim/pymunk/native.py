@@ -1,7 +1,5 @@
 """What acts on bodies in a step, and what a space has of its own: springs, and friction in pins."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

@@ -11,8 +11,6 @@ first order, the fourth as all after it. Where iterations do not come to an end 
 by: with 150 on the shaper, whose ram is heavy, within ten samples, with 1000 in the second.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What may help in pymunk, whose joints take more iterations the more the masses differ."""
 
-from __future__ import annotations
-
 from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene

@@ -1,7 +1,5 @@
 """pymunk's settings: the two profiles."""
 
-from __future__ import annotations
-
 from sim.engine import Drive, Profile, Setting, Settings, SettingValue
 from sim.engine.settings import check_choices, check_ranges
 

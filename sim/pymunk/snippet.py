@@ -1,7 +1,5 @@
 """pymunk settings as Python."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings

@@ -14,8 +14,6 @@ the step however many iterations there are, and a slider-crank with a massless p
 A rail holds the point by one scalar constraint across the line.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

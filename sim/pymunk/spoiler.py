@@ -1,7 +1,5 @@
 """What can be broken in a session of pymunk: its space, with bodies and constraints, in place."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from typing import cast

@@ -1,8 +1,6 @@
 """The springs and dampers of a scene, given like loads: with the lengths and rates of the end of
 the step."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Mapping, Sequence
 

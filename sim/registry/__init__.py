@@ -1,7 +1,5 @@
 """The engines by name, and what each offers; nothing of it is loaded before it is asked for."""
 
-from __future__ import annotations
-
 import importlib
 import os
 import sys

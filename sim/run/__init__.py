@@ -1,7 +1,5 @@
 """Run one scene in one engine, stretch by stretch, and time its stepping."""
 
-from __future__ import annotations
-
 import gc
 import math
 import statistics

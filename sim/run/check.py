@@ -1,7 +1,5 @@
 """Before the first step: is the model in the engine the scene that was asked for?"""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Iterator
 

@@ -4,8 +4,6 @@ What is done to a session is the engine's own affair, and stands in the file ``s
 folder: the model in the engine is changed, not its log.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace

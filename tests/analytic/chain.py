@@ -4,8 +4,6 @@ The unknowns are the frames of all bodies. A float Jacobian only leads the itera
 brought to zero, at all three levels, are the exact constraints and their derivatives by time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The four-bar A B C D of any lengths, and random ones."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,8 +1,6 @@
 """The modules of `analytic`, and second opinions, that a module imports, so that two computations
 are shown to be two."""
 
-from __future__ import annotations
-
 import ast
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Bounds along whole chains, against the whole mechanism in fifty digits."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

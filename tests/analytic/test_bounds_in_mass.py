@@ -1,7 +1,5 @@
 """Bounds and how loose they are, at hundreds of thousands of samples of random mechanisms."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

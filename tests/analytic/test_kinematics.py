@@ -1,8 +1,6 @@
 """How the reference treats samples, chunks, memory and nearly singular positions; and a mechanism
 that is turned, moved, mirrored, scaled or sped up moves as it did before."""
 
-from __future__ import annotations
-
 import math
 import tracemalloc
 from collections.abc import Callable

@@ -3,8 +3,6 @@
 What was measured off a drawing in print has the accuracy of one, which each test states.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,8 +1,6 @@
 """Examples are run page by page, and figures stand where they are shown; formulas become MathML,
 and what is none, or is code, stays; each kind of fault of a built site is seen."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

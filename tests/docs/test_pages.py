@@ -2,8 +2,6 @@
 those of the README do; the references are whole: every command with every option, every name of the
 face."""
 
-from __future__ import annotations
-
 import posixpath
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """The whole site is built, and read in a browser from files with the network off."""
 
-from __future__ import annotations
-
 import re
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Elastic links: tables `[elastic.LINK]`, every fault in them, and beams of an engine's own."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

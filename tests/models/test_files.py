@@ -1,7 +1,5 @@
 """Scene files: what ships loads; every fault is named with its key, what was found, a cure."""
 
-from __future__ import annotations
-
 import cProfile
 import math
 import os

@@ -1,7 +1,5 @@
 """Scenes that are let go: what their files say, and what is refused before anything moves."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from operator import attrgetter

@@ -9,8 +9,6 @@ back::
     print(attempt(mutant(SEED), *'COMMAND'.split()))"
 """
 
-from __future__ import annotations
-
 import itertools
 import os
 import re

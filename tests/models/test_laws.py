@@ -1,7 +1,5 @@
 """Laws of the driver: rates are derivatives, and the speed at an angle is that when it is there."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Loads and friction: what a scene file says of them, what they give, and what is refused."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -2,8 +2,6 @@
 loops, and the files in models/canonical/, which are what the builder writes (`make models`).
 """
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace

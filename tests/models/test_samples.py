@@ -2,8 +2,6 @@
 its letters; and motions one after the other.
 """
 
-from __future__ import annotations
-
 import datetime
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The text of a scene reads as the scene, whatever is driven; what a scene holds is not changed."""
 
-from __future__ import annotations
-
 import copy
 import math
 import operator

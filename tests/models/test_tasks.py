@@ -1,7 +1,5 @@
 """Task files, and formulas of one variable: what they say, and what is refused in one message."""
 
-from __future__ import annotations
-
 import math
 import random
 from pathlib import Path

@@ -1,8 +1,6 @@
 """A plugin of pytest: of what is collected, only what a file lists, in its order: tests, and files
 and folders of tests."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path

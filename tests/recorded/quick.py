@@ -7,8 +7,6 @@ Which test reaches which file is recorded once (`make record`, in `.recorded/`),
 `make test` runs: twice its time. Tests that are new or changed since are run whole.
 """
 
-from __future__ import annotations
-
 import ast
 import functools
 import os

@@ -1,7 +1,5 @@
 """Which tests reach a line of product code, or a file, by what `tests.recorded.recording` noted."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections import defaultdict

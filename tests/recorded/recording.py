@@ -7,8 +7,6 @@ is noted as its user: it reaches these lines as well. (PYTEST_DONT_REWRITE: cove
 import this file.)
 """
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import itertools

@@ -1,7 +1,5 @@
 """What a test reaches is recorded, also in children and in what several share; and mutants."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Runs of a fake engine whose error is known."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType

@@ -1,7 +1,5 @@
 """What Baumgarte's terms cost: the error of a motion over alpha = beta and the step."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

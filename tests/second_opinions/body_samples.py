@@ -3,8 +3,6 @@
 Shares nothing with the free-body diagrams of `analytic.forces`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ prismatic pair and the driver gives its equations. Source: E. J. Haug, Computer 
 Dynamics of Mechanical Systems, chapters 3 and 4.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -12,8 +12,6 @@ back onto the constraints, or Baumgarte's terms let what is open decay. No coord
 Source: Thesis on vibration of planar mechanisms with elastic links (2018), chapter 2.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass, replace

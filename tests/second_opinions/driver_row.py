@@ -1,7 +1,5 @@
 """The equation of the driver: the coordinate of the joint that is driven, over the bodies' own."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 The way a joint moves is taken from the velocities of its two bodies, at its place.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 

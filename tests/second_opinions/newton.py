@@ -10,8 +10,6 @@ It starts from a rough guess of one position, and follows the mechanism from the
 the driver; so it also serves groups that have no closed form.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -11,8 +11,6 @@ too. Phase errors, which the energy of an integration hides, show as a wrong per
 Trefethen, J. A. C. Weideman, The exponentially convergent trapezoidal rule, SIAM Review 56 (2014).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -7,8 +7,6 @@ What the drive puts in is what energy gains, less what loads, springs and fricti
 Reactions do no work, so none is in it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import chain

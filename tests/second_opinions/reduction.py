@@ -11,8 +11,6 @@ Places are vectors from A in the ground's frame, (T, 2), and forces, masses and 
 link. Source: problem book "Bai tap co hoc may", appendix "Reduction of inertia forces".
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 Shares nothing with `analytic.forces.force_elements`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """How exact the engines are on the shipped scenes, against the closed form."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Every engine adapter holds the contract, and the fake ones as well; a model is looked at."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from types import ModuleType

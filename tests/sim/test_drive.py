@@ -1,7 +1,5 @@
 """The control streams put the crank exactly where the law has it, replayed step by step."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

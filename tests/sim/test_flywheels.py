@@ -1,7 +1,5 @@
 """A flywheel that was worked out does in an engine what it was worked out for."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """The recipes run as they are pasted, and print the forces of the reference."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import subprocess

@@ -1,7 +1,5 @@
 """Free motion: nothing drives the crank, and the engines still have to follow the closed form."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import ModuleType
 from typing import Any

@@ -1,7 +1,5 @@
 """The knobs of the engines, and what they cost: the constants of that can be found again."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

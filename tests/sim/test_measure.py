@@ -2,8 +2,6 @@
 exact ones, faults show.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import ModuleType
 from typing import Any

@@ -1,7 +1,5 @@
 """A new engine is a folder and a line: a copy of the house, with the fake engine in it."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

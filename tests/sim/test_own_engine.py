@@ -1,7 +1,5 @@
 """Engines of a user's own: how they are found, refused, and watched while they run."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Runs: how they end, what they refuse, and what they cost; with a redundant link too."""
 
-from __future__ import annotations
-
 import gc
 import re
 import subprocess

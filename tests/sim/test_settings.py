@@ -2,8 +2,6 @@
 seconds are told, and remedies are settings.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Snippets leave alone what they are pasted beside."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """What is broken in an engine is broken: in every scene, and by nothing where the size is 0."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from typing import Any

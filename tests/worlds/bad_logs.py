@@ -2,8 +2,6 @@
 message that refuses each.
 """
 
-from __future__ import annotations
-
 import io
 import os
 import zipfile

@@ -5,8 +5,6 @@ coupler 0.25, rocker 0.2, ground 0.3 m, rods of 1 kg/m, crank from 90 deg); the 
 follow from the law of cosines.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable

@@ -5,8 +5,6 @@ It is that of this environment; the variable CRANKCHECK_COMMAND names another, s
 wheel installed elsewhere (`tests/test_wheel.py`).
 """
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

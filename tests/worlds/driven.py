@@ -18,8 +18,6 @@ than that), every link with a point on an arm of up to ten of its lengths, to th
 of the rods reach; and joints that pymunk's iterations solve or do not.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 import random

@@ -1,7 +1,5 @@
 """Equilibrium of the bodies in the motion of an engine, with the forces that it reports."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from models.array import Array

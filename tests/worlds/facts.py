@@ -1,7 +1,5 @@
 """Errors with other facts of the scene, the forces or the motion."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 
 from reports.compare.errors import Errors

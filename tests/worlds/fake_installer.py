@@ -1,7 +1,5 @@
 """An installer of engines that needs no network, and versions of MuJoCo made of the one here."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A real store of a scene that was let go for a while, in two engines with two profiles."""
 
-from __future__ import annotations
-
 from io import StringIO
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Run a command on a scene file and see all that it did: how it ended, said, wrote and called."""
 
-from __future__ import annotations
-
 import contextlib
 import cProfile
 import csv

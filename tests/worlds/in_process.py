@@ -1,7 +1,5 @@
 """Runs in the process of the tests, where it is not tested that they may end or hang another."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Generic, TypeVar

@@ -1,7 +1,5 @@
 """Work for other processes. It imports next to nothing, as each of them does so anew."""
 
-from __future__ import annotations
-
 import os
 import sys
 import time

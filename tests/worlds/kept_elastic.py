@@ -1,8 +1,6 @@
 """Motions of driven elastic links, each found once in a process: most tests ask for the same few,
 and each takes a third of a second."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cached_property

@@ -1,7 +1,5 @@
 """A scene that is let go with everything that may act on one, and how what is let go starts."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from analytic.free.machine import Machine

@@ -1,7 +1,5 @@
 """Mechanisms by the inputs of their sheets, and sheets held to the reference."""
 
-from __future__ import annotations
-
 import io
 import math
 from collections.abc import Mapping

@@ -2,8 +2,6 @@
 friction in random joints, or with springs and dampers.
 """
 
-from __future__ import annotations
-
 import math
 import random
 from dataclasses import replace

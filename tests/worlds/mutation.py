@@ -1,7 +1,5 @@
 """Shipped scene files with something done to them; the same seed does the same."""
 
-from __future__ import annotations
-
 import math
 import random
 import re

@@ -3,8 +3,6 @@
 Run as a program, as entries are read when their readers are imported. Prints JSON.
 """
 
-from __future__ import annotations
-
 import io
 import json
 from collections.abc import Mapping

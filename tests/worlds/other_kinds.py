@@ -1,7 +1,5 @@
 """Mechanisms of other kinds than the linkages of the stranger, and parts of what may be logged."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache

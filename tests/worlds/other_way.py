@@ -1,7 +1,5 @@
 """The same mechanism sped up, or otherwise changed so that what it does is known by that."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The engine of examples/engine as a user has it: in a folder, or installed; and with faults."""
 
-from __future__ import annotations
-
 import sys
 import tomllib
 from collections.abc import Iterator, Mapping

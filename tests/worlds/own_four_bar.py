@@ -1,7 +1,5 @@
 """A healthy four-bar as somebody may have written it, and how to plant something in it."""
 
-from __future__ import annotations
-
 HEALTHY = """<mujoco model="four-bar">
   <compiler angle="radian"/>
   <option timestep="0.001" integrator="RK4" gravity="0 0 0" tolerance="1e-16"/>

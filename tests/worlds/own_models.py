@@ -1,7 +1,5 @@
 """Models that a user may have written, and their judgement in this process."""
 
-from __future__ import annotations
-
 import tempfile
 from functools import cache
 from pathlib import Path

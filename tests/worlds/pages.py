@@ -6,8 +6,6 @@ be the same, but for the rows of a verdict: their numbers, which processors may 
 agree to 10 %.
 """
 
-from __future__ import annotations
-
 import contextlib
 import math
 import os

@@ -4,8 +4,6 @@ Each takes a healthy sheet and a generator, and returns the sheet with the fault
 that have it (none for all that the fault reaches); None where the sheet has nothing to plant it in.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable, Mapping, Sequence

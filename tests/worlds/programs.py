@@ -1,7 +1,5 @@
 """Programs that tests start: they hear signals, and end with the test."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal

@@ -1,7 +1,5 @@
 """Scenes with more in them, opened and run in an engine from their own start."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

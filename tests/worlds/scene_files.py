@@ -8,8 +8,6 @@ Mechanisms are driven, let go for a moment, or have elastic links, stiff enough 
 mostly; numbers are as a person would write them.
 """
 
-from __future__ import annotations
-
 import datetime
 import json
 import math

@@ -1,7 +1,5 @@
 """A small store of real runs, with times that are made up: figures of it are always the same."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from models.files.reading import find_scene, load_scene, read_text

@@ -1,7 +1,5 @@
 """Runs that were really made, stored, and read again; and cells made up for what is rare."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping
 from pathlib import Path

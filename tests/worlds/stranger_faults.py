@@ -4,8 +4,6 @@ Faults are planted in a log that is right, whatever its columns are called, but 
 put together the other way, and one whose coupler is 1 % longer than the drawing says.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 

@@ -4,8 +4,6 @@ the map that explains a log, as a user writes it.
 Nothing is interpolated: a channel that is late is the linkage at an earlier time.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Sequence

@@ -6,8 +6,6 @@ reason; `benchmarks/long_runs.py` what is longer by nature, such as a thousand t
     @pytest.mark.parametrize("count", [5, slowly(200, reason="rare kinks")])
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable
 
 import pytest

@@ -1,7 +1,5 @@
 """Cells of whole turns."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -5,8 +5,6 @@ turns round at all however near to a dead point, or swings. Half of them are rea
 the others made in Python.
 """
 
-from __future__ import annotations
-
 import math
 import random
 import re

@@ -1,7 +1,5 @@
 """Figures whose PDF is drawn by nobody, as that takes as long as all else of a figure."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import BinaryIO

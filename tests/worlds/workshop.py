@@ -7,8 +7,6 @@ method ends for all at once. The mechanism touches none of them. The user has hi
 a box that lies there does lie still.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

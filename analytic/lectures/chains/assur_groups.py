@@ -21,8 +21,6 @@ The Assur groups of a mechanism are those of its graph: without the ground and t
 groups that hang on what is placed are taken away, the smallest first.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass

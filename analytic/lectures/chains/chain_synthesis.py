@@ -12,8 +12,6 @@ the constraints are independent with its joints anywhere, and every joint moves:
 pin is none, as its three sliders hold the angle at the pin.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable, Iterator
 from functools import cache

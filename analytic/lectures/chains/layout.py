@@ -5,8 +5,6 @@ joints, and with a loop of links outside and the rest in the middle of what hold
 How to draw a graph, 1963); then steps that lower a measure of what disturbs the eye.
 """
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 from functools import cache

@@ -5,8 +5,6 @@ i alpha - omega^2 of accelerations. Where that is 0, the image is one point. Sou
 tich dong hoc", part III.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Iterable, Mapping

@@ -18,8 +18,6 @@ RPP     the inner body's point under the pin    along two lines
     a: normal towards Q, tangential     a: Coriolis' 2 omega x v_sliding, sliding
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

@@ -14,8 +14,6 @@ Scales mu are units to the millimetre, the pole distance H is millimetres of pap
 "Phan tich dong hoc", part V; problem book "Bai tap co hoc may", appendix, graphical integration.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, get_args

@@ -23,8 +23,6 @@ and Mechanisms, chapter 4 (inflection circle, Bresse's circles); derived here fr
 a = a_P + alpha x r - omega^2 r.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace

@@ -14,8 +14,6 @@ vector has a known direction u and an unknown length::
     base1 + known1 + a u1  =  base2 + known2 + b u2
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal

@@ -6,8 +6,6 @@ of them follows the speed they settle it, else they have to balance, and the spe
 the mean one.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import lru_cache

@@ -18,8 +18,6 @@ Mechanisms, on flywheels (own inertia at mean speed, after N. I. Mertsalov); pro
 co hoc may", chapter on real motion and its regulation (surplus of work).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -8,8 +8,6 @@ from T(cycle) = T(0) and, where a mean speed is asked for, from that.
 Mean speed is (w_max + w_min) / 2, that of the coefficient of fluctuation.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

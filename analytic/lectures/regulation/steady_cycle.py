@@ -4,8 +4,6 @@ Source: problem book "Bai tap co hoc may", chapter on real motion and its regula
 I. I. Artobolevskii, Theory of Mechanisms, on the regulation of periodic fluctuations.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property

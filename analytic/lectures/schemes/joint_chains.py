@@ -14,8 +14,6 @@ base circles. A link and two joints of class 5 for one of class 4 leave the coun
 "Bai tap co hoc may", chapter on schemes.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace

@@ -7,8 +7,6 @@ pair, along lines or in points a higher one. Source: problem book "Bai tap co ho
 joint classes; K. H. Hunt, Kinematic Geometry of Mechanisms, chapter 1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

@@ -17,8 +17,6 @@ moves the same, and the equations that are left are independent. All of it at a 
 drawn one, so that no momentary one is named.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 

@@ -10,8 +10,6 @@ Qx, Qy, Qz are turns about axes through a point, Tx, Ty, Tz displacements along 
 book "Bai tap co hoc may" writes the freedoms of a joint (exercise 1-1).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -13,8 +13,6 @@ Source: A. S. Hall, Kinematics and Linkage Design, chapter 5 (circle and centre 
 Sandor and A. G. Erdman, Advanced Mechanism Design, volume 2, chapter 3 (compatibility linkage).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A body carried by the coupler of a four-bar through two, three, four or five positions."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 

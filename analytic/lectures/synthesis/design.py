@@ -1,7 +1,5 @@
 """A mechanism that a synthesis proposes: its scene, what is asked of it, and how it was found."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field

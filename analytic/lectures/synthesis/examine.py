@@ -9,8 +9,6 @@ Source: lecture "Tong hop co cau" (synthesis), branch and order defect; T. R. Ch
 Journal of Mechanical Design 115 (1993), circuits and branches.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

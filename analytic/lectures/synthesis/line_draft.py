@@ -14,8 +14,6 @@ Source: C. N. Peaucellier, Nouvelles annales de mathematiques (1864); R. L. Nort
 Machinery, section 3.8, figure 3-30 (exact straight-line linkages).
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Positions of a body in the plane, the poles and bisectors between them, and dyads that pair."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Sequence

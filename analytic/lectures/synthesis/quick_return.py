@@ -23,8 +23,6 @@ section 3.4.
 Source: R. L. Norton, Design of Machinery, section 3.4.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """A crank-rocker for a rocker's swing: by its angle, or between two positions of a body on it."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Iterator, Mapping

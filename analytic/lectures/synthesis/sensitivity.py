@@ -4,8 +4,6 @@ A scene is varied and solved again by the reference, its driver at the same angl
 central differences, of steps that leave some nine digits.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import cast

@@ -4,8 +4,6 @@ A ram on a rod that is too short goes further than the ends of its lever ask for
 other times: two positions that are met tell nothing of it. The reference follows it over a turn.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -29,8 +29,6 @@ It is the cognate of Chebyshev's linkage that has a crank.
 Source: R. L. Norton, Design of Machinery, section 3.8, figure 3-29 (g = 2) and table 3-1 (others).
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The part of a coupler curve that is nearly straight, its line, and how far it is from that."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from itertools import pairwise

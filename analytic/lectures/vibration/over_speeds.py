@@ -8,8 +8,6 @@ heavy rocker the turning feeds the vibration itself. Source: Thesis on vibration
 mechanisms with elastic links (2018), chapter 4.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace

@@ -6,8 +6,6 @@ it, of the second degree where no load depends on speeds otherwise. So the equat
 speeds follow from those at three, which is looked at in a fourth.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Task files: the shipped ones of each kind, and a user's own."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The hypotheses, by what they are about, in the order in which equal ones are preferred."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 
 from reports.causes.account import Account

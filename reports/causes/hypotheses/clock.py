@@ -4,8 +4,6 @@ That the clock is slow and that the driver is fast is one thing where places alo
 tell them apart, if they were not taken over the log's own time.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """A scene that has another length, pivot or line than the mechanism that was logged."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace

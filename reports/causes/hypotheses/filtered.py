@@ -4,8 +4,6 @@ Both make a signal late as well as smooth, where they look back. Where they take
 that, a delay explains the readings too, and what is left tells which it is.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 

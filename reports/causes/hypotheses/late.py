@@ -1,7 +1,5 @@
 """Readings that belong to other instants than they are stamped with, all by the same delay."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,8 +1,6 @@
 """Readings of something else than their column says: of another body, another kind, or against
 another link."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """A log of another assembly or driver, or that has the whole plane in another way."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence

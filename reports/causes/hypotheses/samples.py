@@ -1,7 +1,5 @@
 """Single samples that are off: stuck ones, held ones, spikes; and the last digit of all of them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Readings that are a straight line of what they should be: wrong unit, sign, zero or gain."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass

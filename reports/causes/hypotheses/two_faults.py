@@ -4,8 +4,6 @@ What is put right is what needs no number that is fitted: another unit or sign, 
 stick or jump, which are left out. Another fault is looked for in what is there then.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace

@@ -1,8 +1,6 @@
 """The errors of a run that was let go: phase, places and rates at the same time over the
 sensitivity of the motion, the geometry at the run's own angle, and what has to be conserved."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable
 from dataclasses import replace

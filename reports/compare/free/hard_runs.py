@@ -1,8 +1,6 @@
 """Hard free runs: a chain of windows held to its closed form (`analytic.free.exact_motions`), and a
 mechanism that is thrown at its toggle."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal

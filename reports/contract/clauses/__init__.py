@@ -1,7 +1,5 @@
 """All clauses, by what they are about; a new one is an entry in one of these files."""
 
-from __future__ import annotations
-
 from reports.contract.clauses import (
     declared,
     felt,

@@ -1,7 +1,5 @@
 """What an engine says of itself: profiles, version, and the settings that it takes."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Loads and friction that an engine says it applies: that they are felt, in full and in time."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What is let go: springs that hold it, its energy, and motors that go by its speed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from contextlib import suppress

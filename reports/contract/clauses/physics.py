@@ -1,7 +1,5 @@
 """What comes out of the steps: the driven crank, errors over the step, gravity."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace

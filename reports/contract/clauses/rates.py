@@ -4,8 +4,6 @@ They are held to the engine's own path, which may be off as a whole: its differe
 change in the reference, tell how many steps later or earlier a rate is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

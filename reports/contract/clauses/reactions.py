@@ -1,8 +1,6 @@
 """Forces that an engine reports: that nothing else changes for them, that they hold every body in
 its motion, and at which instants."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace

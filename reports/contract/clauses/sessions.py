@@ -1,7 +1,5 @@
 """Stepping and logging: whatever way a session is stepped, it comes to the same."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 import sys

@@ -1,7 +1,5 @@
 """How a session begins: with the scene that was asked for, at its state, at any time."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import get_args

@@ -1,7 +1,5 @@
 """The rules, by ID. A verdict is what they say of a cell, nothing else."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 

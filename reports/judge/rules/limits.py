@@ -1,7 +1,5 @@
 """CC116 and the rules that hold a quantity to its limit, one for each criterion of quantities."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,8 +1,6 @@
 """CC101, CC109, CC115, CC117, CC119, CC124, CC126: the run is the one asked for, came to its end,
 and its log is whole, made of numbers, holds what is required, and does not contradict itself."""
 
-from __future__ import annotations
-
 from reports.judge.rules.rule import Evidence, Finding, Level
 
 

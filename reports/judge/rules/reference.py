@@ -1,8 +1,6 @@
 """CC111, CC112, CC134: the reference is another computation than the engine's, and sure enough;
 of elastic links, whether the engine, the segments or the truth is what is off."""
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Iterator

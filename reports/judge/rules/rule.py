@@ -1,7 +1,5 @@
 """What a rule is, what it sees, and what it says."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, Protocol

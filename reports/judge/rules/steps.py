@@ -1,7 +1,5 @@
 """CC110, CC118, CC125: the error shrinks with the step, and goes on from sample to sample."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from reports.compare.errors import Errors

@@ -1,7 +1,5 @@
 """A construction as a page: step after step as one draws it, then the mechanism that it gives."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism

@@ -3,8 +3,6 @@
 Source of the way of drawing: lecture "Tong hop co cau" (synthesis), examples 2 to 6.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The proof of a mechanism: an engine runs it through what was asked, and is looked at there."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The solutions of a synthesis beside each other, on one page: drawn, tabulated, proven."""
 
-from __future__ import annotations
-
 import base64
 import math
 from collections.abc import Mapping, Sequence

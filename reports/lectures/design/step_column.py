@@ -1,7 +1,5 @@
 """The column of words beside a construction: its steps, its looks, what is off the paper."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 

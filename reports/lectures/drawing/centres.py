@@ -1,7 +1,5 @@
 """`crankcheck centres`: instant centres, and the circles of a link."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated

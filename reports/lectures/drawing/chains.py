@@ -1,7 +1,5 @@
 """`crankcheck chains`: number and type synthesis, as a list or drawn."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path

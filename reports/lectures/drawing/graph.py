@@ -1,7 +1,5 @@
 """`crankcheck graph`: graphs differentiated and integrated with ruler and pole."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path

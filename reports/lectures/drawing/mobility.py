@@ -1,7 +1,5 @@
 """`crankcheck mobility`: the motions of a scheme, by count and by rank."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path

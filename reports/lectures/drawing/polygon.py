@@ -1,7 +1,5 @@
 """`crankcheck polygon`: the vector polygons of a position."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

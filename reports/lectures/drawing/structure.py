@@ -1,7 +1,5 @@
 """`crankcheck structure`: what a scene is made of, and all its assemblies."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """What figures of regulation are drawn of: a cycle, the one without a flywheel, and their axis."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The page of a steady cycle, and of a flywheel: one HTML file."""
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Mapping
 

@@ -1,7 +1,5 @@
 """What figures of vibration share: how they are written, and what stands under them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What is told of a steady vibration: natural frequencies, orders, deflections, notes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ Another one is another function, a template beside the others, and a line in `SE
 way is its part ``section``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import cast
 

@@ -1,8 +1,6 @@
 """Texts to be copied: the cheapest settings of each engine that reach a target on every scene, and
 programs that read forces."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """The error against the step, with the orders and floors that were fitted, and against its cost."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

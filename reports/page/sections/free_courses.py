@@ -1,7 +1,5 @@
 """Free runs in the page: the mechanism moving beside the truth, and their courses over time."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

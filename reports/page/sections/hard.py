@@ -3,8 +3,6 @@
 Shapes and words only: a cell says its outcome by a sign, and how large its error was by a shade.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence

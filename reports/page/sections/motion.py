@@ -1,8 +1,6 @@
 """Scene by scene: the mechanism in motion with the engines over it, and its error over the crank
 angle, split into what a user can turn."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Sequence

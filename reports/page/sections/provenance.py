@@ -1,8 +1,6 @@
 """Where the numbers come from, versions, processor, studies, commands, settings and every cell, and
 the rules by which engines are compared."""
 
-from __future__ import annotations
-
 import json
 import math
 import shlex

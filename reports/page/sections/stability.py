@@ -1,7 +1,5 @@
 """Stability: which settings hold which scene, and from which step on."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import dataclass
 

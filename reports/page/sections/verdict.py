@@ -1,7 +1,5 @@
 """The verdict: one sentence for all, one for each engine, and the numbers behind them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What became better and what became worse, quantity by quantity and cell by cell."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping

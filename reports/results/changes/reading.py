@@ -1,7 +1,5 @@
 """Read a stored run, of either kind: the store of a sweep, or what `crankcheck verify -o` left."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -19,8 +19,6 @@ error = floor + C dt^p; MuJoCo's soft pins and its first-order step often work a
 (a < 0), and the error then dips before it rises to its floor.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Sequence

@@ -1,7 +1,5 @@
 """The forms that an error may have, and how many points of a line each goes through."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -7,8 +7,6 @@ power of dt alone goes through the same points. Where the two parts work against
 (`reports.results.fits.floor_fit`), five points can tell.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

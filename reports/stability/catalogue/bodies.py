@@ -1,7 +1,5 @@
 """Light bodies that hold heavy ones, a four-bar of other sizes and elsewhere, and bad starts."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import partial

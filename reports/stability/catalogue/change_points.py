@@ -1,8 +1,6 @@
 """Mechanisms that become flat, or nearly, where they could go on in two ways; and some that have
 more links than they need: by count they cannot move."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How the crank is driven, for how long, and in which steps."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import partial

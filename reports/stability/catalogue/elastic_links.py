@@ -1,7 +1,5 @@
 """Elastic links as chains of segments: where an engine no longer says how far they bend."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial

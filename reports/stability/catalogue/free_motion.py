@@ -1,7 +1,5 @@
 """Mechanisms that are let go, and four-bars that are thrown at their toggle."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

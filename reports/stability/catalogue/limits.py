@@ -4,8 +4,6 @@ The driver comes to rest before the end and goes back: so do the links, after a 
 sharper the nearer it is. What does not follow it goes straight on, into the other assembly.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Scenes whose driver follows a law, with rigid links."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Mapping, Sequence, Set
 from typing import Any, NoReturn

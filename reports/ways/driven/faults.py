@@ -1,7 +1,5 @@
 """Faults of driven runs: of their motion, and of the forces in them."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 
 from models.scene import Scene

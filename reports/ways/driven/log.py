@@ -1,7 +1,5 @@
 """Logs of scenes whose driver follows a law."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 

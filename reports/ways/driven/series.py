@@ -1,7 +1,5 @@
 """Hard runs of driven scenes: beside the closed form, a limit position, or a chain that falls."""
 
-from __future__ import annotations
-
 from analytic.kinematics import solve
 from models.array import Array
 from models.motion import Motion

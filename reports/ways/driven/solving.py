@@ -1,7 +1,5 @@
 """The reference of scenes whose driver follows a law, with rigid links."""
 
-from __future__ import annotations
-
 from reports.requests.solve import DrivenSolving
 
 SOLVING = DrivenSolving()

@@ -1,7 +1,5 @@
 """The table of cells whose driver follows a law, and what stands under it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from reports.compare.errors import largest

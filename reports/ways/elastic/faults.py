@@ -1,7 +1,5 @@
 """Faults of elastic links, as segments and as an engine's own beams."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
 
 from models.scene import Scene

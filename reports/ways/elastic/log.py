@@ -1,7 +1,5 @@
 """Logs of scenes whose links bend."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

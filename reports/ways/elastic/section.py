@@ -1,7 +1,5 @@
 """Elastic links: how far engines' segments bend, beside the beam."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Elastic links as segments, beside the exact chain of as many."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from models.array import Array

@@ -1,7 +1,5 @@
 """The reference of scenes whose driver follows a law, with links that bend."""
 
-from __future__ import annotations
-
 from reports.requests.elastic_solution import ElasticSolving
 
 SOLVING = ElasticSolving()

@@ -1,7 +1,5 @@
 """The table of elastic links, what they are off by and whose that is; and what stands under it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from reports.compare.elastic.elastic_errors import BENT, ElasticFacts

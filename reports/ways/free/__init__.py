@@ -1,7 +1,5 @@
 """Scenes in free motion, with rigid links."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence, Set
 from typing import Any, NoReturn
 

@@ -1,8 +1,6 @@
 """The columns of free cells: how far they were followed, and how long each class of precision
 holds."""
 
-from __future__ import annotations
-
 from reports.compare.free.free_facts import FreeFacts
 from reports.judge.cell import Checked
 

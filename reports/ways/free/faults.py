@@ -1,7 +1,5 @@
 """Faults of free motion."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 
 from models.scene import Scene

@@ -1,7 +1,5 @@
 """Logs of free motion: their truth, and what is said of them in place of causes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property

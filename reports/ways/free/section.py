@@ -1,7 +1,5 @@
 """What was let go: how far each engine still knew where it was."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from reports.output.numbers import duration

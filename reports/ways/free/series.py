@@ -1,7 +1,5 @@
 """A machine that is let go, beside the motion that its masses and forces give it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The table of cells in free motion, and what stands under it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from reports.compare.free.free_facts import FreeFacts

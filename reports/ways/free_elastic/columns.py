@@ -1,7 +1,5 @@
 """The columns of free cells of elastic links: those of both."""
 
-from __future__ import annotations
-
 from reports.judge.cell import Checked
 from reports.ways.elastic.columns import COLUMNS as BENT
 from reports.ways.free.columns import COLUMNS as FREE

@@ -1,7 +1,5 @@
 """The reference of scenes in free motion, with links that bend."""
 
-from __future__ import annotations
-
 from reports.requests.elastic_solution import ReleasedElasticSolving
 
 SOLVING = ReleasedElasticSolving()

@@ -1,7 +1,5 @@
 """What stands under the tables of free cells of elastic links, which are those of elastic ones."""
 
-from __future__ import annotations
-
 from reports.ways.elastic.table import BENT_WORDS
 from reports.ways.free.table import STEPPED
 

@@ -1,7 +1,5 @@
 """The equality constraints of a compiled model: those that close loops, and those that do not."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Container
 from dataclasses import dataclass

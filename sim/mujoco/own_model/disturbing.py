@@ -1,7 +1,5 @@
 """What a model holds beside its linkage, and what of it can disturb a comparison."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from typing import Any

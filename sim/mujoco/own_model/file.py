@@ -1,7 +1,5 @@
 """Read and compile an MJCF file, and what it includes from its own folder."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Iterator, Mapping

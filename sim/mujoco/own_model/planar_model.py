@@ -1,7 +1,5 @@
 """A compiled model with the planar linkage that was read off it."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Mapping, Sequence

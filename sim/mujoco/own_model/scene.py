@@ -1,7 +1,5 @@
 """The scene of a model that somebody else wrote: links with their points, sliders, masses."""
 
-from __future__ import annotations
-
 import cmath
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -5,8 +5,6 @@ changes with it, above all not how soft the loops are; the tolerance of the solv
 its ratio, as MuJoCo's stopping rule feels it (and does not feel ``stat.meaninertia``).
 """
 
-from __future__ import annotations
-
 import copy
 import math
 from collections.abc import Sequence

@@ -1,8 +1,6 @@
 """What is changed of a model at run time to see what it costs: something off, or the recommended
 settings. Its profiles say which."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass

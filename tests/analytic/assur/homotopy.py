@@ -9,8 +9,6 @@ Source: S. Wise, A. Sommese, L. Watson, Algorithm 801: POLSYS_PLP, ACM Transacti
 Software 26, 2000.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """All assemblies of random triads by a homotopy, and of special ones exactly as they are known."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import subprocess

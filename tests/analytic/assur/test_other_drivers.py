@@ -1,7 +1,5 @@
 """Mechanisms that another joint than a crank's drives: the same motion, and bounds that hold."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

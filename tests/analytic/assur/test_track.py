@@ -1,7 +1,5 @@
 """One assembly of a triad followed along the driver, and its bounds against fifty digits."""
 
-from __future__ import annotations
-
 import functools
 import math
 from dataclasses import replace

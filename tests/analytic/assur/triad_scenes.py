@@ -1,7 +1,5 @@
 """Random triads as scenes: a central link on three legs of any kind, the first on a crank."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """Chains, counted as published and against graphs drawn without any theory; their inversions."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The smooth motion through change points, against closed forms and fifty digits."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace

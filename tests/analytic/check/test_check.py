@@ -1,7 +1,5 @@
 """The closed form against the second opinion, and what falls freely against its closed form."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Reach, circuits, and what links do: by closed forms, and of six-bars by a count on a grid."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import re

@@ -1,7 +1,5 @@
 """Polygons against the reference, centres by their definitions, graphs with ruler and pole."""
 
-from __future__ import annotations
-
 import cmath
 import itertools
 import math

@@ -4,8 +4,6 @@ Every bunch can solve itself in floats (the solver under test, on arrays) and, s
 fifty digits (the oracle) from the same inputs, or from inputs moved within their stated errors.
 """
 
-from __future__ import annotations
-
 import math
 import operator
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """The closed-form dyads against fifty digits: their error never exceeds the bound they carry."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import astuple, dataclass
 

@@ -1,7 +1,5 @@
 """Redundant links: found in the structure, moved by their pins, refused where they do not fit."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

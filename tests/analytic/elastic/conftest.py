@@ -1,7 +1,5 @@
 """Truths of elastic links are found once."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import pytest

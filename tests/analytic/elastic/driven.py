@@ -1,8 +1,6 @@
 """Mechanisms with elastic links that tests share (synthetic): at other speeds, with other rockers
 and damping; their motions by multipliers, and how far two motions are apart."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

@@ -1,8 +1,6 @@
 """Driven mechanisms with elastic links: the rigid limit, how far the reference is trusted, instants
 and sizes of any kind, laws of the driver, and the fastest of what they do."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

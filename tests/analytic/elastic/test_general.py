@@ -1,8 +1,6 @@
 """Elastic links in scenes with all that scenes have: frames that start elsewhere, named points,
 loads, springs, gravity; and the state that segments and beams of an engine's own start from."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

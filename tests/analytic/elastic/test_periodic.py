@@ -2,8 +2,6 @@
 Floquet's multipliers, against known ones and integration over many turns; and vibration over speeds
 and inertia: critical speeds where motions are refused, and what a heavy rocker does."""
 
-from __future__ import annotations
-
 import math
 from contextlib import nullcontext
 from dataclasses import replace

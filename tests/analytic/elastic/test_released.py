@@ -1,8 +1,6 @@
 """Mechanisms with elastic links that are let go, by ways that have no integration in common; and a
 crank that a controller holds to its speed: it gives way, and the vibration goes."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from collections.abc import Callable

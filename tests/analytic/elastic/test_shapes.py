@@ -1,8 +1,6 @@
 """Elastic links without a mechanism around them (synthetic): shapes against closed forms, markers
 against differences, a free one's momentum and energy, and the matrices of a thesis."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,8 +1,6 @@
 """The integration of driven elastic links: against a library's method, by its energy, beside the
 equations with every coordinate kept, and by nodes that are exact as high as they say."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Forces beside other forces, and the balance of power."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

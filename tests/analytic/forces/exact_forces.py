@@ -5,8 +5,6 @@ for the unknown forces of its joints, and all of them are solved at once. Reacti
 friction, whose law holds to forty digits.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator, Mapping

@@ -1,8 +1,6 @@
 """Bounds of forces, against fifty digits: random mechanisms with loads, springs and friction, half
 of them near a dead point."""
 
-from __future__ import annotations
-
 import math
 import random
 from dataclasses import dataclass, replace

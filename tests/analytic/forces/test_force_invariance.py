@@ -4,8 +4,6 @@ With them goes what acts on it: loads of every law, over time, angle and displac
 or on both.
 """
 
-from __future__ import annotations
-
 import random
 from dataclasses import replace
 

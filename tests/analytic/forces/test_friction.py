@@ -1,7 +1,5 @@
 """Driving torque and reactions with friction: textbooks, and other computations."""
 
-from __future__ import annotations
-
 import math
 import random
 from dataclasses import replace

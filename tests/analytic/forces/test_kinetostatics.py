@@ -1,8 +1,6 @@
 """Driving torque and reactions of mechanisms that are worked out otherwise, with springs, redundant
 links and dead points; and what is refused."""
 
-from __future__ import annotations
-
 import math
 import random
 from collections.abc import Callable

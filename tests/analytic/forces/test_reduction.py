@@ -1,8 +1,6 @@
 """Inertia as one force, as two masses, at the driver, and in impulses that come a step late:
 numbers worked by hand, and what the bodies have themselves."""
 
-from __future__ import annotations
-
 import math
 import random
 from dataclasses import replace

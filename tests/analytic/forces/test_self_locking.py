@@ -1,8 +1,6 @@
 """Where friction locks a mechanism, and what it costs where it does not; and Coulomb's equations of
 several joints: one solution, none, or two, and what is said of it."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import random

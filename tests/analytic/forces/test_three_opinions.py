@@ -1,7 +1,5 @@
 """Forces by groups, by multipliers of all constraints, and by power: three computations."""
 
-from __future__ import annotations
-
 import random
 from dataclasses import replace
 

@@ -1,8 +1,6 @@
 """Scenes of free motion for the tests, and their motions by other methods: by steps of order 8, to
 instants of no window, and by the equations of all bodies."""
 
-from __future__ import annotations
-
 import math
 import pickle
 from functools import cache

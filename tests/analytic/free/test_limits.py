@@ -1,8 +1,6 @@
 """Limits of the driver's angle, and what passes them: into the other assembly, out to where the
 limit is no longer what is counted from, and over a hill or not, as its energy says."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

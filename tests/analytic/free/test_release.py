@@ -1,8 +1,6 @@
 """Free motion against a second method, by its energy, of the mechanism turned, moved, mirrored,
 larger or faster; and of several freedoms, by all bodies."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache

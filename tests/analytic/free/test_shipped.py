@@ -2,8 +2,6 @@
 costs; periods by quadrature, beside the integrated motion; and the chain of windows: its closed
 form against 50 digits, its equation against all bodies."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Strokes, time ratios and extreme speeds by closed forms and by sweeps of the reference."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from unittest.mock import Mock

@@ -1,7 +1,5 @@
 """Scenes of free motion whose motion, or whose start, is known by hand; and some that are not."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from analytic.kinematics import solve

@@ -2,8 +2,6 @@
 named, what is found, and what is refused; motions that are known by hand; what Baumgarte's terms
 let decay, cost, and where they fail; and what comes to an infinite speed in a finite time."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Motions of mechanisms: beside the equation of the machine, on their way, and with jumps."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache

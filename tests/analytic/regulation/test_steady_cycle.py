@@ -1,8 +1,6 @@
 """The cycle that a machine repeats: by hand, beside an integration, and where there is none; and
 the flywheel for a coefficient of fluctuation, exact beside approximate."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """Machines whose cycles are worked out by hand."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Screws; classes of joints from contacts: the problem book's examples, lower pairs, any frame."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import mpmath

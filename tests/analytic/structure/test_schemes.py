@@ -1,7 +1,5 @@
 """Schemes: mobility by sources and a second method, causes by name, links for higher pairs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Mobility, Assur groups in solving order, classes by the driver, and what is said without them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Random tasks of every kind, by their number: each has a mechanism."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable, Mapping

@@ -1,7 +1,5 @@
 """Burmester's points against a second method, against mechanisms that have them, and pylinkage."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Iterable

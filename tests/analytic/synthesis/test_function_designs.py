@@ -1,7 +1,5 @@
 """Function generators as proposals: met by the reference, with equal ripples, or refused."""
 
-from __future__ import annotations
-
 import functools
 import math
 import re

@@ -1,7 +1,5 @@
 """Freudenstein's equation: all solutions of tasks that have one, against Burmester and a search."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable

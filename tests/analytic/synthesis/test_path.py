@@ -1,7 +1,5 @@
 """Path generation: four-bars are found again from points that they go through."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Random four-bars with a crank, their coupler curves, and what an atlas of these tells apart."""
 
-from __future__ import annotations
-
 import cmath
 import math
 

@@ -1,7 +1,5 @@
 """Straight-line linkages: the textbook's numbers, and the reference along the line."""
 
-from __future__ import annotations
-
 import cmath
 import itertools
 import math

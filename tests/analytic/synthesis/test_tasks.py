@@ -1,7 +1,5 @@
 """Random tasks are met at every position; tolerances by closed forms and a Monte Carlo."""
 
-from __future__ import annotations
-
 import functools
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The angle of a link depends on the driver's angle alone, not on who asks."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace

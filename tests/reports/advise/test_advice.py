@@ -1,7 +1,5 @@
 """Advice of what was found: its order, its best, how it is shown and written."""
 
-from __future__ import annotations
-
 import io
 import json
 import math

@@ -1,7 +1,5 @@
 """`crankcheck advise` from the command line: its promises held by other runs, and mistakes."""
 
-from __future__ import annotations
-
 import functools
 import json
 import re

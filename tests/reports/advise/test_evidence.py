@@ -1,8 +1,6 @@
 """What may be asked for, the steps that follow from it, what advice chooses from, and what a stored
 study says of settings at a speed and step."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

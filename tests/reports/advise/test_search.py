@@ -1,7 +1,5 @@
 """The search for the fewest sub-steps, on errors whose law is known; its runs and their prices."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """Sheets with a fault in them, and what is told of them."""
 
-from __future__ import annotations
-
 from functools import cache
 from itertools import cycle
 

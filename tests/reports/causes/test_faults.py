@@ -7,8 +7,6 @@ the log had before: a line through the crank's pin that is turned, and a lever w
 one thing.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from itertools import cycle, product
 

@@ -1,8 +1,6 @@
 """What keeps a cause from being told where it explains too little, or spoils what is right; and two
 faults of one channel, both told where the first of them needs no fitted number."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

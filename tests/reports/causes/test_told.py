@@ -1,7 +1,5 @@
 """What a cause says: the words, the numbers and the correction of each."""
 
-from __future__ import annotations
-
 import cProfile
 import math
 import re

@@ -2,8 +2,6 @@
 the limit, what was found and what would work, after few calls of functions and in as little memory
 as a misspelt key. Loads that a scene can not have, or not for so long, are refused as well."""
 
-from __future__ import annotations
-
 import os
 import re
 import socket

@@ -1,8 +1,6 @@
 """The command starts fast, and loads nothing that it does not need; where it does not end by a
 verdict, it ends with one line and a code that tells whose fault that is."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,8 +1,6 @@
 """`crankcheck export`, of what is let go or bends as well: a model that runs as it is; and `view`,
 `scenes` and `engines`."""
 
-from __future__ import annotations
-
 import io
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`--forces` and `--free` of verify, sweep, stability and selftest from the command line."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

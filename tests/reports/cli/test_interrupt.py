@@ -1,8 +1,6 @@
 """Ctrl-C and SIGTERM in a real run with worker processes, at any time and several times; and Ctrl-C
 from the first line of ours that Python runs to the last."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

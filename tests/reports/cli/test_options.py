@@ -1,7 +1,5 @@
 """Every option of a command is a field of its request, written once."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 from pathlib import Path
 

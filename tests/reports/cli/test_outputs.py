@@ -1,8 +1,6 @@
 """What a command reads is never written over, no output takes the place of another, and none goes
 through a symbolic link to what it leads to."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from pathlib import Path

@@ -1,8 +1,6 @@
 """What no command can be asked: each line is refused with exit code 2 and a message that names
 place, fault and cure, before anything is written."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`crankcheck run`, the log of a run in a file or in short on the terminal, and `recipe`."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from pathlib import Path

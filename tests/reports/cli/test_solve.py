@@ -1,8 +1,6 @@
 """`crankcheck solve` of what is driven: tables, files, families. More of what it tells is in
 `test_told.py`."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence

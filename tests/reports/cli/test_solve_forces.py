@@ -1,8 +1,6 @@
 """`crankcheck solve --forces`: tables, files, notes and figures; what friction takes, and where it
 locks. More of what it tells is in `test_told.py`."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace

@@ -1,8 +1,6 @@
 """`crankcheck solve` and `view` of a scene that is let go, or has elastic links: tables, files,
 figures, a page. More of what they tell is in `test_told.py`."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,8 +1,6 @@
 """`crankcheck structure`, `chains`, `rotatability`, `joint`, `mobility`, `polygon` and `graph`:
 tables, sheets, JSON, and what is refused. More of what they tell is in `test_told.py`."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,8 +1,6 @@
 """What commands tell on the terminal, where words and numbers are all that there is to see; and
 that it fits: less of it where the terminal is narrow, nothing clipped."""
 
-from __future__ import annotations
-
 import io
 
 import pytest

@@ -1,8 +1,6 @@
 """`crankcheck verify` from the command line: verdict, table, files, baselines. More of what it
 tells is in `test_told.py`, mistakes are in `test_refusals.py`."""
 
-from __future__ import annotations
-
 import io
 import json
 import re

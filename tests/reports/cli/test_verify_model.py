@@ -1,7 +1,5 @@
 """`crankcheck verify --mjcf`: what it takes, what it refuses, and what it writes."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable

@@ -1,8 +1,6 @@
 """A run that goes over to the other assembly of its loop is named, and never passes; change points
 that a motion goes through have limits as tight as away from them, and rates apart."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Every error that is put in is found in the right quantity, with the right size."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,8 +1,6 @@
 """The forces of a run beside kinetostatics, at their own instants, and with a word for what is not
 compared; how hard loads are on an engine, and the samples beside jumps of forces."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """A chain of windows in an engine, against its closed form: what is measured, and what is seen."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any

@@ -1,8 +1,6 @@
 """Error series: whole turns, size, differencing, tracks of what a run logged and lacks; and the
 last turn of a run, with what it was off by."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,8 +1,6 @@
 """Every clause is seen to break by a fault of its own, and by hardly any other's; what comes of an
 engine that ends its process, hangs or raises; and what is printed of the clauses."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

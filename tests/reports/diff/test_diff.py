@@ -1,7 +1,5 @@
 """`crankcheck diff` as a user sees it: exit code, what is named, files, also of a large diff."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What a drawing holds: the reference, errors small enough to be magnified, and elastic links."""
 
-from __future__ import annotations
-
 import base64
 import math
 

@@ -1,7 +1,5 @@
 """What is embedded can neither leave its script nor lose what a diagram shows."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import json

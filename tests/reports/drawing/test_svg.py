@@ -1,7 +1,5 @@
 """The SVG of a mechanism: whole, in the frame, legible on white and on black, with its forces."""
 
-from __future__ import annotations
-
 import io
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Truths of elastic links, with the chains beside them, are found once."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cache
 

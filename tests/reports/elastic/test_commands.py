@@ -1,8 +1,6 @@
 """What stores, compares and shows cells takes those of elastic links; and their logs are judged as
 runs are, beside the beam and the exact chain."""
 
-from __future__ import annotations
-
 import json
 import shlex
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Engines on elastic links that are let go, or that a controller drives."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

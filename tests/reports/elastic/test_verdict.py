@@ -1,8 +1,6 @@
 """Engines on elastic links, as segments or as beams: each error is told from the others, and held
 to what explains it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

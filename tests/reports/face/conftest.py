@@ -1,7 +1,5 @@
 """Runs that several tests look at: short ones, at a coarse step."""
 
-from __future__ import annotations
-
 import pytest
 
 import crankcheck

@@ -1,7 +1,5 @@
 """Arguments of the wrong kind or shape are told at the call, in the words of the command."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import traceback

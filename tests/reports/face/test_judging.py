@@ -1,7 +1,5 @@
 """`judge` and `assert_within`: of the log of a run they say what `verify` says of the run."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path

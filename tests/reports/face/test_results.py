@@ -1,7 +1,5 @@
 """What the functions of the face give: values that print themselves, and are drawn in notebooks."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import pickle

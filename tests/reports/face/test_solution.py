@@ -1,7 +1,5 @@
 """`crankcheck.solve`: of what is driven, of what is let go, and of elastic links."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path

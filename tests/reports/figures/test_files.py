@@ -1,8 +1,6 @@
 """The files of `crankcheck figures`, of a driven store and of free runs: whole, labelled, and the
 same on any day."""
 
-from __future__ import annotations
-
 import io
 import re
 import xml.etree.ElementTree as ET

@@ -1,7 +1,5 @@
 """Figures of a store: nothing over something else, and curves told apart without colour."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The figures of what is solved: of forces, regulation, vibration and families of rods."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable

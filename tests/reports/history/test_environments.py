@@ -1,7 +1,5 @@
 """An environment per version: what makes it, what may not leak into it, and why it failed."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

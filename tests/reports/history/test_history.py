@@ -1,7 +1,5 @@
 """`crankcheck history` as a whole: with an installer and versions made up here, and for real."""
 
-from __future__ import annotations
-
 import csv
 import io
 import os

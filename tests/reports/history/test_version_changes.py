@@ -1,7 +1,5 @@
 """What changed between versions: ratios, what stands out, and where it is shown and written."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math

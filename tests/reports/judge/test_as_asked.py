@@ -1,8 +1,6 @@
 """A run that is not the one that was asked for is refused, by the field that differs; and what is
 nearer to the reference than an engine can come was taken from it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import product

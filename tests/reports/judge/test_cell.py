@@ -1,7 +1,5 @@
 """A cell from run to verdict, alone and in a pool; its rows in frames; how often it solves."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections import Counter

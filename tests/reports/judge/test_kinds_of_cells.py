@@ -1,8 +1,6 @@
 """Cells of which forces are asked for, and such as were let go: what is caught, what is not graded,
 and what stands in their rows."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache

@@ -13,8 +13,6 @@ within the iterations of profile tuned, as the last test shows, and steps too co
 curvature of the motion are off by what no tolerance grants.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Every rule is seen to pass, and to fail; and what is said of an error when the step is halved."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,8 +1,6 @@
 """Tolerances: defaults that follow step and scene, overrides, and mistakes in them; how far engines
 jump in their first step, as theory says; and the rounding of the drive's own sum in long runs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

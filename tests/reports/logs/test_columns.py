@@ -1,7 +1,5 @@
 """Files of columns: separators, headers and units are found, and what can not be read is told."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

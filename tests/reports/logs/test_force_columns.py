@@ -1,7 +1,5 @@
 """Columns of forces in a user's own log: their names, units and signs."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

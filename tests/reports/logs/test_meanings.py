@@ -1,7 +1,5 @@
 """Columns become readings, by their names, as people write them, and by a map."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path

@@ -1,8 +1,6 @@
 """Files are refused before the work, and written whole or not at all after it; tables in them keep
 every digit, and Markdown the names that would be markup."""
 
-from __future__ import annotations
-
 import io
 import math
 import os

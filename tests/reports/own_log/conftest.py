@@ -1,7 +1,5 @@
 """Judge a stranger's log as a user does: a file, perhaps a map beside it, and the command."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 

@@ -4,8 +4,6 @@ and hardly more memory, than a log of the same size that is right. And a right o
 is judged in 1 GB, and in as many calls as a short one: a user records as much in a quarter of an
 hour at 1 kHz."""
 
-from __future__ import annotations
-
 import math
 import os
 import re

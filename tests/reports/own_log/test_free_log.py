@@ -1,7 +1,5 @@
 """The log of a mechanism that was let go is held to the motion of its masses and forces."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache

@@ -5,8 +5,6 @@ is a second opinion: it shares no line with ours, and agrees. Of a log whose nam
 map that is written is a form, and filled in it reads it.
 """
 
-from __future__ import annotations
-
 import ast
 import json
 import math

@@ -1,8 +1,6 @@
 """A user's log is judged for what it holds, by what moves it, within what he asks for; of what no
 cause explains, he is told what part of the error it is, and how that goes on."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

@@ -4,8 +4,6 @@ its channel; nothing else is blamed.
 What is planted, and where, says `tests.worlds.stranger_faults`.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Models that can not be read or held to a closed form: one message, with place, fault and cure."""
 
-from __future__ import annotations
-
 import os
 import re
 from dataclasses import replace

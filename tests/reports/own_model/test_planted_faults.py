@@ -1,8 +1,6 @@
 """Faults planted in a healthy model: each is named with its joint or body, or refused with it. What
 is recommended was seen to gain: contacts off, the integrator, or nothing at all."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A scene, drawn as a model in any way, is read off it again: lengths, masses, and the verdict."""
 
-from __future__ import annotations
-
 import cmath
 import itertools
 import math

@@ -1,7 +1,5 @@
 """An own model on the terminal: all that matters, short, in a narrow one as well."""
 
-from __future__ import annotations
-
 import io
 import math
 from dataclasses import replace

@@ -2,8 +2,6 @@
 keyframes; each says the same four-bar. And models that people published: what is said of each, run
 or refused, with bounds that a prototype measured, within a factor of two."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A small real store, its page, and a browser that reads it with the network off."""
 
-from __future__ import annotations
-
 import os
 import shutil
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """A matrix of hard cases as the page gets it: real runs of shipped scenes, some of which fail."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

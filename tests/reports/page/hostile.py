@@ -1,7 +1,5 @@
 """Hostile text in all that a file may hold, and the elements of a page in which it stands."""
 
-from __future__ import annotations
-
 import json
 import re
 from html.parser import HTMLParser

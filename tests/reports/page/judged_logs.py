@@ -1,7 +1,5 @@
 """Logs of the lecture's four-bar and of others, judged, for the tests of their page."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

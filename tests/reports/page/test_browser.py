@@ -1,7 +1,5 @@
 """The page in a real browser, from a file, with the network off."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The summary for a comment on a pull request: short enough, whole, and telling what matters."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from pathlib import Path

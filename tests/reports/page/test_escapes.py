@@ -1,7 +1,5 @@
 """What stands in a scene file, or is its name, stays text wherever it is shown or written."""
 
-from __future__ import annotations
-
 import os
 from dataclasses import replace
 from pathlib import Path

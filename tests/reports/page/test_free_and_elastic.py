@@ -1,7 +1,5 @@
 """The page of a store of what was let go, or whose links bend, alone and beside what was driven."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from io import StringIO

@@ -1,7 +1,5 @@
 """The page of hard cases as a file: what its map says, also of odd matrices."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections import Counter

@@ -1,7 +1,5 @@
 """The page of hard cases in a real browser, from a file, with the network off."""
 
-from __future__ import annotations
-
 import copy
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The page of a judged log in a real browser, from a file, with the network off."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

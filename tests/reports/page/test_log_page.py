@@ -1,7 +1,5 @@
 """The page of a judged log as a file: whole, escaped, small enough, also for odd logs."""
 
-from __future__ import annotations
-
 import base64
 import os
 import re

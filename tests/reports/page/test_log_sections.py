@@ -1,8 +1,6 @@
 """What a page shows of a log: its channels in the user's units, beside the truth, worst first; and
 what of the mechanism is drawn from a log that holds a part of it, and where."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -1,7 +1,5 @@
 """The page of a judged model: whole, escaped, small enough, and alive in a browser."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from html import escape

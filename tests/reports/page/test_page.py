@@ -1,7 +1,5 @@
 """The page as a file: whole, escaped, small enough, also for odd stores."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Mapping

@@ -1,8 +1,6 @@
 """Pages of a solved scene and of a construction in a browser: they load nothing, and move with all
 that is on them."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable
 from dataclasses import replace

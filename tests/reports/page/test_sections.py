@@ -1,7 +1,5 @@
 """What the sections say, on made-up stores."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import re

@@ -1,7 +1,5 @@
 """Colours of the page: enough contrast, told apart by those who see fewer, one dark theme."""
 
-from __future__ import annotations
-
 import itertools
 import re
 

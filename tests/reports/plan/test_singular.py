@@ -1,7 +1,5 @@
 """Positions in which the motion is not determined are named, before any engine runs."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from dataclasses import replace

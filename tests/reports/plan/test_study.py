@@ -1,8 +1,6 @@
 """Studies: files, the command line over them, their scenes, and the grid that they make; and the
 search for the coarsest step, on errors whose law is known."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """A quantity more is one entry: it is compared, judged and shown, and nothing else changes."""
 
-from __future__ import annotations
-
 import json
 import math
 import subprocess

@@ -1,7 +1,5 @@
 """`crankcheck cycle` and `crankcheck flywheel`: what they print and write, and mistakes."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """Stores that are made up: cells whose errors and costs a test chooses."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterable, Mapping

@@ -1,7 +1,5 @@
 """Noise, time to a target, fronts and profiles: on errors and costs that are known."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

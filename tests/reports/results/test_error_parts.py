@@ -1,7 +1,5 @@
 """The parts of an error over the crank angle, on lines whose parts are known."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 

@@ -1,8 +1,6 @@
 """Which lines of a store stand, and in which order; which settings are recommended, and what is
 said where none are."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """What the recommendation table promises holds in models that know nothing of crankcheck."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """Every planted fault is caught by the rule that it names, and nothing is found without it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache

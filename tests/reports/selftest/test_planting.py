@@ -4,8 +4,6 @@ what is let go, and in elastic links and beams. What need not be seen is not.
 That each fault is caught by its rule and its size of 0 is not, `test_faults.py` says of all kinds.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from typing import Any

@@ -1,8 +1,6 @@
 """What faults plant whose runs `make slow` has (`test_faults.py`): here no engine runs, and what it
 would be given, or what stands in the place of its log, is looked at."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from types import SimpleNamespace

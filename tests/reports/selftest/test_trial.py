@@ -1,8 +1,6 @@
 """How the smallest size is found, and what counts as caught; and `crankcheck selftest` from the
 command line: table, files, exit codes, mistakes."""
 
-from __future__ import annotations
-
 import io
 import json
 from collections.abc import Callable, Iterator

@@ -1,8 +1,6 @@
 """The sheet of positions, measured; no label on a line or on another label, on any sheet; and the
 check that says so."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import replace

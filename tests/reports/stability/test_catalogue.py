@@ -1,8 +1,6 @@
 """The hard cases: each has a truth that stands at all of its values, and says what is right;
 drivers near a limit position, and elastic links."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace

@@ -1,8 +1,6 @@
 """`crankcheck stability` from the command line: the matrix, its files, and every mistake; a stored
 matrix is read back as it was, and a file that is not one refused with the cure."""
 
-from __future__ import annotations
-
 import json
 import math
 import shutil

@@ -1,8 +1,6 @@
 """What of the errors of a run counts, and in which way: of logs that look well at their end and are
 not, of a machine that is let go, and of throws at a toggle."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,8 +1,6 @@
 """How a hard run ends is decided by rules, each of which sees its own kind of end; and the value up
 to which a case is held: the first that is not, from the easy end, closed in on."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """A small real store, made once, whose copies are damaged; and sweeps without processes apart."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Callable
 from io import StringIO

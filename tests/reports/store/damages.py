@@ -1,7 +1,5 @@
 """Ways to damage a store, and what is to come of each."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

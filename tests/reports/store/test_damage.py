@@ -1,7 +1,5 @@
 """A store damaged on purpose: what is said, what is read, and that the same sweep mends it."""
 
-from __future__ import annotations
-
 import json
 import os
 import random

@@ -1,8 +1,6 @@
 """What a store takes, keeps and refuses; and what is read while a sweep writes to it, or one left
 it half written."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import threading

@@ -1,8 +1,6 @@
 """A cell of a sweep: an engine that crashes, hangs or fills memory costs its own alone; and cells
 are timed in turns, in repeats that are long enough, from where each of them starts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from io import StringIO
 from pathlib import Path

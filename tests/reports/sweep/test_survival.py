@@ -1,7 +1,5 @@
 """A sweep that is killed, stopped, or run again: what is done is kept, what is missing is run."""
 
-from __future__ import annotations
-
 import re
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """The proof in engines: it sees what is not met, and says of what could not be run why."""
 
-from __future__ import annotations
-
 import cmath
 import functools
 import itertools

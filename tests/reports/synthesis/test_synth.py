@@ -1,7 +1,5 @@
 """`crankcheck synth`: what it lists, writes and proves, and what it refuses."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pandas as pd

@@ -1,7 +1,5 @@
 """Searches in the process of the tests, with made-up clocks, that run each cell once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import ClassVar, cast

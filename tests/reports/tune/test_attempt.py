@@ -1,7 +1,5 @@
 """One set of settings in a real engine."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,8 +1,6 @@
 """The search over the knobs, on settings whose cost and error are known; and the file that it is
 kept in: only the one that is asked for is gone on with."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 import os

@@ -1,7 +1,5 @@
 """The command as a whole, with real engines and small budgets."""
 
-from __future__ import annotations
-
 import io
 import re
 import signal

@@ -1,8 +1,6 @@
 """What fails is tried with what its engine has against it, and nothing else is run again; and JUnit
 XML is valid, whatever a reason or a source holds."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from xml.etree import ElementTree as Xml
 

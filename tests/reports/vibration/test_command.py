@@ -1,7 +1,5 @@
 """`crankcheck vibration`: what it prints and writes, and mistakes."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

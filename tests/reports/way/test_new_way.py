@@ -4,8 +4,6 @@ stored and shown as all others are.
 The house is copied by links, with the folder's name in `WAYS`; all commands run in one process.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -1,8 +1,6 @@
 """Tables of formulas and families of them and of other mechanisms, against the reference; and what
 a spreadsheet is given: names, functions, and cells that may and may not be changed."""
 
-from __future__ import annotations
-
 import io
 import math
 import random

@@ -1,7 +1,5 @@
 """Workbooks of formulas, changed and recalculated by programs that are not ours."""
 
-from __future__ import annotations
-
 import random
 import shutil
 import subprocess

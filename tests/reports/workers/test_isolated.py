@@ -1,8 +1,6 @@
 """Processes apart: what they may take, what ends them, and what is told of that; many at a time;
 one thread for linear algebra in each, unless the user says how many; and other programs."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """The forces that exudyn reports, against the reference; loads and friction that it is given."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Mapping
 from dataclasses import replace

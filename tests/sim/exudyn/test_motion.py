@@ -2,8 +2,6 @@
 its own beams: sag, first frequency, stretch, angles that count turns, what is refused.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Sessions of exudyn: its clock, its silence, its redundant joints, its drives."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

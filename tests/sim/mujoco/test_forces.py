@@ -2,8 +2,6 @@
 every kind at the right instant, and with constant friction in its joints.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """A mechanism of unequal masses is no worse in MuJoCo than one whose masses are alike."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -2,8 +2,6 @@
 slider of a stroke turns back has its share.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs

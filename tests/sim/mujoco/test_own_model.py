@@ -2,8 +2,6 @@
 keeps its speed, and the recommended settings come as a diff that applies to its very file.
 """
 
-from __future__ import annotations
-
 import itertools
 import shutil
 import subprocess

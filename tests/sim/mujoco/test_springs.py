@@ -2,8 +2,6 @@
 what its file says.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import pairwise

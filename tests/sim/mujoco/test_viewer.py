@@ -1,7 +1,5 @@
 """What the viewer plays keeps to the law of the driver, without a screen."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs

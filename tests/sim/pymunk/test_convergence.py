@@ -2,8 +2,6 @@
 in the pins of a chain, all at once.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

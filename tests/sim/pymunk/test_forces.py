@@ -2,8 +2,6 @@
 its step, and pymunk's own.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -2,8 +2,6 @@
 pins are closed for the arcs of their points.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

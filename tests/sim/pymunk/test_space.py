@@ -1,7 +1,5 @@
 """The pymunk space: only what the scene needs, assembled, and what it refuses."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -4,8 +4,6 @@ One link is the spoke that holds the bead; the bead is let go from rest. What a 
 is this folder, and its name in `reports.way.way.WAYS` (see `tests/reports/way/test_new_way.py`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A hard case: a bead that is let go ever nearer to the top of its wire, where a swing lasts."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The columns of beads."""
 
-from __future__ import annotations
-
 from reports.judge.cell import Checked
 from tests.worlds.bead.errors import BeadFacts
 from tests.worlds.bead.swing import swing_of

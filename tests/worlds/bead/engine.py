@@ -1,7 +1,5 @@
 """The fake engine, as it runs a bead: in the right swing, whose time is off as a step makes it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 from models.array import Array

@@ -1,7 +1,5 @@
 """The errors of a bead: phase and places at the same time, and the time of its swing."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A fault: the bead is elsewhere on its wire than its log says."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The figure of beads: how far they are off over time."""
 
-from __future__ import annotations
-
 from matplotlib.figure import Figure
 
 from reports.figures.drawing import Drawing, marks

@@ -1,7 +1,5 @@
 """The section of beads in the page."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from reports.page.sections.section import PageReport, Section, WaySection

@@ -1,7 +1,5 @@
 """Hard runs of beads, beside the swing."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from models.array import Array

@@ -1,7 +1,5 @@
 """The swing of a bead from rest, by Jacobi's elliptic functions; any textbook of mechanics."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The table of beads: with a column of its own."""
 
-from __future__ import annotations
-
 from reports.judge.cell import Checked
 from reports.quantities import QUANTITIES
 from reports.verify.table import CellTable

@@ -1,7 +1,5 @@
 """A bead beside its swing."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar

@@ -1,7 +1,5 @@
 """From a task of function generation to mechanisms: all that meet its precision points."""
 
-from __future__ import annotations
-
 import cmath
 import itertools
 import math

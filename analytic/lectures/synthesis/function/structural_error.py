@@ -4,8 +4,6 @@ Source: lecture "Tong hop co cau" (synthesis), structural error E(x) = f(x) - F(
 mechanism generates.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

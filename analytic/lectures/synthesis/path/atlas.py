@@ -22,8 +22,6 @@ mechanisms for path generation using Fourier descriptors and global search metho
 Mechanical Design 119 (1997), pages 504 to 510.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

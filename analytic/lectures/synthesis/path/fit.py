@@ -10,8 +10,6 @@ numbers, in which the curve is linear, follow from the others, gives the starts 
 Least Squares Orthogonal Distance Fitting of Curves and Surfaces in Space, chapter 2.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Sequence

@@ -5,8 +5,6 @@ length, about their middle and over their size: the similarity of two is |sum of
 from 0 to 1, which no turn changes.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cache

@@ -11,8 +11,6 @@ of the coupler's direction, w, tells the rest: the least sum of squares is |y|^2
 That is one product for a shape and a start of the crank, so that tens of thousands are looked at.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 import time

@@ -16,8 +16,6 @@ with three complex numbers O (the fixed pivot), G (the ground, from O2 to O4) an
 coupler), in which it is linear. The other assembly is the mirror image of this one.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal

@@ -1,7 +1,5 @@
 """The sheet of instant centres, with the circles and centrodes of a link."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

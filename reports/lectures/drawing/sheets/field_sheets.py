@@ -1,8 +1,6 @@
 """Sheets of schemes, each in a field of its own with its name below: chains, and the assemblies of
 a scene."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ A letter stands as near as it can; where all near places are taken it stands far
 thin line that leads to what it names. Among faint lines it interrupts these, as draughtsmen do.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Every pin of a group is found as one draws it: arcs about the pins that it hangs
 a line, cross in it (lecture "Phan tich dong hoc", part II); the first position is drawn full.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -2,8 +2,6 @@
 the arrow of the driver's rotation.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import chain, combinations, pairwise

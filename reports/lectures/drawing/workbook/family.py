@@ -1,7 +1,5 @@
 """A family of mechanisms that differ in one number, side by side in one table of formulas."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

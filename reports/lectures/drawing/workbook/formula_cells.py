@@ -4,8 +4,6 @@ Inputs are named cells, so that a formula reads as it is written in a book. The 
 protected without a password: what may be changed is coloured and open.
 """
 
-from __future__ import annotations
-
 import math
 import re
 

@@ -6,8 +6,6 @@ A formula is written with names: ``{AB}`` an input, ``[phi]`` the same row's val
 ``[phi-1]`` that of the row before. The first row may have another formula, as nothing is before it.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping, Sequence

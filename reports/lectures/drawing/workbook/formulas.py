@@ -1,8 +1,6 @@
 """The four-bar, the slider-crank and the slotted lever (culisse) as formulas of a sheet, as
 textbooks write them."""
 
-from __future__ import annotations
-
 import math
 
 from analytic.mechanism.fourbar import FourBar

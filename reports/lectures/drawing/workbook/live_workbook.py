@@ -1,7 +1,5 @@
 """A workbook that computes: inputs, their table of formulas, and charts of both."""
 
-from __future__ import annotations
-
 import io
 import math
 from collections.abc import Callable, Mapping, Sequence

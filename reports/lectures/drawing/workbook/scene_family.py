@@ -1,7 +1,5 @@
 """A family of any mechanism: scenes that differ in one number, each solved by the reference."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

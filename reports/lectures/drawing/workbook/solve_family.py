@@ -1,7 +1,5 @@
 """`crankcheck solve --family`: mechanisms that differ in one number, side by side."""
 
-from __future__ import annotations
-
 import base64
 import math
 from collections.abc import Mapping, Sequence

@@ -1,8 +1,6 @@
 """Runs of free motion whose errors are known: a phase that lags, a linkage that is open, a truth
 that ends, another assembly; drifts; and loads over time that end with the run."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from pathlib import Path

@@ -1,8 +1,6 @@
 """What counts as worse, and what does not; both kinds of stored runs, and every folder that is
 none."""
 
-from __future__ import annotations
-
 import json
 import math
 import os

@@ -1,8 +1,6 @@
 """A floor and a part of the step that work against each other, and what curves of any alignment
 allow."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

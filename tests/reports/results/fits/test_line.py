@@ -1,8 +1,6 @@
 """Lines of known order, floor and scatter are read as what they are, with honest uncertainty; the
 step that reaches a target error lies on the fit, between steps that were run."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Sequence

@@ -5,8 +5,6 @@ period / n, 2 n, converge=False)).errors.worst("angle").pure`` with mujoco 4.0.0
 over two turns with a prescribed drive.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,8 +1,6 @@
 """Constructions to draw: three positions by circles, the lecture's rocker, Burmester's curves, and
 a pole that is far off."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Sequence

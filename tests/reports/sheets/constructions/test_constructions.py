@@ -1,8 +1,6 @@
 """The sheet of a construction, measured, and what its page holds, which `tests.reports.page` opens;
 and lines cut to a box, against what of them is in it by looking."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

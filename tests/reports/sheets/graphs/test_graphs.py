@@ -1,8 +1,6 @@
 """The sheet of graphs: construction on paper, what fits, and what is refused; and graphs of a log:
 what it adds to the error of the drawing, and which logs are refused."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable

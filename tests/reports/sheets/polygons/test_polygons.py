@@ -2,8 +2,6 @@
 `tests.reports.page` opens it. Polygons at an instant: at a time of a motion, beside how that moves;
 of a log, beside the reference: planted errors come out as they went in."""
 
-from __future__ import annotations
-
 import base64
 import io
 import json

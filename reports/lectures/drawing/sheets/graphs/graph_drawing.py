@@ -1,7 +1,5 @@
 """Three graphs drawn from the reference and, beside them, from a log, and what each is off by."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path

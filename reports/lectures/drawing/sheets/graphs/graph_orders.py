@@ -1,7 +1,5 @@
 """How the errors of drawn graphs fall with the number of divisions."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

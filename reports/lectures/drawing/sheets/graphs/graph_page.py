@@ -1,7 +1,5 @@
 """The whole sheet of graphs as a drawing: captions, legend, table and a layer for each step."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -10,8 +10,6 @@ By integration the second rate stands above, and each graph has steps parallel t
 one before.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What drawn graphs are off by, in words and as a table on the terminal."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A vector polygon in a box: known vectors full, directions dashed, crossings marked."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The table of a polygon sheet: vectors in mm and SI, links with their images, errors of a log."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
