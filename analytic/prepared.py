@@ -20,7 +20,7 @@ from analytic.dyads.chunk import Chunk, Passage, driver_scale, told
 from analytic.dyads.parts import OpenError
 from analytic.dyads.plane import AngleError, Real
 from analytic.dyads.redundant import BridgeStep
-from analytic.dyads.riding import Placed
+from analytic.dyads.riding import PlacedBodies
 from analytic.dyads.steps import DYAD_STEPS, FollowedStep, Step, stretched
 from analytic.result import MotionArrays, Selection
 from analytic.structure.groups import Bridge, Group, Triad
@@ -287,7 +287,7 @@ def prepare(scene: Scene, structure: Structure) -> list[Step]:
     known = {GROUND} if compound is not None else {GROUND, driver.link}
     steps: list[Step] = []
     for part in structure.order:
-        placed = Placed(scene, structure, frozenset(known))
+        placed = PlacedBodies(scene, structure, frozenset(known))
         if isinstance(part, Bridge):
             steps.append(BridgeStep(placed, part))
         elif isinstance(part, Triad) or (compound is not None and compound.name in part.bodies):
@@ -300,7 +300,7 @@ def prepare(scene: Scene, structure: Structure) -> list[Step]:
     return steps
 
 
-def _step_of_class_three(placed: Placed, part: Group | Triad, before: Sequence[Step]) -> Step:
+def _step_of_class_three(placed: PlacedBodies, part: Group | Triad, before: Sequence[Step]) -> Step:
     """The step of a triad, or of a dyad with a compound: most scenes have none, nor load it."""
     from analytic.assur.mounting import Mounting
     from analytic.assur.step import AssurStep

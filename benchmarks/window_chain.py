@@ -29,7 +29,7 @@ from concurrent.futures import ProcessPoolExecutor
 
 from analytic.free.exact_motions import ChainMotion
 from models.errors import EngineError
-from models.scene.hard import Chain
+from models.scene.hard import WindowChain
 from reports.compare.free.hard_runs import ChainErrors, hold
 from reports.output.provenance import processor
 from sim.engine import SettingValue
@@ -125,7 +125,7 @@ def main(names: Sequence[str] = ()) -> int:
 
 def accuracy() -> None:
     """The chain of the benchmark in all cases, two at a time: nothing here is timed."""
-    turning = ChainMotion(Chain(COUNT))
+    turning = ChainMotion(WindowChain(COUNT))
     print(
         f"N = {COUNT} windows, free from upright, {DURATION_S:g} s, "
         f"{DURATION_S / turning.period_s:.1f} turns of {turning.period_s:.4f} s; "
@@ -172,7 +172,7 @@ def brief(asked: tuple[int, Case]) -> ChainErrors:
 def held(case: Case, count: int = COUNT, duration_s: float = DURATION_S) -> ChainErrors:
     """One case of the benchmark."""
     return hold(
-        Chain(count),
+        WindowChain(count),
         case.engine,
         case.profile,
         dt_s=case.dt_s,
@@ -223,13 +223,13 @@ def timings() -> None:
 def timed(case: Case, count: int) -> float:
     """Microseconds per step of a chain that is about to lie flat; NaN where the engine gives up on
     it there."""
-    turning = ChainMotion(Chain(count))
+    turning = ChainMotion(WindowChain(count))
     times = np.linspace(0.0, turning.period_s / 2.0, 20_001)
     flat = float(np.interp(0.0, -turning.at(times)[0], times))
     start = turning.motion(np.array([flat - BEFORE_FLAT_S])).state(0)
     try:
         timing = time_run(
-            Chain(count).scene(),
+            WindowChain(count).scene(),
             start,
             case.engine,
             case.profile,

@@ -46,7 +46,7 @@ turns than there are assemblies."""
 
 
 @dataclass(frozen=True)
-class Assembly:
+class TriadAssembly:
     """One of them: the angle of the central link in (-pi, pi] [rad] and the place of its origin
     [m]; ``count`` is 2 or more where so many fall together (a limit position or a change point)."""
 
@@ -79,7 +79,7 @@ class _BluntError(ArithmeticError):
     """Balls that are too wide."""
 
 
-def assemblies(rows: LegRows) -> tuple[Assembly, ...]:
+def assemblies(rows: LegRows) -> tuple[TriadAssembly, ...]:
     """All real assemblies, by increasing angle.
 
     Each is right to rounding: the balls of angle and place are far below the last digit.
@@ -105,7 +105,7 @@ def assemblies(rows: LegRows) -> tuple[Assembly, ...]:
     raise CrankcheckError("the assemblies of the central link could not be told apart")
 
 
-def _at_roots(rows: LegRows, size: float) -> list[Assembly]:
+def _at_roots(rows: LegRows, size: float) -> list[TriadAssembly]:
     """Those at the roots of the eliminant, in a frame in which none is at half a turn."""
     for turn in TURNS:
         own = eliminant(rows, turn)
@@ -162,7 +162,7 @@ def _may_be_at_half_a_turn(own: Eliminant) -> bool:
     return bool(left + (x * x + y * y if own.rows[2].is_circle else 0) == 0)
 
 
-def _at_angle(angle: AngleRow, rows: LegRows, size: float) -> list[Assembly]:
+def _at_angle(angle: AngleRow, rows: LegRows, size: float) -> list[TriadAssembly]:
     """Those of a link whose angle is given: two rows at one t, or at half a turn."""
     c, s = angle.along
     half = c < 0.0  # in a frame that is turned by half a turn t is small
@@ -179,7 +179,7 @@ def _at_angle(angle: AngleRow, rows: LegRows, size: float) -> list[Assembly]:
     return [replace(_assembly(each, turn, size), angle_rad=at) for each in found]
 
 
-def _assembly(one: _Solution, turn: Turn, size: float) -> Assembly:
+def _assembly(one: _Solution, turn: Turn, size: float) -> TriadAssembly:
     """A solution in floats, its angle in (-pi, pi]."""
     if not one.is_sharp(size):
         raise _BluntError
@@ -187,7 +187,7 @@ def _assembly(one: _Solution, turn: Turn, size: float) -> Assembly:
     angle = float(2 * one.t.atan() + ahead)
     angle -= math.tau * math.ceil((angle - math.pi) / math.tau)
     x, y = one.place
-    return Assembly(angle, (float(x), float(y)), one.count)
+    return TriadAssembly(angle, (float(x), float(y)), one.count)
 
 
 def _size(rows: LegRows) -> float:

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from analytic.assur.platform import (
-    Pose,
+    CentralPose,
     RowsAt,
     SolvedPlatform,
     Wrenches,
@@ -53,7 +53,9 @@ class CellsAlong:
 
 
 @np.errstate(all="ignore")
-def along(rows: RowsAt, last: Pose, halves: Array, to: float | None, size_m: float) -> CellsAlong:
+def along(
+    rows: RowsAt, last: CentralPose, halves: Array, to: float | None, size_m: float
+) -> CellsAlong:
     """Cells of half-widths ``halves`` [rad] (below 0: to lower angles), one after the other from a
     pose on, the last up to driver angle ``to`` where that is given."""
     far = last.theta + 2.0 * np.cumsum(halves)
@@ -74,7 +76,7 @@ def along(rows: RowsAt, last: Pose, halves: Array, to: float | None, size_m: flo
 
 
 def _solved(
-    rows: RowsAt, last: Pose, theta: Array, size_m: float
+    rows: RowsAt, last: CentralPose, theta: Array, size_m: float
 ) -> tuple[SolvedPlatform, Sequence[SampledRow]]:
     """The assembly that a pose leads to, at driver angles known to rounding."""
     place, turn = ahead(last, theta)
@@ -119,7 +121,7 @@ def _widened(body: BodyKinematics, e: Real, t: Real) -> BodyKinematics:
     return replace(body, anchor=anchor, error=AngleError(t, 0.0, 0.0))
 
 
-def _shifted(last: Pose, border: BodyKinematics) -> BodyKinematics:
+def _shifted(last: CentralPose, border: BodyKinematics) -> BodyKinematics:
     """The near borders: the last pose, and then each far border but one."""
 
     def after(first: float, rest: Real) -> Array:
@@ -154,7 +156,7 @@ EndKind = Literal["limit position", "change point", "run to infinity", "doubtful
 
 
 @dataclass(frozen=True)
-class End:
+class TrackEnd:
     """Where a track ends or crosses another one: driver angle [rad], and as what.
 
     In a limit position two assemblies meet, and are no more beyond; in a change point two meet, and
@@ -166,7 +168,7 @@ class End:
     kind: EndKind
 
 
-def end_beside(poses: list[Pose], way: float) -> End:
+def end_beside(poses: list[CentralPose], way: float) -> TrackEnd:
     """Where the determinant goes to zero, and how: like the root of the way that is left, or like
     the way itself."""
     last = poses[-1]
@@ -176,30 +178,32 @@ def end_beside(poses: list[Pose], way: float) -> End:
     near = [int(np.argmin(np.abs(np.log(np.maximum(away, 1e-300) / d)))) for d in (1e-5, 1e-3)]
     a, b = near
     if a == b or not 0.0 < det[a] < det[b]:
-        return End(last.theta, "doubtful position")
+        return TrackEnd(last.theta, "doubtful position")
     rates = [math.hypot(*poses[k].rate) for k in near]
     if rates[0] > 0.01 * (away[b] / away[a]) ** 2 * rates[1] > 0.0:
-        return End(last.theta, "run to infinity")  # its speed goes as the inverse square of the way
+        return TrackEnd(
+            last.theta, "run to infinity"
+        )  # its speed goes as the inverse square of the way
     power = math.log(det[b] / det[a]) / math.log(away[b] / away[a])
     if power < 0.2 or power > 1.4:
-        return End(last.theta, "doubtful position")
+        return TrackEnd(last.theta, "doubtful position")
     kind: EndKind = "limit position" if power < 0.75 else "change point"
     order = 2.0 if kind == "limit position" else 1.0
     # The power of the determinant that is linear in the way is 0 a little beyond the last pose.
     ends = [det[a] ** order, abs(last.det) ** order]
     slope = (ends[0] - ends[1]) / away[a]
     left = ends[1] / slope if slope > 0.0 else 0.0
-    return End(float(last.theta + way * left), kind)
+    return TrackEnd(float(last.theta + way * left), kind)
 
 
-def runs_away(start: Pose, last: Pose, size_m: float) -> bool:
+def runs_away(start: CentralPose, last: CentralPose, size_m: float) -> bool:
     """Whether a link is far away, and grows twice as far before the driver has moved on by
     `SOON`: it runs to infinity."""
     away, rate = _away(start, last), math.hypot(*last.rate)
     return away > FAR * (size_m + math.hypot(*start.rate)) and away < SOON * rate
 
 
-def end_at_infinity(poses: list[Pose]) -> End:
+def end_at_infinity(poses: list[CentralPose]) -> TrackEnd:
     """Where a link that runs away will be at infinity: the driver angle is a smooth function of
     the inverse of its distance, here a polynomial through five of its poses."""
     start, last = poses[0], poses[-1]
@@ -210,10 +214,10 @@ def end_at_infinity(poses: list[Pose]) -> End:
             theta.append(pose.theta)
     powers = np.arange(len(theta))
     scaled = np.array(inverse)[:, None] / inverse[-1]
-    return End(float(np.linalg.solve(scaled**powers, np.array(theta))[0]), "run to infinity")
+    return TrackEnd(float(np.linalg.solve(scaled**powers, np.array(theta))[0]), "run to infinity")
 
 
-def _away(start: Pose, pose: Pose) -> float:
+def _away(start: CentralPose, pose: CentralPose) -> float:
     """How far a pose is from that at the start [m]."""
     return math.hypot(pose.place[0] - start.place[0], pose.place[1] - start.place[1])
 
@@ -231,19 +235,19 @@ SIDE = 1e-4
 
 
 @dataclass(frozen=True)
-class Piece:
+class TrackPiece:
     """Part of a track, the poses at the borders and in the middle of its cells, in its own order of
     driver angles; ``end`` where it ends, None where it was not asked for more."""
 
-    poses: list[Pose]
-    end: End | None
-    crossings: list[End]
+    poses: list[CentralPose]
+    end: TrackEnd | None
+    crossings: list[TrackEnd]
 
 
-def follow(rows: RowsAt, start: Pose, to: float, size_m: float) -> Piece:
+def follow(rows: RowsAt, start: CentralPose, to: float, size_m: float) -> TrackPiece:
     """The assembly of ``start`` followed to the driver angle ``to`` [rad], as far as that goes."""
     way = 1.0 if to >= start.theta else -1.0
-    poses, crossings, last = [start], list[End](), start
+    poses, crossings, last = [start], list[TrackEnd](), start
     stride = Stride(0.25 * WIDEST, 0.04)
     while last.theta != to and len(poses) < MOST:
         halves = stride.halves(abs(to - last.theta), _room(poses))
@@ -253,18 +257,18 @@ def follow(rows: RowsAt, start: Pose, to: float, size_m: float) -> Piece:
             poses += found
             last = found[-1]
             if runs_away(start, last, size_m):
-                return Piece(poses, end_at_infinity(poses), crossings)
+                return TrackPiece(poses, end_at_infinity(poses), crossings)
         stride = stride.after(cells.good, halves)
         if cells.good == 0 and halves[0] < NARROWEST * max(1.0, abs(last.theta)):
             end = end_beside(poses, way)
             beyond = _beyond(rows, poses, end, way, size_m) if end.kind == "change point" else None
             if beyond is None or way * (to - beyond.theta) <= 0.0:
-                return Piece(poses, end, crossings)
+                return TrackPiece(poses, end, crossings)
             crossings.append(end)
             poses.append(beyond)
             last, stride = beyond, Stride(0.1 * SIDE, 0.04)
-    doubt = End(last.theta, "doubtful position") if last.theta != to else None
-    return Piece(poses, doubt, crossings)
+    doubt = TrackEnd(last.theta, "doubtful position") if last.theta != to else None
+    return TrackPiece(poses, doubt, crossings)
 
 
 @dataclass
@@ -298,7 +302,7 @@ class Stride:
         return Stride(less * min(self.half, float(halves[good]) / 0.75), less * self.share)
 
 
-def _room(poses: list[Pose]) -> float:
+def _room(poses: list[CentralPose]) -> float:
     """How far it is to where the square of the determinant, which goes down, would be 0 [rad]."""
     if len(poses) < 3:
         return math.inf
@@ -307,10 +311,10 @@ def _room(poses: list[Pose]) -> float:
     return abs(b.theta - a.theta) * b.det**2 / fall if fall > 0.0 else math.inf
 
 
-def _handed_over(cells: CellsAlong, last: Pose) -> list[Pose]:
+def _handed_over(cells: CellsAlong, last: CentralPose) -> list[CentralPose]:
     """The middles and the far borders of the cells up to the first that is not sure, the angles
     counted on from that of the ``last`` pose."""
-    found: list[Pose] = []
+    found: list[CentralPose] = []
     angle = last.angle
     for j in range(cells.good):
         for body, det, theta, k in (
@@ -323,7 +327,9 @@ def _handed_over(cells: CellsAlong, last: Pose) -> list[Pose]:
     return found
 
 
-def _beyond(rows: RowsAt, poses: list[Pose], end: End, way: float, size_m: float) -> Pose | None:
+def _beyond(
+    rows: RowsAt, poses: list[CentralPose], end: TrackEnd, way: float, size_m: float
+) -> CentralPose | None:
     """The assembly on the other side of a crossing: straight on, its determinant of other sign."""
     before = next((p for p in reversed(poses) if abs(p.theta - end.theta) > SIDE), poses[0])
     theta = end.theta + way * SIDE

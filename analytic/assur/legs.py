@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from analytic.assur.central_frame import CentralFrame
-from analytic.assur.sampled_rows import Circle, KeptAngle, OnLine, SampledRow, Through
+from analytic.assur.sampled_rows import KeptAngle, OnLine, RowCircle, SampledRow, Through
 from analytic.dyads import prp
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import MovingLine, SlideError, Sliding, Turning
@@ -23,11 +23,11 @@ from analytic.dyads.plane import (
     PointKinematics,
     Vec,
 )
-from analytic.dyads.riding import Bar, Placed, RidingLine, following_body, riding_point
+from analytic.dyads.riding import Bar, PlacedBodies, RidingLine, following_body, riding_point
 from models.scene import Point
 
 
-class Leg(Protocol):
+class TriadLeg(Protocol):
     """What holds the central link by one row or two."""
 
     def rows(self, chunk: Chunk) -> list[SampledRow]:
@@ -48,7 +48,7 @@ class BarLeg:
     """RR: a link between a known pin and one of the central link."""
 
     frame: CentralFrame
-    placed: Placed
+    placed: PlacedBodies
     part: str
     link: str
     outer: str
@@ -63,7 +63,7 @@ class BarLeg:
 
     def rows(self, chunk: Chunk) -> list[SampledRow]:
         bar, at = self._bar, self.frame.local(chunk, *self.locals()[0])
-        return [Circle(at, bar.anchor(chunk), bar.length)]
+        return [RowCircle(at, bar.anchor(chunk), bar.length)]
 
     def place(self, chunk: Chunk, body: BodyKinematics) -> None:
         bar = self._bar
@@ -103,7 +103,7 @@ class SlidingLeg:
     """PR: a body that slides on, or along, a known one, pinned to the central link."""
 
     frame: CentralFrame
-    placed: Placed
+    placed: PlacedBodies
     part: str
     link: str
     slider: str
@@ -155,7 +155,7 @@ class GuidedLeg:
     """RP: a body pinned to a known one that slides on, or along, the central link."""
 
     frame: CentralFrame
-    placed: Placed
+    placed: PlacedBodies
     part: str
     link: str
     outer: str
@@ -198,7 +198,7 @@ class PinnedThere:
     """R: the central link is pinned to a known body."""
 
     frame: CentralFrame
-    placed: Placed
+    placed: PlacedBodies
     part: str
     pin: str
 
@@ -223,7 +223,7 @@ class SlidingThere:
     """P: the central link slides on, or along, a known body."""
 
     frame: CentralFrame
-    placed: Placed
+    placed: PlacedBodies
     part: str
     slider: str
     size_m: float
@@ -268,7 +268,7 @@ class DoublySlidingLeg:
     """PP: a body that slides on a known one, and the central link on it: that keeps its angle."""
 
     frame: CentralFrame
-    placed: Placed
+    placed: PlacedBodies
     part: str
     link: str
     outer: str

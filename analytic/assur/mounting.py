@@ -11,12 +11,12 @@ from analytic.assur.legs import (
     BarLeg,
     DoublySlidingLeg,
     GuidedLeg,
-    Leg,
     PinnedThere,
     SlidingLeg,
     SlidingThere,
+    TriadLeg,
 )
-from analytic.assur.sampled_rows import Circle, LocalPoint, SampledRow
+from analytic.assur.sampled_rows import LocalPoint, RowCircle, SampledRow
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import (
     EPS,
@@ -27,7 +27,7 @@ from analytic.dyads.plane import (
     Real,
     Vec,
 )
-from analytic.dyads.riding import Placed
+from analytic.dyads.riding import PlacedBodies
 from analytic.structure.groups import Compound, Group, JointKey, Triad, as_triad
 from analytic.structure.groups import Leg as LegOfGroup
 from models.errors import StructureError
@@ -38,7 +38,7 @@ from models.scene.joints import local_point
 class Mounting:
     """The central link of a triad, or of a dyad with a compound, and what holds it."""
 
-    def __init__(self, placed: Placed, group: Triad | Group) -> None:
+    def __init__(self, placed: PlacedBodies, group: Triad | Group) -> None:
         self.placed, self.group = placed, group
         scene, compound = placed.scene, placed.structure.compound
         own = compound if compound is not None and compound.name in group.bodies else None
@@ -55,7 +55,7 @@ class Mounting:
         self.size_m = _size(scene, self.frame, points)
         self.legs = self._made(held, joint)
 
-    def _made(self, held: Sequence[LegOfGroup], joint: JointKey | None) -> list[Leg]:
+    def _made(self, held: Sequence[LegOfGroup], joint: JointKey | None) -> list[TriadLeg]:
         legs = [self._leg(one) for one in held]
         return legs if joint is None else [*legs, self._joint(joint)]
 
@@ -83,7 +83,7 @@ class Mounting:
                 return body
         raise AssertionError(f"{name} is no joint of {self.frame.bodies}")
 
-    def _leg(self, leg: LegOfGroup) -> Leg:
+    def _leg(self, leg: LegOfGroup) -> TriadLeg:
         part, outer, inner = self._part(leg.inner), leg.outer[1], leg.inner[1]
         compound = self.placed.structure.compound
         if compound is not None and leg.body == compound.name:
@@ -97,7 +97,7 @@ class Mounting:
             return GuidedLeg(*given)
         return DoublySlidingLeg(*given, self.size_m)
 
-    def _driven(self, leg: LegOfGroup, part: str, compound: Compound) -> Leg:
+    def _driven(self, leg: LegOfGroup, part: str, compound: Compound) -> TriadLeg:
         """A leg that the driver moves. Raises StructureError where it slides."""
         scene = self.placed.scene
         if leg.kind != "RR":
@@ -110,7 +110,7 @@ class Mounting:
         outer, inner = leg.outer[1], leg.inner[1]
         return DrivenBarLeg(self.frame, self.placed, part, own, outer, inner)
 
-    def _joint(self, joint: JointKey) -> Leg:
+    def _joint(self, joint: JointKey) -> TriadLeg:
         part = self._part(joint)
         if joint[0] == "R":
             return PinnedThere(self.frame, self.placed, part, joint[1])
@@ -141,7 +141,7 @@ class DrivenBarLeg:
     """
 
     frame: CentralFrame
-    placed: Placed
+    placed: PlacedBodies
     part: str
     own: CentralFrame
     outer: str
@@ -187,7 +187,7 @@ class DrivenBarLeg:
             + 8 * EPS * (d.a.norm() + speed * speed / length),
         )
         at = self.frame.local(chunk, *self.locals()[0])
-        return [Circle(at, self._known(chunk), length, rate, second, off)]
+        return [RowCircle(at, self._known(chunk), length, rate, second, off)]
 
     def place(self, chunk: Chunk, body: BodyKinematics) -> None:
         near = self._known(chunk)

@@ -248,7 +248,7 @@ class RowsAt(Protocol):
 
 
 @dataclass(frozen=True)
-class Pose:
+class CentralPose:
     """The central link at a driver angle: place of its anchor [m], angle [rad], rates by it."""
 
     theta: float
@@ -261,7 +261,7 @@ class Pose:
     det: float
 
 
-def pose_at(rows: RowsAt, theta: float, place: Vec, turn: Vec, size_m: float) -> Pose | None:
+def pose_at(rows: RowsAt, theta: float, place: Vec, turn: Vec, size_m: float) -> CentralPose | None:
     """The assembly nearest to a guess, one sample; None where there is none that is certain."""
     at = np.array([theta])
     own = rows(at, 8 * EPS * np.abs(at))
@@ -271,7 +271,7 @@ def pose_at(rows: RowsAt, theta: float, place: Vec, turn: Vec, size_m: float) ->
     return pose_of(solved.body, solved.det, theta, 0, math.atan2(turn.y[0], turn.x[0]))
 
 
-def pose_of(body: BodyKinematics, det: Array, theta: float, k: int, near: float) -> Pose:
+def pose_of(body: BodyKinematics, det: Array, theta: float, k: int, near: float) -> CentralPose:
     """One sample as a pose, the angle that which is nearest to another."""
 
     def one(value: object) -> float:
@@ -281,13 +281,13 @@ def pose_of(body: BodyKinematics, det: Array, theta: float, k: int, near: float)
     turned = math.atan2(one(body.turn.y), one(body.turn.x))
     angle = turned + math.tau * round((near - turned) / math.tau)
     at = body.anchor
-    return Pose(
+    return CentralPose(
         theta, (one(at.p.x), one(at.p.y)), angle, (one(at.v.x), one(at.v.y)), one(body.omega),
         (one(at.a.x), one(at.a.y)), one(body.alpha), one(det),
     )  # fmt: skip
 
 
-def ahead(pose: Pose, theta: Array) -> tuple[Vec, Vec]:
+def ahead(pose: CentralPose, theta: Array) -> tuple[Vec, Vec]:
     """Where a pose leads to at driver angles, to the second order."""
     d = theta - pose.theta
     half = 0.5 * d * d

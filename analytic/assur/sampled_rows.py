@@ -119,7 +119,7 @@ def moment(body: BodyKinematics, place: Vec, force: Vec) -> Real:
 
 
 @dataclass(frozen=True, slots=True)
-class Circle:
+class RowCircle:
     """A point of the link at a distance (T,) from a known pin: constant, or with rates."""
 
     point: LocalPoint

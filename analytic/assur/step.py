@@ -13,7 +13,7 @@ from analytic.assur.crossing import CrossingPiece
 from analytic.assur.mounting import Mounting
 from analytic.assur.platform import SolvedPlatform, pose_at, solve_platform
 from analytic.assur.sampled_rows import SampledRow
-from analytic.assur.track import Track
+from analytic.assur.track import AssemblyTrack
 from analytic.change_points.sign import AT_START, HALVES, whole_turns_off
 from analytic.dyads.chunk import Chunk, Passage, driver_scale, told
 from analytic.dyads.parts import Closure, OpenError
@@ -32,7 +32,7 @@ TINY = 1e-15
 
 
 if TYPE_CHECKING:
-    from analytic.assur.assemblies import Assembly
+    from analytic.assur.assemblies import TriadAssembly
 
 
 class Before:
@@ -57,8 +57,8 @@ class AssurStep(FollowedStep):
         self.mounting, self.key = mounting, mounting.group.branch_key
         self.scene = mounting.placed.scene
         self.before = Before(self.scene, before)
-        self._tracks: dict[frozenset[str], Track] = {}
-        self._pieces: dict[tuple[Track, int], CrossingPiece | None] = {}
+        self._tracks: dict[frozenset[str], AssemblyTrack] = {}
+        self._pieces: dict[tuple[AssemblyTrack, int], CrossingPiece | None] = {}
 
     def advance(self, chunk: Chunk) -> None:
         """Add the group's bodies and sliders. Raises OpenError."""
@@ -84,7 +84,7 @@ class AssurStep(FollowedStep):
         self.mounting.place(chunk, solved.body)
 
     def _crossed(
-        self, chunk: Chunk, track: Track, theta: Array, solved: SolvedPlatform, closes: Mask
+        self, chunk: Chunk, track: AssemblyTrack, theta: Array, solved: SolvedPlatform, closes: Mask
     ) -> tuple[SolvedPlatform, Mask]:
         """What is lost in and beside the change points of the group.
 
@@ -110,7 +110,7 @@ class AssurStep(FollowedStep):
                 )
         return replace(solved, body=body), closes
 
-    def _piece(self, track: Track, k: int) -> CrossingPiece | None:
+    def _piece(self, track: AssemblyTrack, k: int) -> CrossingPiece | None:
         """The motion through a change point, worked out once."""
         if (track, k) not in self._pieces:
 
@@ -142,7 +142,7 @@ class AssurStep(FollowedStep):
         rows = self.mounting.rows(chunk)
         return solve_platform(rows, place, turn, self.mounting.size_m, certified=chunk.certified)
 
-    def track(self, passages: Mapping[str, Passage]) -> Track:
+    def track(self, passages: Mapping[str, Passage]) -> AssemblyTrack:
         """The way of the assembly that the scene names, with such change points before it.
 
         Raises
@@ -155,7 +155,7 @@ class AssurStep(FollowedStep):
             self._tracks[own] = self._follow({key: passages[key] for key in own})
         return self._tracks[own]
 
-    def _follow(self, passages: Mapping[str, Passage]) -> Track:
+    def _follow(self, passages: Mapping[str, Passage]) -> AssemblyTrack:
         scene = self.scene
         start = float(scene.driver.law.at(np.zeros(1))[0][0]) / driver_scale(scene)
         chosen = self._chosen(start, passages)
@@ -178,7 +178,7 @@ class AssurStep(FollowedStep):
             if isinstance(one, AssurStep)
         ]
         repeats = None if slides else max(periods)
-        return Track(rows, pose, self.mounting.size_m, repeats)
+        return AssemblyTrack(rows, pose, self.mounting.size_m, repeats)
 
     def period(self, passages: Mapping[str, Passage]) -> float | None:
         """The driver angle after which the assembly comes back [rad]; None where it ends."""
@@ -199,14 +199,16 @@ class AssurStep(FollowedStep):
         """The rows at one driver angle."""
         return self.mounting.rows(self.before.chunk(np.array([theta]), 0.0, passages))
 
-    def assemblies(self, theta: float, passages: Mapping[str, Passage]) -> tuple[Assembly, ...]:
+    def assemblies(
+        self, theta: float, passages: Mapping[str, Passage]
+    ) -> tuple[TriadAssembly, ...]:
         """All at one driver angle, in the order of their numbers."""
         from analytic.assur.assemblies import assemblies  # with python-flint, for these alone
 
         one, two, three = (row.at(0) for row in self.rows_at(theta, passages))
         return assemblies((one, two, three))
 
-    def _side(self, start: float, one: Assembly, passages: Mapping[str, Passage]) -> float:
+    def _side(self, start: float, one: TriadAssembly, passages: Mapping[str, Passage]) -> float:
         """By what the two assemblies of a dyad are told apart: above 0, or more, on side +1."""
         group = self.mounting.group
         assert isinstance(group, Group)
@@ -220,7 +222,7 @@ class AssurStep(FollowedStep):
         )
         return float((second - first).cross(inner - first)[0])
 
-    def _chosen(self, start: float, passages: Mapping[str, Passage]) -> Assembly:
+    def _chosen(self, start: float, passages: Mapping[str, Passage]) -> TriadAssembly:
         """The assembly at the start that the scene's branch names."""
         every = self.assemblies(start, passages)
         scene = self.scene
@@ -251,7 +253,7 @@ class AssurStep(FollowedStep):
         return chosen
 
 
-def _pose(one: Assembly) -> tuple[Vec, Vec]:
+def _pose(one: TriadAssembly) -> tuple[Vec, Vec]:
     """An assembly as one sample."""
     place = Vec(np.array([one.place[0]]), np.array([one.place[1]]))
     turn = Vec(np.array([math.cos(one.angle_rad)]), np.array([math.sin(one.angle_rad)]))

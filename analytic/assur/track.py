@@ -24,8 +24,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.assur.following import End, Piece, follow
-from analytic.assur.platform import Pose, RowsAt
+from analytic.assur.following import TrackEnd, TrackPiece, follow
+from analytic.assur.platform import CentralPose, RowsAt
 from analytic.dyads.plane import Vec
 from models.array import Array, Mask
 
@@ -34,35 +34,35 @@ TURNS = 6
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class AssemblyTrack:
     """One assembly of a group along the driver, from the ``start`` on to both sides.
 
     ``period`` [rad] is that of what the group hangs on; None where the driver does not turn.
     """
 
     rows: RowsAt
-    start: Pose
+    start: CentralPose
     size_m: float
     base_period: float | None
 
     @cached_property
-    def _up(self) -> tuple[Piece, float | None]:
+    def _up(self) -> tuple[TrackPiece, float | None]:
         """From the start on, until it is back or at an end; and after which driver angle it is."""
         if self.base_period is None:
             return follow(self.rows, self.start, math.pi, self.size_m), None
-        poses, crossings, last = [self.start], list[End](), self.start
+        poses, crossings, last = [self.start], list[TrackEnd](), self.start
         for k in range(1, TURNS + 1):
             to = self.start.theta + k * self.base_period
             piece = follow(self.rows, last, to, self.size_m)
             poses, crossings = poses + piece.poses[1:], crossings + piece.crossings
             last = poses[-1]
             if piece.end is not None:
-                return Piece(poses, piece.end, crossings), None
+                return TrackPiece(poses, piece.end, crossings), None
             if self._is_start(last):
-                return Piece(poses, None, crossings), k * self.base_period
-        return Piece(poses, End(last.theta, "doubtful position"), crossings), None
+                return TrackPiece(poses, None, crossings), k * self.base_period
+        return TrackPiece(poses, TrackEnd(last.theta, "doubtful position"), crossings), None
 
-    def _is_start(self, pose: Pose) -> bool:
+    def _is_start(self, pose: CentralPose) -> bool:
         """Whether a pose is that of the start, but for whole turns: two that are not are as far
         apart as the boxes of cells are wide, and rounding is much less."""
         off = math.hypot(pose.place[0] - self.start.place[0], pose.place[1] - self.start.place[1])
@@ -74,10 +74,10 @@ class Track:
         )
 
     @cached_property
-    def _down(self) -> Piece:
+    def _down(self) -> TrackPiece:
         """From the start back, where it does not repeat."""
         if self.period is not None:
-            return Piece([self.start], None, [])
+            return TrackPiece([self.start], None, [])
         lowest = (
             -math.pi if self.base_period is None else self.start.theta - TURNS * self.base_period
         )
@@ -89,17 +89,17 @@ class Track:
         return self._up[1]
 
     @property
-    def ends(self) -> tuple[End | None, End | None]:
+    def ends(self) -> tuple[TrackEnd | None, TrackEnd | None]:
         """The lower and the upper end, None where there is none."""
         return self._down.end, self._up[0].end
 
     @property
-    def low(self) -> End | None:
+    def low(self) -> TrackEnd | None:
         """The end at the lowest driver angle."""
         return self.ends[0]
 
     @property
-    def high(self) -> End | None:
+    def high(self) -> TrackEnd | None:
         """The end at the highest driver angle."""
         return self.ends[1]
 
@@ -113,7 +113,7 @@ class Track:
         )
 
     @cached_property
-    def crossings(self) -> list[End]:
+    def crossings(self) -> list[TrackEnd]:
         """The change points within the range, in increasing order."""
         return sorted(self._down.crossings + self._up[0].crossings, key=lambda end: end.theta)
 
@@ -188,7 +188,7 @@ class Track:
                 x, y = self._far(end, theta, x, y)
         return Vec(x, y), Vec(np.cos(angle), np.sin(angle))
 
-    def _far(self, end: End, theta: Array, x: Array, y: Array) -> tuple[Array, Array]:
+    def _far(self, end: TrackEnd, theta: Array, x: Array, y: Array) -> tuple[Array, Array]:
         """The place between the last pose and infinity: its distance as the inverse of the way."""
         nodes = self._nodes
         k = 0 if end is self.low else -1

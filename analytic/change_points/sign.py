@@ -117,7 +117,7 @@ class Rates:
 
 
 @dataclass(frozen=True)
-class Piece:
+class SignPiece:
     """The two unknowns of a dyad around a change point.
 
     ``half`` is half the range of the nodes; ``doubt`` is the largest bound of a derivative by the
@@ -139,7 +139,7 @@ class Piece:
         return self.half * WINDOW
 
     @staticmethod
-    def of(solved: Solved, centre: float, half: float, longest_m: float) -> Piece:
+    def of(solved: Solved, centre: float, half: float, longest_m: float) -> SignPiece:
         """The piece around the driver angle ``centre``. Raises OpenError at nodes out of reach."""
         wide, narrow = centre + half * nodes(COUNT), centre + half * nodes(FEWER)
         series: list[Interpolant] = []
@@ -152,7 +152,7 @@ class Piece:
             sizes = np.abs(found.values).max(axis=1) + (1.0 if turning else longest_m)
             doubt = max(doubt, float((found.worst() / sizes)[1:].max()))
             series.append(found)
-        return Piece(half, series[0], series[1], doubt)
+        return SignPiece(half, series[0], series[1], doubt)
 
 
 def _levels(found: Unknown, theta: Array) -> tuple[Array, Array]:
@@ -221,7 +221,7 @@ class ChangePoints:
     start: float
     period: float
     angles: Array
-    pieces: dict[int, Piece | None] = field(default_factory=dict)
+    pieces: dict[int, SignPiece | None] = field(default_factory=dict)
 
     def sign(self, theta: Array) -> Array:
         phase = np.remainder(theta - self.start, self.period)
@@ -281,19 +281,19 @@ class ChangePoints:
                 "change a length, or keep the driver's range away from there"
             )
 
-    def piece(self, i: int) -> Piece | None:
+    def piece(self, i: int) -> SignPiece | None:
         """The motion through change point ``i``, worked out once; None where it is not smooth."""
         if i not in self.pieces:
             self.pieces[i] = self._piece(float(self.angles[i]))
         return self.pieces[i]
 
     @np.errstate(all="ignore")
-    def _piece(self, centre: float) -> Piece | None:
+    def _piece(self, centre: float) -> SignPiece | None:
         """The widest piece that is about as certain as any; narrower ones lose digits."""
         best, least = None, math.inf
         for half in HALVES:
             try:
-                piece = Piece.of(self._solved, centre, half, self.scene.longest_m)
+                piece = SignPiece.of(self._solved, centre, half, self.scene.longest_m)
             except OpenError:
                 continue
             if piece.doubt < least:

@@ -39,7 +39,7 @@ Signs = tuple[int, ...]
 
 
 @dataclass(frozen=True)
-class End:
+class ArcEnd:
     """A limit position of the driver: its angle [rad] and the dyad whose two assemblies meet."""
 
     angle_rad: float
@@ -52,8 +52,8 @@ class Arc:
     that turns fully has no ends."""
 
     signs: Signs
-    low: End | None = None
-    high: End | None = None
+    low: ArcEnd | None = None
+    high: ArcEnd | None = None
 
     @property
     def range_rad(self) -> tuple[float, float]:
@@ -167,7 +167,7 @@ def _closing(signed: SignedScene, arc: Arc) -> Iterator[Arc]:
         middle = 0.5 * (low + high)
         same = (signed.shortage(signs, middle) <= 0.0) == was
         low, high = np.where(same, middle, low), np.where(same, high, middle)
-    ends = [End(float(at), key) for at in np.where(was, low, high)]
+    ends = [ArcEnd(float(at), key) for at in np.where(was, low, high)]
     opens = [end for end, closed in zip(ends, was, strict=True) if not closed]
     shuts = [end for end, closed in zip(ends, was, strict=True) if closed]
     if arc.low is None:  # round the turn: the part that holds its seam is one
@@ -187,9 +187,9 @@ def _width(arc: Arc) -> float:
     return high - low
 
 
-def _merged(arc: Arc, opens: list[End], shuts: list[End]) -> Iterator[Arc]:
+def _merged(arc: Arc, opens: list[ArcEnd], shuts: list[ArcEnd]) -> Iterator[Arc]:
     """The parts of an arc between their ends, without gaps that are rounding."""
-    parts: list[tuple[End, End]] = []
+    parts: list[tuple[ArcEnd, ArcEnd]] = []
     for one, other in zip(opens, shuts, strict=True):
         if parts and one.angle_rad - parts[-1][1].angle_rad < GAP:
             parts[-1] = parts[-1][0], other
@@ -206,9 +206,9 @@ def _merged(arc: Arc, opens: list[End], shuts: list[End]) -> Iterator[Arc]:
             yield Arc(arc.signs, one, other)
 
 
-def _later(end: End) -> End:
+def _later(end: ArcEnd) -> ArcEnd:
     """An end a turn of the driver later."""
-    return End(end.angle_rad + math.tau, end.dyad)
+    return ArcEnd(end.angle_rad + math.tau, end.dyad)
 
 
 """Looks at a turn of the driver."""
@@ -229,7 +229,7 @@ def own_arc(scene: Scene) -> Arc:
     return Arc((), low, high)
 
 
-def _end(ready: Prepared, way: float) -> End | None:
+def _end(ready: Prepared, way: float) -> ArcEnd | None:
     """The first driver angle from the start on, one way, beyond which it is open; None where there
     is none within a period."""
     most = max(ready.period, ready.looked_turns * math.tau)
@@ -246,4 +246,4 @@ def _end(ready: Prepared, way: float) -> End | None:
             far = middle
     beyond = ready.stretched(np.array([far])).shortage
     key = max(beyond, key=lambda name: float(np.max(np.nan_to_num(beyond[name], nan=np.inf))))
-    return End(near, key)
+    return ArcEnd(near, key)

@@ -21,7 +21,7 @@ from typing import Literal
 import numpy as np
 
 from analytic.change_points.find import passages
-from analytic.circuits.arcs import Arc, End, SignedScene, Signs, arcs
+from analytic.circuits.arcs import Arc, ArcEnd, SignedScene, Signs, arcs
 from analytic.dyads.chunk import Chunk
 from analytic.prepared import prepared
 from analytic.structure.groups import Group
@@ -124,7 +124,7 @@ def circuits_of(scene: Scene) -> Circuits:
     return Circuits(signed, tuple(tuple(group) for group in groups.values()), meets)
 
 
-def _beyond(signed: SignedScene, every: list[Arc], arc: Arc, end: End, *, upper: bool) -> int:
+def _beyond(signed: SignedScene, every: list[Arc], arc: Arc, end: ArcEnd, *, upper: bool) -> int:
     """The branch that goes on from a limit position, back with the other sign of its dyad."""
     flipped = _flipped(signed, arc.signs, end.dyad)
     best, where = math.inf, -1
@@ -176,7 +176,7 @@ ZOOMS, FINER = 8, 33
 
 
 @dataclass(frozen=True)
-class Extreme:
+class AngleExtreme:
     """A value and the driver's angle [rad] at which it is taken."""
 
     value: float
@@ -190,9 +190,9 @@ class Transmission:
 
     dyad: str
     kind: str
-    least_sine: Extreme
-    smallest_rad: Extreme | None = None
-    largest_rad: Extreme | None = None
+    least_sine: AngleExtreme
+    smallest_rad: AngleExtreme | None = None
+    largest_rad: AngleExtreme | None = None
 
     @property
     def pressure_rad(self) -> float | None:
@@ -200,7 +200,7 @@ class Transmission:
         return math.acos(min(self.least_sine.value, 1.0)) if self.kind == "RRP" else None
 
 
-def transmissions(circuits: Circuits) -> tuple[list[Transmission], Extreme]:
+def transmissions(circuits: Circuits) -> tuple[list[Transmission], AngleExtreme]:
     """Those of the dyads in solving order, over the branch that the scene is on, and the least
     index of merit of the whole.
 
@@ -222,7 +222,7 @@ def transmissions(circuits: Circuits) -> tuple[list[Transmission], Extreme]:
             found.append(Transmission(group.branch_key, group.kind, least, small, large))
         else:
             found.append(Transmission(group.branch_key, group.kind, least))
-    merit = _extreme(circuits, groups[0], _merit, -1.0) if groups else Extreme(1.0, 0.0)
+    merit = _extreme(circuits, groups[0], _merit, -1.0) if groups else AngleExtreme(1.0, 0.0)
     return found, merit
 
 
@@ -248,16 +248,16 @@ def _angle(chunk: Chunk, group: Group) -> Array:
     return np.array(np.broadcast_to(angle, chunk.theta.shape))
 
 
-def _extreme(circuits: Circuits, group: Group, of: object, sense: float) -> Extreme:
+def _extreme(circuits: Circuits, group: Group, of: object, sense: float) -> AngleExtreme:
     """The largest (``sense`` 1) or smallest value over the branch."""
     assert callable(of)
     ready, (_, arc) = prepared(circuits.signed.scene), circuits.own
     looks = arc.angles(LOOKS + 1)
-    best = Extreme(-sense * math.inf, 0.0)
+    best = AngleExtreme(-sense * math.inf, 0.0)
     for _ in range(ZOOMS):
         value = of(ready.stretched(looks), group)
         k = int(np.nanargmax(sense * value))
         if sense * (float(value[k]) - best.value) > 0.0:
-            best = Extreme(float(value[k]), math.remainder(float(looks[k]), math.tau))
+            best = AngleExtreme(float(value[k]), math.remainder(float(looks[k]), math.tau))
         looks = np.linspace(looks[max(k - 1, 0)], looks[min(k + 1, len(looks) - 1)], FINER)
     return best

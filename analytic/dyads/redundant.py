@@ -21,7 +21,7 @@ import numpy as np
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import Turning
 from analytic.dyads.plane import EPS, AngleError, BodyKinematics, PointKinematics, Real, Vec
-from analytic.dyads.riding import Bar, Placed
+from analytic.dyads.riding import Bar, PlacedBodies
 from analytic.structure.groups import Bridge
 from models.array import Array
 from models.errors import StructureError
@@ -41,7 +41,7 @@ Levels = tuple[Real, Real, Real]
 class BridgeStep:
     """A link between two known pins, and further ones that have to agree."""
 
-    def __init__(self, placed: Placed, bridge: Bridge) -> None:
+    def __init__(self, placed: PlacedBodies, bridge: Bridge) -> None:
         self.link, self.key = bridge.link, f"link {bridge.link}"
         self.scene, self.driver = placed.scene.name, placed.scene.driver.link
         self.holds = {pin: placed.holder(pin) for pin in bridge.pins}

@@ -53,7 +53,7 @@ def _loosened(error: PointError, slack: float, body: BodyKinematics) -> PointErr
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedBodies:
     """What a group hangs on: the bodies ``known`` of a scene, placed before it."""
 
     scene: Scene
@@ -72,7 +72,7 @@ class Placed:
 class Bar:
     """A link from a known pin that it hangs on, ``outer``, to another of its pins, ``inner``."""
 
-    def __init__(self, placed: Placed, link: str, outer: str, inner: str) -> None:
+    def __init__(self, placed: PlacedBodies, link: str, outer: str, inner: str) -> None:
         self.link, self.outer, self.holder = link, outer, placed.holder(outer)
         self.local = placed.local(link, outer)
         span = less(placed.local(link, inner), self.local)
@@ -133,7 +133,7 @@ class RidingLine:
     slack: float = 0.0
 
     @staticmethod
-    def of(placed: Placed, name: str) -> RidingLine:
+    def of(placed: PlacedBodies, name: str) -> RidingLine:
         """The pair of slider ``name``, of which one body is known."""
         slider = placed.scene.sliders[name]
         body = sliding_body(slider)

@@ -12,7 +12,7 @@ from analytic.dyads.chunk import Chunk, Passage
 from analytic.dyads.plane import direction, rounding_of_angles
 from analytic.dyads.riding import (
     Bar,
-    Placed,
+    PlacedBodies,
     RidingLine,
     following_body,
     riding_point,
@@ -83,7 +83,7 @@ def stretched(
 class RRRStep:
     """Two links between two known pins."""
 
-    def __init__(self, placed: Placed, group: Group) -> None:
+    def __init__(self, placed: PlacedBodies, group: Group) -> None:
         self.key = group.branch_key
         self.bar1 = Bar(placed, group.first, group.outer1, group.inner)
         self.bar2 = Bar(placed, group.second, group.outer2, group.inner)
@@ -105,7 +105,7 @@ class RRRStep:
 class RRPStep:
     """A link from a known pin to a body that slides on, or along, a known one."""
 
-    def __init__(self, placed: Placed, group: Group) -> None:
+    def __init__(self, placed: PlacedBodies, group: Group) -> None:
         self.group, self.key = group, group.branch_key
         self.bar = Bar(placed, group.first, group.outer1, group.inner)
         self.rider = placed.local(group.second, group.inner)
@@ -133,7 +133,7 @@ class RRPStep:
 class RPRStep:
     """A slider body pinned to a known one, on a guide that turns about another known pin."""
 
-    def __init__(self, placed: Placed, group: Group) -> None:
+    def __init__(self, placed: PlacedBodies, group: Group) -> None:
         self.key = self.slider = group.inner
         slider = placed.scene.sliders[group.inner]
         self.body, self.guide = sliding_body(slider), slider.on
@@ -173,7 +173,7 @@ class RPRStep:
 class PRPStep:
     """Two bodies pinned to each other, each sliding on, or along, a known one."""
 
-    def __init__(self, placed: Placed, group: Group) -> None:
+    def __init__(self, placed: PlacedBodies, group: Group) -> None:
         self.group, self.key = group, group.branch_key
         ends = ((group.first, group.outer1), (group.second, group.outer2))
         self.locals = [placed.local(body, group.inner) for body, _ in ends]
@@ -199,7 +199,7 @@ class PRPStep:
 class RPPStep:
     """A body pinned to a known one slides on a body that slides on a known one."""
 
-    def __init__(self, placed: Placed, group: Group) -> None:
+    def __init__(self, placed: PlacedBodies, group: Group) -> None:
         self.group, self.key = group, group.branch_key
         self.hold, self.local = placed.holder(group.outer1), placed.local(group.first, group.outer1)
         self.outer = RidingLine.of(placed, group.outer2)
@@ -234,7 +234,7 @@ class RPPStep:
         chunk.keep(self.key, dyad)
 
 
-DYAD_STEPS: dict[str, Callable[[Placed, Group], Step]] = {
+DYAD_STEPS: dict[str, Callable[[PlacedBodies, Group], Step]] = {
     "RRR": RRRStep,
     "RRP": RRPStep,
     "RPR": RPRStep,

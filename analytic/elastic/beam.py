@@ -24,7 +24,7 @@ from analytic.elastic.shapes import Shapes, places, shortening
 from analytic.multibody.bodies import Marker, Markers
 from models.array import Array
 from models.scene import Point
-from models.scene.cut_links import Line
+from models.scene.cut_links import LinkLine
 from models.scene.elastic import ElasticLink
 from models.scene.joints import turned
 
@@ -37,12 +37,12 @@ class ElasticBody:
     """
 
     link: ElasticLink
-    line: Line
+    line: LinkLine
     shapes: Shapes
     stiffened: bool = True
 
-    def body(self, markers: Sequence[Marker], gravity: Point) -> Beam:
-        return Beam(self, markers, gravity)
+    def body(self, markers: Sequence[Marker], gravity: Point) -> BeamBody:
+        return BeamBody(self, markers, gravity)
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class _Spread:
     across_by: Array
 
 
-class Beam:
+class BeamBody:
     """One elastic link (`Body`)."""
 
     def __init__(self, own: ElasticBody, markers: Sequence[Marker], gravity: Point) -> None:

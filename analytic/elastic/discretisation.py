@@ -16,7 +16,7 @@ from models.errors import CrankcheckError
 from models.files.elastic_table import SLENDER
 from models.motion import Motion
 from models.scene import Point, Scene
-from models.scene.cut_links import Line, line_of
+from models.scene.cut_links import LinkLine, line_of
 from models.scene.cut_scenes import segment_spring
 from models.scene.elastic import ElasticLink
 from models.scene.joints import turned
@@ -205,7 +205,7 @@ class SegmentedBody:
     """
 
     link: ElasticLink
-    line: Line
+    line: LinkLine
     count: int
     corrected: bool = False
 

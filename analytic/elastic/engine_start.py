@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.polynomial import legendre
 
-from analytic.elastic.beam import Beam, ElasticBody
+from analytic.elastic.beam import BeamBody, ElasticBody
 from analytic.elastic.control import elastic_history
 from analytic.elastic.discretisation import REFERENCE, SegmentChain, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion, ElasticHistory
@@ -66,7 +66,7 @@ def node_start(own: BeamedScene, start: Shape) -> State:
     strains: tuple[dict[str, float], dict[str, float]] = ({}, {})
     for name in own.scene.elastic:
         body, at = assembly.elastic[name]
-        assert isinstance(body, Beam)
+        assert isinstance(body, BeamBody)
         q, rates, push = (each[:, at] for each in (instant.now.q, instant.now.rates, seconds))
         nodes, gained = _nodes(own, body, q, rates, push)
         levels = (nodes.place, nodes.drift, gained)
@@ -85,7 +85,7 @@ def node_start(own: BeamedScene, start: Shape) -> State:
 
 
 def _nodes(
-    own: BeamedScene, body: Beam, q: Array, rates: Array, push: Array
+    own: BeamedScene, body: BeamBody, q: Array, rates: Array, push: Array
 ) -> tuple[CubicNodes, Array]:
     """The nodes of a link at coordinates, rates and second derivatives (1, n), and their
     accelerations (n + 1, 3)."""

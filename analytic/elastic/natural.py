@@ -86,7 +86,7 @@ MODES = 20
 
 
 @dataclass(frozen=True)
-class Sensitivity:
+class FrequencySensitivity:
     """``size`` is the share of the largest deflection that changes, over the share by which all
     links are stiffer; most of it is at an ``order`` of the driver's turns, in a ``link``."""
 
@@ -99,7 +99,7 @@ class Sensitivity:
         return not self.size < MOST
 
 
-def sensitivity(form: ReducedForm, z: Array, change: Array) -> Sensitivity:
+def sensitivity(form: ReducedForm, z: Array, change: Array) -> FrequencySensitivity:
     """Of coefficients at N instants of a period, (N, m), that change so for a stiffness of twice
     its size.
 
@@ -112,7 +112,7 @@ def sensitivity(form: ReducedForm, z: Array, change: Array) -> Sensitivity:
     size = whole / largest if largest else 0.0
     orders = np.abs(np.fft.rfft(change, axis=0))
     order, coefficient = np.unravel_index(int(orders.argmax()), orders.shape)
-    return Sensitivity(size, int(order), links_of(form)[int(coefficient)])
+    return FrequencySensitivity(size, int(order), links_of(form)[int(coefficient)])
 
 
 def links_of(form: ReducedForm) -> list[str]:
@@ -121,7 +121,7 @@ def links_of(form: ReducedForm) -> list[str]:
     return [name for name, (_, own) in every for _ in range(own.start + 3, own.stop)]
 
 
-def resonance_text(form: ReducedForm, found: Sensitivity) -> str:
+def resonance_text(form: ReducedForm, found: FrequencySensitivity) -> str:
     """What resonates, and what would work."""
     scene = form.assembly.scene
     turning = math.tau / form.period_s
@@ -159,7 +159,9 @@ def _percent(size: float) -> str:
     return f"{size:.0f} %" if size < 1e4 else "any amount"
 
 
-def _speed(form: ReducedForm, found: Sensitivity, mode: tuple[str, int, float] | None) -> str:
+def _speed(
+    form: ReducedForm, found: FrequencySensitivity, mode: tuple[str, int, float] | None
+) -> str:
     """A speed half-way to the next resonance of the same mode."""
     if mode is None or not isinstance(form.law, ConstantSpeed):
         return ""

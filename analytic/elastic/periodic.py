@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.elastic.natural import Sensitivity, resonance_text, sensitivity
+from analytic.elastic.natural import FrequencySensitivity, resonance_text, sensitivity
 from analytic.elastic.reduced import ReducedForm
 from models.array import Array
 from models.errors import CrankcheckError
@@ -104,7 +104,7 @@ class PeriodicMotion:
 
     period_s: float
     z: Array
-    sensitivity: Sensitivity
+    sensitivity: FrequencySensitivity
 
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
         """The coefficients, their rates and second derivatives at times [s], (T, m) each."""

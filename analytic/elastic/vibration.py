@@ -86,10 +86,10 @@ def vibrate(
         A window in which the equations are not met; links that bend too far.
     """
     edges = _edges(until_s, windows, kinks_s)
-    kept: list[_Block] = []
+    kept: list[_StepBlock] = []
     done, most = 0, BLOCK
     while done < len(edges) - 1:
-        block = _Block.solved(form, edges[done : done + most + 1], z, rates)
+        block = _StepBlock.solved(form, edges[done : done + most + 1], z, rates)
         if block is None:
             begin, end = edges[done : done + 2]
             if most > 1:
@@ -127,7 +127,7 @@ def _edges(until_s: float, windows: int, kinks_s: Sequence[float]) -> Array:
 
 
 @dataclass(frozen=True)
-class _Block:
+class _StepBlock:
     """W windows: coefficients and rates at their beginnings and at the end of the last, (W + 1, m),
     and second derivatives at their nodes, (W, NODES, m)."""
 
@@ -136,14 +136,14 @@ class _Block:
     seconds: Array
 
     @staticmethod
-    def along(h: Array, z: Array, rates: Array, seconds: Array) -> _Block:
+    def along(h: Array, z: Array, rates: Array, seconds: Array) -> _StepBlock:
         """From coefficients and rates (m,) at the beginning, and second derivatives."""
         gained = h[:, None] * np.tensordot(seconds, RULE.end_once, (1, 0))
         every = rates + np.concatenate([np.zeros_like(gained[:1]), np.cumsum(gained, axis=0)])
         moved = h[:, None] * every[:-1]
         moved += (h**2)[:, None] * np.tensordot(seconds, END_TWICE, (1, 0))
         places = z + np.concatenate([np.zeros_like(moved[:1]), np.cumsum(moved, axis=0)])
-        return _Block(places, every, seconds)
+        return _StepBlock(places, every, seconds)
 
     def reach(self, h: Array) -> float:
         """The largest of the coefficients, and of what rates and accelerations add in a window."""
@@ -159,7 +159,7 @@ class _Block:
         return z + step**2 * (TWICE @ self.seconds), rates
 
     @staticmethod
-    def solved(form: ReducedForm, edges: Array, z: Array, rates: Array) -> _Block | None:
+    def solved(form: ReducedForm, edges: Array, z: Array, rates: Array) -> _StepBlock | None:
         """The windows between edges (W + 1,), or None where Newton's method does not come to an
         end."""
         h, m = np.diff(edges), form.size
@@ -167,7 +167,7 @@ class _Block:
         near, shape = form.near(times), (len(h), NODES, m)
         # The first guess holds still; the rates at the beginning are part of the first step.
         still = np.zeros(shape)
-        at, block, owed = (still + z, still), _Block.along(h, z, 0.0 * rates, still), rates
+        at, block, owed = (still + z, still), _StepBlock.along(h, z, 0.0 * rates, still), rates
         sweep, last, tangents = None, np.inf, 0
         for _ in range(MOST_ROUNDS):
             try:
@@ -181,7 +181,7 @@ class _Block:
                 shape
             )
             step = sweep.step(left, owed)
-            block, owed = _Block.along(h, z, rates, block.seconds + step), 0.0 * rates
+            block, owed = _StepBlock.along(h, z, rates, block.seconds + step), 0.0 * rates
             at = block.nodes(h)
             size = float(np.abs(step).max()) / (float(np.abs(block.seconds).max()) or 1.0)
             moved = float(h.max()) ** 2 * float(np.abs(step).max())

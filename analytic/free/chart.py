@@ -30,14 +30,14 @@ BEYOND = (1e-9, 1e-6, 1e-4, 1e-2)
 
 
 @dataclass(frozen=True, eq=False)
-class Arc:
+class LimitedScene:
     """A scene in one assembly; ``limits`` of its driver's range, the lower one first, or none."""
 
     scene: Scene
     limits: tuple[LimitPosition, LimitPosition] | None
 
     @staticmethod
-    def of(scene: Scene, driver_rad: float) -> Arc:
+    def of(scene: Scene, driver_rad: float) -> LimitedScene:
         """The arc on which the driver stands at an angle. Raises CrankcheckError where the
         mechanism cannot be assembled there, or its way ends at infinity."""
         ready = prepared(scene)
@@ -48,8 +48,8 @@ class Arc:
             raise CrankcheckError(f"{scene.name}: no range of its driver holds {driver_rad:g} rad")
         low, high = span
         if spans == [(-math.pi, math.pi)] or (ready.looked_turns == 1 and high - low >= math.tau):
-            return Arc(scene, None)
-        return Arc(scene, (_limit(scene, span, -1), _limit(scene, span, 1)))
+            return LimitedScene(scene, None)
+        return LimitedScene(scene, (_limit(scene, span, -1), _limit(scene, span, 1)))
 
     @property
     def length_rad(self) -> float:
@@ -64,7 +64,7 @@ class Arc:
             return None
         return min(self.limits, key=lambda limit: abs(limit.driver_rad - driver_rad))
 
-    def beyond(self, limit: LimitPosition) -> Arc:
+    def beyond(self, limit: LimitPosition) -> LimitedScene:
         """The arc of the other assembly, into which the motion passes at one of the limits. Raises
         CrankcheckError where it is not to be told."""
         scene = self.scene
@@ -84,7 +84,7 @@ class Arc:
 
         span = _range_about(ranges(prepared(started(limit.driver_rad)).stretched), limit.driver_rad)
         assert span is not None
-        return Arc.of(started(0.5 * sum(span)), 0.5 * sum(span))
+        return LimitedScene.of(started(0.5 * sum(span)), 0.5 * sum(span))
 
     def link_angles(self, driver_rad: float) -> Mapping[str, float]:
         """The angles of all links at a driver angle, whole turns as `analytic.kinematics` counts
@@ -157,17 +157,17 @@ class Chart:
     motion came.
     """
 
-    arc: Arc
+    arc: LimitedScene
     limit: LimitPosition | None
     ahead: Mapping[str, float] = field(default_factory=dict)
 
     @staticmethod
-    def at(arc: Arc, driver_rad: float, ahead: Mapping[str, float]) -> Chart:
+    def at(arc: LimitedScene, driver_rad: float, ahead: Mapping[str, float]) -> Chart:
         """The chart that is best at a driver angle."""
         return Chart(arc, arc.nearest(driver_rad), ahead)
 
     @cached_property
-    def other(self) -> tuple[Arc, Mapping[str, float]]:
+    def other(self) -> tuple[LimitedScene, Mapping[str, float]]:
         """The arc where u < 0, and what link angles are ahead there."""
         assert self.limit is not None
         arc, at = self.arc.beyond(self.limit), self.limit.driver_rad
@@ -196,7 +196,7 @@ class Chart:
         u = self.limit.coordinate(driver_rad)
         return u, -omega / (2.0 * self.limit.side * u) if u > 0.0 else 0.0
 
-    def left(self, u: float) -> Arc | None:
+    def left(self, u: float) -> LimitedScene | None:
         """The arc on which to take another chart, where u is far from the limit."""
         if self.limit is None:
             return None

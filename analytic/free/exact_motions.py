@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.free.chart import Arc, Chart
+from analytic.free.chart import Chart, LimitedScene
 from analytic.free.free_motion import LimitPassage
 from analytic.free.machine import Machine
 from analytic.kinematics import solve_driven
@@ -17,7 +17,7 @@ from models.errors import CrankcheckError
 from models.motion import LinkMotion, Motion, PointMotion, State
 from models.scene import Scene
 from models.scene.driver import Released
-from models.scene.hard import UPRIGHT, Chain
+from models.scene.hard import UPRIGHT, WindowChain
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Amplitude:
 class ChainMotion:
     """The turning of all rockers of a chain that is left free at time 0."""
 
-    chain: Chain
+    chain: WindowChain
 
     @property
     def inertia(self) -> float:
@@ -169,7 +169,7 @@ class ToggleBarrier:
         law = scene.driver.law
         start = float(law.at(np.zeros(1))[0][0])
         free = _started(scene, Released(start, 0.0, 1.0))
-        arc = Arc.of(free, start)
+        arc = LimitedScene.of(free, start)
         if arc.limits is None:
             raise CrankcheckError(f"{scene.name}: its driver turns fully, and has no toggle")
         limit = arc.limits[1]

@@ -23,7 +23,7 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from analytic.change_points.sign import HALVES, LEAST_CERTAIN, Index, Piece, Rates, Unknown, put
+from analytic.change_points.sign import HALVES, LEAST_CERTAIN, Index, Rates, SignPiece, Unknown, put
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import Dyad, First, OpenError, Second
 from analytic.dyads.plane import EPS, EXACT_ANGLE, AngleError
@@ -118,14 +118,14 @@ class LimitPosition:
         )
 
     @cached_property
-    def piece(self) -> Piece:
+    def piece(self) -> SignPiece:
         """The dyad's unknowns about the limit, over u. Raises CrankcheckError where they are not
         smooth to within rounding."""
         best, least = None, math.inf
         with np.errstate(all="ignore"):
             for half in HALVES:
                 try:
-                    piece = Piece.of(self._solved, 0.0, half, self.scene.longest_m)
+                    piece = SignPiece.of(self._solved, 0.0, half, self.scene.longest_m)
                 except (OpenError, ReachError):
                     continue
                 if piece.doubt < least:

@@ -21,7 +21,7 @@ from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import Real
 from analytic.forces.force_elements import spring_lengths
 from analytic.forces.virtual_power import inertia_and_slope, loaded_bodies, torque_by_power
-from analytic.free.chart import Arc, Chart
+from analytic.free.chart import Chart, LimitedScene
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
@@ -53,7 +53,7 @@ class Machine:
                 "that is constant"
             )
         object.__setattr__(self, "scene", scene)
-        object.__setattr__(self, "chart", chart or Chart(Arc(scene, None), None))
+        object.__setattr__(self, "chart", chart or Chart(LimitedScene(scene, None), None))
 
     def inertia(self, u: Array) -> tuple[Array, Array]:
         """J and J' at coordinates (T,)."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic.change_points.sign import AT_START
 from analytic.free.bodies_motion import BodiesMotion
-from analytic.free.chart import Arc, Chart
+from analytic.free.chart import Chart, LimitedScene
 from analytic.free.coordinate_history import CoordinateHistory, Doubt, Window
 from analytic.free.free_motion import FreeMotion, LimitPassage
 from analytic.free.integration import Integration
@@ -93,7 +93,7 @@ def _of_all_bodies(scene: Scene, until_s: float, reason: StructureError) -> Bodi
 
 def _of_one_freedom(scene: Scene, law: Released, until_s: float) -> MachineMotion:
     """The motion by the equation of the machine."""
-    chart = Chart.at(Arc.of(scene, law.start_rad), law.start_rad, {})
+    chart = Chart.at(LimitedScene.of(scene, law.start_rad), law.start_rad, {})
     machine = Machine(scene, chart)
     u, v = chart.state(law.start_rad, law.speed_rad_s)
     check_start(scene, machine, u)

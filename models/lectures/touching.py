@@ -50,7 +50,7 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class Guide:
+class ContactGuide:
     """What the joints next to a joint leave of its freedoms, and which they are."""
 
     leaves: tuple[str, ...]
@@ -65,7 +65,7 @@ class Touching:
     source: str
     at: tuple[float, float, float]
     contacts: tuple[Contact, ...]
-    guides: Mapping[str, Guide] = field(default_factory=dict)
+    guides: Mapping[str, ContactGuide] = field(default_factory=dict)
     note: str = ""
 
     @property
@@ -133,7 +133,9 @@ def load_touching(name_or_path: str) -> Touching:
     path = find_table(name_or_path, CONTACTS, "joint", "crankcheck joint")
     table = read_table(path, TouchingTable)
     contacts = tuple(_contact(each) for each in table.contacts)
-    guides = {name: Guide(tuple(each.leaves), each.why) for name, each in table.guided.items()}
+    guides = {
+        name: ContactGuide(tuple(each.leaves), each.why) for name, each in table.guided.items()
+    }
     at = table.at_m or contacts[0].at
     return Touching(table.name, table.source, at, contacts, guides, table.note)
 

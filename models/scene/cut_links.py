@@ -54,11 +54,11 @@ class CutScene(ABC):
         first of them counts its turns."""
 
     @abstractmethod
-    def _links(self, link: Link, line: Line) -> dict[str, Link]:
+    def _links(self, link: Link, line: LinkLine) -> dict[str, Link]:
         """These bodies."""
 
     @abstractmethod
-    def _carried(self, line: Line, place: Point) -> tuple[int, Point]:
+    def _carried(self, line: LinkLine, place: Point) -> tuple[int, Point]:
         """Which of the bodies carries a place of the link, and where it is in that one's frame."""
 
     def _springs(self, link: str) -> Mapping[str, Spring]:
@@ -174,7 +174,7 @@ class CutScene(ABC):
 
 
 @dataclass(frozen=True)
-class Line:
+class LinkLine:
     """From the first of two ``pins`` to the second, in the frame of the link: from ``start`` [m],
     at ``lean_rad``, ``length_m`` long."""
 
@@ -194,14 +194,14 @@ class Line:
         return turned(less(place, self.start), -self.lean_rad)
 
 
-def line_of(scene: Scene, link: str) -> Line:
+def line_of(scene: Scene, link: str) -> LinkLine:
     """The line of a link that has two pins."""
     own, joined = scene.links[link], joined_at(scene)
     first, second = (point for point in own.points if link in joined.get(point, ()))
     (ax, ay), (bx, by) = own.points[first], own.points[second]
     length = math.hypot(bx - ax, by - ay)
     lean = math.atan2(by - ay, bx - ax)
-    return Line((first, second), (ax, ay), lean, length, own.mass_kg / length)
+    return LinkLine((first, second), (ax, ay), lean, length, own.mass_kg / length)
 
 
 def with_rigid_links(scene: Scene) -> Scene:

@@ -10,7 +10,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Link, Point, Scene
-from models.scene.cut_links import CutScene, Line, line_of
+from models.scene.cut_links import CutScene, LinkLine, line_of
 from models.scene.elastic import Beam, ElasticLink
 from models.scene.loads import SegmentSpring
 
@@ -66,13 +66,13 @@ class SegmentedScene(CutScene):
         """The scene that an engine of rigid bodies is given."""
         return self.given
 
-    def _carried(self, line: Line, place: Point) -> tuple[int, Point]:
+    def _carried(self, line: LinkLine, place: Point) -> tuple[int, Point]:
         piece = line.length_m / self.count
         x, y = line.along(place)
         i = min(max(int(x / piece + 1e-9), 0), self.count - 1)
         return i, (x - i * piece, y)
 
-    def _links(self, link: Link, line: Line) -> dict[str, Link]:
+    def _links(self, link: Link, line: LinkLine) -> dict[str, Link]:
         """The segments, each in a frame of its own from its first point on."""
         piece, nodes = line.length_m / self.count, self.nodes(link.name)
         points: list[dict[str, Point]] = [
@@ -152,7 +152,7 @@ class BeamedScene(CutScene):
     def bodies(self, link: str) -> tuple[str, ...]:
         return tuple(f"{link}-node-{i}" for i in range(self.count + 1))
 
-    def _carried(self, line: Line, place: Point) -> tuple[int, Point]:
+    def _carried(self, line: LinkLine, place: Point) -> tuple[int, Point]:
         piece = line.length_m / self.count
         x, y = line.along(place)
         i = round(x / piece)
@@ -163,7 +163,7 @@ class BeamedScene(CutScene):
             )
         return i, (0.0, y)
 
-    def _links(self, link: Link, line: Line) -> dict[str, Link]:
+    def _links(self, link: Link, line: LinkLine) -> dict[str, Link]:
         """The nodes, each with its point and half of the mass of the elements beside it."""
         points: list[dict[str, Point]] = [{node: (0.0, 0.0)} for node in self.nodes(link.name)]
         for name, place in link.points.items():

@@ -209,7 +209,7 @@ SOURCE = "IFToMM Library of Computational Benchmark Problems, A02: N-four-bar me
 
 
 @dataclass(frozen=True)
-class Chain:
+class WindowChain:
     """A chain of ``count`` windows, N; 0 is the first rocker alone, a pendulum.
 
     ``length_m`` and ``mass_kg`` are those of every rod; gravity [m/s^2] acts downwards; at time 0

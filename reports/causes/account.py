@@ -66,7 +66,7 @@ def chosen(accounts: Sequence[Account], columns: Sequence[str]) -> list[Account]
     what it costs to believe them; the world is one, so that at most one is of another."""
     if not accounts or not columns:
         return []
-    table = _Table.of(accounts, columns)
+    table = _AccountTable.of(accounts, columns)
     worlds = [n for n, account in enumerate(accounts) if account.world is not None]
     plain = [n for n, account in enumerate(accounts) if account.world is None]
     starts = [[], *([world] for world in worlds)]
@@ -81,21 +81,21 @@ def chosen(accounts: Sequence[Account], columns: Sequence[str]) -> list[Account]
     return told
 
 
-class _Table:
+class _AccountTable:
     """What each account (a,) leaves of each column (c,), in powers of ten, and what it costs."""
 
     def __init__(self, left: Array, cost: Array) -> None:
         self.left, self.cost = left, cost
 
     @staticmethod
-    def of(accounts: Sequence[Account], columns: Sequence[str]) -> _Table:
+    def of(accounts: Sequence[Account], columns: Sequence[str]) -> _AccountTable:
         left = np.full((len(accounts), len(columns)), UNTOLD)
         for number, account in enumerate(accounts):
             for place, column in enumerate(columns):
                 if column in account.rests:
                     rest = max(account.rests[column], LEAST_REST)
                     left[number, place] = np.log10(rest) + ORDER * account.order
-        return _Table(left, np.array([account.cost for account in accounts]))
+        return _AccountTable(left, np.array([account.cost for account in accounts]))
 
     def total(self, some: Sequence[int]) -> float:
         """What some accounts leave and cost together."""

@@ -16,7 +16,7 @@ from reports.logs.channel import Channel, OwnLog, Reading
 
 
 @dataclass(frozen=True)
-class Case:
+class LogCase:
     """A log beside the truth of its scene as it is driven, with what the error of each channel may
     be [SI], by column; what has no limit is not judged."""
 
@@ -120,14 +120,14 @@ class Excerpt:
         return replace(self, **{name: getattr(self, name)[rows] for name in names})
 
     @cached_property
-    def size(self) -> Size:
+    def size(self) -> CauseSize:
         """What is left is over it: the error, or the signal where that is less."""
         return self.size_beside(self.expected)
 
-    def size_beside(self, expected: Array) -> Size:
+    def size_beside(self, expected: Array) -> CauseSize:
         """The same where something else is expected, as an explanation has to tell the readings,
         and not merely to be nearer than what is far off. A signal of nothing bounds nothing."""
-        return Size.of(self.error).least(Size.of_signal(expected, self.nothing))
+        return CauseSize.of(self.error).least(CauseSize.of_signal(expected, self.nothing))
 
     @property
     def nothing(self) -> float:
@@ -137,23 +137,28 @@ class Excerpt:
     @property
     def nought(self) -> bool:
         """Whether nothing but 0 is expected, by what counts."""
-        return Size.of(self.expected[np.isfinite(self.expected)]).largest <= self.nothing
+        return CauseSize.of(self.expected[np.isfinite(self.expected)]).largest <= self.nothing
 
     def rest(self, error: Array, expected: Array | None = None) -> float:
         """What is left of the error where it is ``error`` instead, and something else ``expected``:
         the largest or the root mean square, whichever is more; no number is infinitely much."""
-        left, size = Size.of(error), self.size if expected is None else self.size_beside(expected)
+        left, size = (
+            CauseSize.of(error),
+            self.size if expected is None else self.size_beside(expected),
+        )
         pairs = ((left.largest, size.largest), (left.rms, size.rms))
         return max(part / whole if whole > 0.0 else np.inf for part, whole in pairs)
 
     def left(self, error: Array) -> float:
         """The largest error that is left, over the one that there was."""
-        return Size.of(error).largest / max(Size.of(self.error).largest, np.finfo(float).tiny)
+        return CauseSize.of(error).largest / max(
+            CauseSize.of(self.error).largest, np.finfo(float).tiny
+        )
 
     def explained(self, error: Array, expected: Array | None = None) -> bool:
         """Whether so little is left that the error is explained."""
         rest = self.rest(error, expected)
-        within = Size.of(error).largest <= self.limit
+        within = CauseSize.of(error).largest <= self.limit
         return rest <= (BROUGHT_WITHIN if within else EXPLAINED)
 
     def told_apart(self, error: Array) -> bool:
@@ -169,32 +174,32 @@ def _rough(series: Array) -> bool:
 
 
 @dataclass(frozen=True)
-class Size:
+class CauseSize:
     """How large a series is: its largest magnitude and its root mean square."""
 
     largest: float
     rms: float
 
     @staticmethod
-    def of(series: Array) -> Size:
+    def of(series: Array) -> CauseSize:
         largest = float(np.max(np.abs(series), initial=0.0))
         if not 0.0 < largest < np.inf:
-            return Size(largest, largest)
-        return Size(largest, largest * float(np.sqrt(np.mean((series / largest) ** 2))))
+            return CauseSize(largest, largest)
+        return CauseSize(largest, largest * float(np.sqrt(np.mean((series / largest) ** 2))))
 
     @staticmethod
-    def of_signal(series: Array, nought: float = 0.0) -> Size:
+    def of_signal(series: Array, nought: float = 0.0) -> CauseSize:
         """That of how a series moves, or of its number where it stays; no bound where that is no
         more than ``nought``."""
         series = series[np.isfinite(series)]
-        whole = Size.of(series)
+        whole = CauseSize.of(series)
         if whole.largest <= nought:
-            return Size(np.inf, np.inf)
-        moving = Size.of(series - 0.5 * (series.max() + series.min()))
+            return CauseSize(np.inf, np.inf)
+        moving = CauseSize.of(series - 0.5 * (series.max() + series.min()))
         return moving if moving.largest > 1e-9 * whole.largest else whole
 
-    def least(self, other: Size) -> Size:
-        return Size(min(self.largest, other.largest), min(self.rms, other.rms))
+    def least(self, other: CauseSize) -> CauseSize:
+        return CauseSize(min(self.largest, other.largest), min(self.rms, other.rms))
 
 
 def levelled(error: Array, channel: Channel) -> tuple[float, Array]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, NUMBER, Account, chosen, sentence
-from reports.causes.cause import Case, Cause
+from reports.causes.cause import Cause, LogCase
 from reports.causes.hypotheses import OF_CHANNELS, OF_LOGS, OF_SAMPLES, Hypothesis
 from reports.causes.inquiry import Inquiry
 
@@ -17,7 +17,7 @@ MOSTLY = 0.5
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
-def causes(case: Case) -> tuple[Cause, ...]:
+def causes(case: LogCase) -> tuple[Cause, ...]:
     """What explains the errors of a log that are over their limits, and delays within them.
 
     A cause leaves at most a tenth of the error of each channel that it is told of, or a third where

@@ -12,7 +12,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from reports.causes.account import CAUSE, NUMBER, Account
-from reports.causes.cause import EXPLAINED, MOST, Case, Excerpt, Rows, Size, picked
+from reports.causes.cause import EXPLAINED, MOST, CauseSize, Excerpt, LogCase, Rows, picked
 from reports.causes.world import World
 from reports.logs.channel import Channel
 
@@ -38,7 +38,7 @@ class Inquiry:
     the error is to be explained. ``accounts`` are what was found so far; the world is ``changed``
     where it is no longer the scene as it is driven."""
 
-    case: Case
+    case: LogCase
     world: World
     excerpts: Mapping[str, Excerpt]
     open: tuple[str, ...]
@@ -46,7 +46,7 @@ class Inquiry:
     changed: bool = False
 
     @staticmethod
-    def of(case: Case) -> Inquiry:
+    def of(case: LogCase) -> Inquiry:
         """Raises CrankcheckError where the scene has no reference."""
         out = tuple(reading.channel.column for reading in case.out)
         return Inquiry(case, World.of(case.truth), case.excerpts, out)
@@ -163,7 +163,7 @@ class Inquiry:
             if column not in errors:
                 continue
             excerpt, error = self.excerpts[column], errors[column]
-            if Size.of(error).largest <= SPOILT * excerpt.limit:
+            if CauseSize.of(error).largest <= SPOILT * excerpt.limit:
                 rest = excerpt.rest(error, expected[column])
                 if rest < MENDED:
                     found[column] = rest
@@ -210,20 +210,20 @@ class Inquiry:
             column
             for column in self.healthy
             if column in errors
-            and Size.of(errors[column]).largest
+            and CauseSize.of(errors[column]).largest
             > max(SPOILT * self.excerpts[column].limit, 3.0 * self.excerpts[column].worst)
         )
 
     def _vanishes(self, column: str, expected: Array) -> bool:
         """Whether next to nothing of a channel is expected, as at times that show it where it is 0
         only: that would explain whatever is next to nothing."""
-        before = Size.of_signal(self.excerpts[column].expected).rms
-        return Size.of_signal(expected).rms < NOTHING_LEFT * before
+        before = CauseSize.of_signal(self.excerpts[column].expected).rms
+        return CauseSize.of_signal(expected).rms < NOTHING_LEFT * before
 
     def _moved(self, column: str, expected: Array) -> bool:
         """Whether a channel is expected elsewhere, by what counts beside its error."""
         excerpt = self.excerpts[column]
-        change = Size.of(excerpt.beside(expected) - excerpt.error)
+        change = CauseSize.of(excerpt.beside(expected) - excerpt.error)
         return change.largest > MOVED * excerpt.size.largest
 
     def within(self, world: World, left: Iterable[str]) -> Inquiry | None:

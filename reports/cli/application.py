@@ -62,7 +62,7 @@ class Late(TyperCommand):
         return self.loaded.make_context(info_name, args, *more, **extra)
 
 
-class Group(TyperGroup):
+class CommandGroup(TyperGroup):
     """The commands that begin with the name of the group, or all, before the groups in it."""
 
     def __init__(self, **attributes: Any) -> None:
@@ -80,7 +80,7 @@ class Group(TyperGroup):
 NAME = "crankcheck"
 app = typer.Typer(
     name=NAME,
-    cls=Group,
+    cls=CommandGroup,
     help="Hold physics engines to the closed form of planar closed-loop mechanisms.",
     epilog="Exit codes: 0 all within tolerance, 1 out of tolerance or worse than before, 2 bad "
     "input or usage, 70 a fault of crankcheck itself, 130 interrupted, 141 nobody reads the "
@@ -90,10 +90,10 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-engines_app = typer.Typer(cls=Group, invoke_without_command=True)
+engines_app = typer.Typer(cls=CommandGroup, invoke_without_command=True)
 app.add_typer(engines_app, name="engines")
 app.add_typer(
-    typer.Typer(cls=Group, no_args_is_help=True, callback=lambda: None),
+    typer.Typer(cls=CommandGroup, no_args_is_help=True, callback=lambda: None),
     name="recipe",
     help="Show how something is read out of an engine.",
 )

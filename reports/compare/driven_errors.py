@@ -11,7 +11,7 @@ from reports.compare.branch import departure
 from reports.compare.error_rows import Instants, instants_of, whole_row, whole_rows
 from reports.compare.errors import DRIVEN, Error, Errors
 from reports.compare.hardness import conditioning, loading, uneven
-from reports.compare.whole_errors import Parts, force_rows, summed, whole_errors
+from reports.compare.whole_errors import ComparedParts, force_rows, summed, whole_errors
 from reports.quantities import named
 from reports.quantities.quantity import Role
 
@@ -23,7 +23,7 @@ def compared(beside: Beside, errors: Errors | None) -> Errors:
     geometric, notes = _geometric(beside, at)
     borne = force_rows(beside)
     loaded = replace(borne.facts, loading=loading(scene, beside.whole))
-    parts = Parts(
+    parts = ComparedParts(
         placed=[*_of_roles(beside, at, "drive", "place"), *geometric],
         notes=notes,
         borne=replace(borne, facts=loaded),

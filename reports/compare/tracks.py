@@ -94,7 +94,7 @@ def lacking(motion: Motion, reference: Motion) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Size:
+class TrackSize:
     """How large an error series is, in the unit of the series.
 
     ``maximum`` is NaN as soon as one sample is not finite: a number that is missing is a failure,
@@ -107,17 +107,17 @@ class Size:
     index: int
 
 
-def size(series: Array) -> Size:
+def size(series: Array) -> TrackSize:
     """Maximum, root mean square and last value of the magnitude of ``series`` (T,)."""
     magnitude = np.abs(series)
     index = int(np.argmax(magnitude))  # the first NaN, where there is one
     largest = float(magnitude[index])
     if not math.isfinite(largest):
         broken = int(np.flatnonzero(~np.isfinite(series))[0])
-        return Size(math.nan, math.nan, float(series[-1]), broken)
+        return TrackSize(math.nan, math.nan, float(series[-1]), broken)
     # Squares of the pure ratio: no overflow for an engine that has run away.
     rms = largest * float(np.sqrt(np.mean((magnitude / largest) ** 2))) if largest > 0.0 else 0.0
-    return Size(largest, rms, float(magnitude[-1]), index)
+    return TrackSize(largest, rms, float(magnitude[-1]), index)
 
 
 def angle_error(engine: Array, reference: Array) -> Array:

@@ -200,7 +200,7 @@ def _turns(series: Array) -> Mask:
 
 
 @dataclass(frozen=True)
-class Parts:
+class ComparedParts:
     """The parts of a comparison that differ from kind to kind: rows before those of the gaps and
     ``conserved`` ones behind the rates, ``notes`` before those of forces, and facts as of
     `SceneFacts`. ``borne`` is what came of the forces."""
@@ -217,7 +217,7 @@ class Parts:
     drives_within: bool = False
 
 
-def whole_errors(beside: Beside, at: Instants, parts: Parts) -> Errors:
+def whole_errors(beside: Beside, at: Instants, parts: ComparedParts) -> Errors:
     """All errors of a run; ``at`` are the instants of its places."""
     scene, run, borne = beside.scene, beside.run, parts.borne
     reported, not_reported = reported_rows(beside)

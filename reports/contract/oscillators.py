@@ -55,16 +55,16 @@ class Oscillator:
     def unit(self) -> str:
         return "rad" if self.body in self.scene.links else "m"
 
-    def read(self, poses: Poses) -> Swing:
+    def read(self, poses: Poses) -> SwingOscillator:
         """The oscillation in the poses."""
         seen = motion(self.scene, poses)
         if self.body in seen.links:
-            return Swing.of(seen.links[self.body].theta, seen.time_s)
-        return Swing.of(seen.sliders[self.body].displacement, seen.time_s)
+            return SwingOscillator.of(seen.links[self.body].theta, seen.time_s)
+        return SwingOscillator.of(seen.sliders[self.body].displacement, seen.time_s)
 
 
 @dataclass(frozen=True)
-class Swing:
+class SwingOscillator:
     """Natural angular velocity [rad/s], decay [1/s] and place of rest; NaN where none swings."""
 
     pace: float
@@ -72,19 +72,19 @@ class Swing:
     rest: float
 
     @staticmethod
-    def of(q: Array, time_s: Array) -> Swing:
+    def of(q: Array, time_s: Array) -> SwingOscillator:
         """That of samples at even times."""
         step_s = float(time_s[1] - time_s[0])
         if not np.isfinite(q).all():
-            return Swing(math.nan, math.nan, math.nan)
+            return SwingOscillator(math.nan, math.nan, math.nan)
         rows = np.stack([q[1:-1], q[:-2], np.ones(len(q) - 2)], axis=1)
         a, b, c = np.linalg.lstsq(rows, q[2:], rcond=None)[0]
         still = not np.ptp(q) > 1e-9 * np.abs(q).max()
         if still or not -b > 0.0 or not abs(0.5 * a / math.sqrt(-b)) < 1.0:
-            return Swing(math.nan, math.nan, math.nan)
+            return SwingOscillator(math.nan, math.nan, math.nan)
         decay = -math.log(-b) / (2.0 * step_s)
         damped = math.acos(0.5 * a / math.sqrt(-b)) / step_s
-        return Swing(math.hypot(damped, decay), decay, float(c / (1.0 - a - b)))
+        return SwingOscillator(math.hypot(damped, decay), decay, float(c / (1.0 - a - b)))
 
 
 def oscillators() -> Iterator[Oscillator]:

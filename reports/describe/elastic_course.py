@@ -188,7 +188,7 @@ def elastic_tables(course: ElasticCourse, width: int) -> list[Table]:
 
 
 @dataclass(frozen=True)
-class Extreme:
+class DeflectionExtreme:
     """The largest value of a motion, with its sign, in ``unit``; when [s], and the driver's angle
     there [deg]; ``note`` says what more is to be told of it."""
 
@@ -200,7 +200,7 @@ class Extreme:
     note: str = ""
 
 
-def extremes(course: ElasticCourse) -> list[Extreme]:
+def extremes(course: ElasticCourse) -> list[DeflectionExtreme]:
     """The largest deflections, extensions, differences to rigid links, and torques."""
     return [_extreme(course, *each) for each in _series(course)]
 
@@ -227,17 +227,21 @@ def _series(course: ElasticCourse) -> Iterator[tuple[str, str, Array, str]]:
         yield "driving torque, rigid", "N m", rigid, ""
 
 
-def _extreme(course: ElasticCourse, name: str, unit: str, values: Array, note: str) -> Extreme:
+def _extreme(
+    course: ElasticCourse, name: str, unit: str, values: Array, note: str
+) -> DeflectionExtreme:
     if not np.any(np.abs(values) > 0.0):  # all of them 0, or none determined
         value = 0.0 if np.isfinite(values).any() else math.nan
-        return Extreme(name, value, unit, math.nan, math.nan, note)
+        return DeflectionExtreme(name, value, unit, math.nan, math.nan, note)
     at = int(np.nanargmax(np.abs(values)))
     driver = course.motion.links[course.scene.driver.link].theta
     degrees = math.degrees(float(driver[at])) % 360.0
-    return Extreme(name, float(values[at]) + 0.0, unit, float(course.time_s[at]), degrees, note)
+    return DeflectionExtreme(
+        name, float(values[at]) + 0.0, unit, float(course.time_s[at]), degrees, note
+    )
 
 
-def extremes_table(scene: Scene, rows: list[Extreme]) -> Table:
+def extremes_table(scene: Scene, rows: list[DeflectionExtreme]) -> Table:
     """What `extremes` has."""
     table = plain_table(gap=2)
     table.add_column("largest", no_wrap=True)

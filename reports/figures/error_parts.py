@@ -21,7 +21,7 @@ from reports.figures.drawing import ends
 from reports.figures.sheet import corner_words, grid, tenfold
 from reports.figures.style import INK, Look, power_of_ten
 from reports.output.numbers import short
-from reports.results.error_parts import Parts, Split, split, worst_body
+from reports.results.error_parts import ErrorParts, Split, split, worst_body
 from reports.results.lines import Line, label, named
 from reports.results.overview import Report, notes
 
@@ -35,7 +35,7 @@ LOOKS: dict[str, tuple[str, Look]] = {
     "geometric": ("floor and discretisation, not told apart", {"color": INK, "dashes": (7, 1.5)}),
     "gap": ("closure: gap of the pins / L", {"color": "#4a90c9", "dashes": (5, 1.2, 1, 1.2)}),
 }
-"""Legend and line of each part, in the order of `Parts.curves`."""
+"""Legend and line of each part, in the order of `ErrorParts.curves`."""
 
 
 def draw(report: Report, name: str) -> Figure | None:
@@ -70,7 +70,7 @@ class ShownCell:
     that its errors are drawn in."""
 
     steps_per_turn: float
-    parts: Parts
+    parts: ErrorParts
     floor: str
 
     @property

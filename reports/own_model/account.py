@@ -33,7 +33,7 @@ POSES = 73
 
 
 @dataclass(frozen=True)
-class Proposal:
+class ProposedChange:
     """Settings that may be recommended, and what they change of the file: a diff, or words; ""
     where that is nothing."""
 
@@ -42,7 +42,7 @@ class Proposal:
 
 
 @dataclass(frozen=True)
-class Account:
+class ModelAccount:
     """A model as it was read, from its ``files``: its scene, how far open its own pose is by joint
     [m], what can disturb a comparison, the lines to run, what may be recommended, the first choice
     first, and what is; ``helps`` is false where none of these was seen to gain anything."""
@@ -55,17 +55,17 @@ class Account:
     notes: Sequence[str]
     disturbances: Sequence[Disturbance]
     profiles: Sequence[str]
-    proposals: Sequence[Proposal]
-    recommended: Proposal
+    proposals: Sequence[ProposedChange]
+    recommended: ProposedChange
     files: Sequence[Path]
     helps: bool = True
 
 
 @dataclass(frozen=True)
-class Line:
+class ModelLine:
     """One line of an account: the model in one profile."""
 
-    account: Account
+    account: ModelAccount
     profile: str
 
     @property
@@ -88,11 +88,11 @@ def told(profiles: Sequence[str]) -> tuple[str, ...]:
     return (profiles[0], profiles[1], profiles[-1])
 
 
-def read(request: ModelRequest, limits: Limits) -> Account:
+def read(request: ModelRequest, limits: Limits) -> ModelAccount:
     """Read a model in a process of its own: what is wrong with it may end that, or not come to an
     end. Raises CrankcheckError for what can not be read, or held to a closed form."""
     reader()  # says how to install it where it is missing
-    child: Isolated[Account] = Isolated(limits)
+    child: Isolated[ModelAccount] = Isolated(limits)
     try:
         account = child.call(read_here, request)
     finally:
@@ -100,7 +100,9 @@ def read(request: ModelRequest, limits: Limits) -> Account:
     return _unless_lost(account, request, limits)
 
 
-def _unless_lost(account: Account | Lost, request: ModelRequest, limits: Limits) -> Account:
+def _unless_lost(
+    account: ModelAccount | Lost, request: ModelRequest, limits: Limits
+) -> ModelAccount:
     if not isinstance(account, Lost):
         return account
     if isinstance(account.error, CrankcheckError) and NO_MEMORY not in str(account.error):
@@ -112,7 +114,7 @@ def _unless_lost(account: Account | Lost, request: ModelRequest, limits: Limits)
     )
 
 
-def read_here(request: ModelRequest) -> Account:
+def read_here(request: ModelRequest) -> ModelAccount:
     """As `read`, in this process."""
     own = reader()(request.path, request.joint, request.key)
     found = assembled(own, request)
@@ -134,7 +136,8 @@ def read_here(request: ModelRequest) -> Account:
         ) from None
     seen = own.tour(scene, [motion.state(index) for index in range(len(times))])
     proposals = [
-        Proposal(advised, own.patch(dt_s, advised)) for advised in _proposed(bool(seen.touching))
+        ProposedChange(advised, own.patch(dt_s, advised))
+        for advised in _proposed(bool(seen.touching))
     ]
     met = [
         Disturbance("contacts", f"{first} touches {second} in {share:.0%} of the poses")
@@ -143,7 +146,7 @@ def read_here(request: ModelRequest) -> Account:
     met += [Disturbance("limits", text) for text in seen.passed]
     note = continued_note(scene, motion)
     passed = [f"joint {request.joint}: {note}"] if note else []
-    return Account(
+    return ModelAccount(
         request=request,
         scene=scene,
         dt_s=dt_s,
@@ -180,7 +183,7 @@ def _counted(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float,
     return counted(scene, given_s, request.steps_per_turn, request.turns)
 
 
-def checked_line(line: Line) -> CheckedLine:
+def checked_line(line: ModelLine) -> CheckedLine:
     """Run and judge one line, in this process."""
     account, request = line.account, line.account.request
     own = reader()(request.path, request.joint, request.key)

@@ -30,7 +30,7 @@ SHOWN = 6
 
 
 @dataclass(frozen=True)
-class Assembled:
+class AssembledModel:
     """The scene as it is to be run, and how far the drawn pose is from it: the largest distance of
     a body's frame over the longest link, or angle [rad]."""
 
@@ -39,7 +39,7 @@ class Assembled:
     notes: tuple[str, ...]
 
 
-def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
+def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
     """The scene of a model, in the assembly that it is drawn in.
 
     Raises CrankcheckError for a start many turns away; no closed form; a pose that two assemblies
@@ -88,7 +88,7 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
     if request.start_deg is not None:
         law = replace(law, start_rad=math.radians(request.start_deg))
         scene = _led_to(scene, replace(scene, driver=Driver(scene.driver.link, law)), request)
-    return Assembled(scene, far, tuple(notes))
+    return AssembledModel(scene, far, tuple(notes))
 
 
 def _words(branch: Mapping[str, int]) -> str:

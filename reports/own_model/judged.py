@@ -12,10 +12,10 @@ from reports.judge.rules import judge
 from reports.judge.rules.rule import Finding
 from reports.output.numbers import short
 from reports.own_model.account import (
-    Account,
     CheckedLine,
-    Line,
-    Proposal,
+    ModelAccount,
+    ModelLine,
+    ProposedChange,
     checked_line,
     told,
 )
@@ -47,7 +47,7 @@ class JudgedModel:
     The verdict is that on the model as written.
     """
 
-    account: Account
+    account: ModelAccount
     lines: Sequence[CheckedLine]
 
     @property
@@ -161,7 +161,7 @@ def _ratio(own: float, other: float) -> float:
     return own / other if other > 0.0 else math.inf
 
 
-def judged_model(account: Account, lines: Sequence[CheckedLine]) -> JudgedModel:
+def judged_model(account: ModelAccount, lines: Sequence[CheckedLine]) -> JudgedModel:
     """A model with its lines, each with what the recommended settings would do for it."""
     judged = JudgedModel(account=account, lines=lines)
     return replace(judged, lines=[_advised(judged, one) for one in lines])
@@ -188,16 +188,16 @@ def _part(finding: Finding) -> float:
     return finding.number / finding.limit if math.isfinite(finding.number) else math.inf
 
 
-Run = Callable[[Line], CheckedLine]
+Run = Callable[[ModelLine], CheckedLine]
 
 
 def run_lines(
-    account: Account, limits: Limits, done: Callable[[CheckedLine], None] = lambda _: None
+    account: ModelAccount, limits: Limits, done: Callable[[CheckedLine], None] = lambda _: None
 ) -> JudgedModel:
     """Run all lines of an account, each in a process that is ended when it fails or hangs."""
     child: Isolated[CheckedLine] = Isolated(limits)
 
-    def run(line: Line) -> CheckedLine:
+    def run(line: ModelLine) -> CheckedLine:
         result = child.call(checked_line, line)
         if not isinstance(result, Lost):
             return result
@@ -211,27 +211,29 @@ def run_lines(
         child.close()
 
 
-def judged_lines(account: Account, run: Run, done: Callable[[CheckedLine], None]) -> JudgedModel:
+def judged_lines(
+    account: ModelAccount, run: Run, done: Callable[[CheckedLine], None]
+) -> JudgedModel:
     """All lines, as ``run`` does each; what is recommended is chosen once the first is there."""
     lines: list[CheckedLine] = []
     for profile in account.profiles:
         if len(lines) == 1:
             account = chosen(account, lines[0], run)
-        lines.append(run(Line(account, profile)))
+        lines.append(run(ModelLine(account, profile)))
         done(lines[-1])
     return judged_model(account, lines)
 
 
-def chosen(account: Account, own: CheckedLine, run: Run) -> Account:
+def chosen(account: ModelAccount, own: CheckedLine, run: Run) -> ModelAccount:
     """The account with the first of its proposals that gains on the model as written; contacts
     are off only where that makes the error `SAYS` times less. Where none gains, it says so."""
     limit = _error(own)
     quick = replace(account, request=replace(account.request, converge=False))
 
-    def error(proposal: Proposal) -> float:
+    def error(proposal: ProposedChange) -> float:
         if not proposal.patch:
             return limit
-        return _error(run(Line(replace(quick, recommended=proposal), account.profiles[-1])))
+        return _error(run(ModelLine(replace(quick, recommended=proposal), account.profiles[-1])))
 
     for integrator in (True, False):
         found = [

@@ -9,7 +9,7 @@ from models.errors import few
 from reports.judge.halving import worst_place
 from reports.judge.rules import RULES
 from reports.output.numbers import count, error_text, listed, short
-from reports.own_model.account import Account, told
+from reports.own_model.account import ModelAccount, told
 from reports.own_model.judged import PARTS, JudgedModel
 
 OPEN = 1e-9
@@ -21,7 +21,7 @@ EACH = 3
 
 
 @dataclass(frozen=True)
-class Group:
+class SentenceGroup:
     """The disturbances of a kind, and what comes of leaving them out: "" where that is no line."""
 
     kind: str
@@ -34,7 +34,7 @@ class Group:
         return "; ".join(self.texts[:EACH]) + (f"; and {left} more" if left > 0 else "")
 
 
-def reading(account: Account) -> dict[str, str]:
+def reading(account: ModelAccount) -> dict[str, str]:
     """What the file was read as, how it is driven, and where it starts, each under its head."""
     scene = account.scene
     sliders = f"; {_named(list(scene.sliders), 'slider')}" if scene.sliders else ""
@@ -47,7 +47,7 @@ def reading(account: Account) -> dict[str, str]:
     }
 
 
-def _drive(account: Account) -> str:
+def _drive(account: ModelAccount) -> str:
     """How it is driven, and from where."""
     request = account.request
     turned = f"{account.steps * account.dt_s / account.scene.driver.law.period_s:.4g}"
@@ -67,7 +67,7 @@ def _named(names: Sequence[str], noun: str) -> str:
     return f"{count(len(names), noun)} ({few(names, SHOWN)})"
 
 
-def _pose(account: Account) -> str:
+def _pose(account: ModelAccount) -> str:
     """How far open the file's own pose is, and where the run starts."""
     most = OPEN * (account.scene.longest_m or 1.0)
     gaping = sorted(
@@ -82,12 +82,12 @@ def _pose(account: Account) -> str:
     )
 
 
-def groups(judged: JudgedModel) -> list[Group]:
+def groups(judged: JudgedModel) -> list[SentenceGroup]:
     """What can disturb the comparison, kind by kind, what is met on the way first."""
     kinds: dict[str, list[str]] = {}
     for each in judged.account.disturbances:
         kinds.setdefault(each.kind, []).append(each.text)
-    return [Group(kind, texts, effect(judged, kind)) for kind, texts in kinds.items()]
+    return [SentenceGroup(kind, texts, effect(judged, kind)) for kind, texts in kinds.items()]
 
 
 def effect(judged: JudgedModel, kind: str) -> str:

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from rich.console import Console
 
 from analytic.circuits.arcs import own_arc
-from analytic.circuits.circuits import Circuits, Extreme, Position, circuits_of, transmissions
+from analytic.circuits.circuits import AngleExtreme, Circuits, Position, circuits_of, transmissions
 from analytic.circuits.rotatability import Rotation, at_limit, dead_points, rotations
 from analytic.dyads.chunk import driver_scale
 from analytic.mechanism.fourbar import grashof_of
@@ -188,7 +188,7 @@ def rotation_row(one: Rotation, *, is_limited: bool) -> Row:
     }
 
 
-def _extreme(name: str, extreme: Extreme | None) -> Row:
+def _extreme(name: str, extreme: AngleExtreme | None) -> Row:
     """An extreme angle and where the driver stands, both in degrees."""
     if extreme is None:
         return {name: None}

@@ -52,7 +52,7 @@ class CurveBody:
 
 
 @dataclass(frozen=True)
-class Parts:
+class ErrorParts:
     """The parts of the error of one cell, pure, with sign, shape (T,) each; their sum is ``total``.
 
     ``floor`` and ``discretisation`` are None where no floor can be told, and ``drive`` and
@@ -87,7 +87,7 @@ class Split:
     floor (both NaN where there is none; ``why`` then says why). Only a floor above is seen.
     """
 
-    cells: Mapping[str, Parts]
+    cells: Mapping[str, ErrorParts]
     floor: float = math.nan
     doubt: float = math.nan
     why: str = ""
@@ -226,7 +226,7 @@ def _order(fit: LineFit) -> tuple[float, float] | None:
 
 def _parts(
     trace: Trace, body: CurveBody, longest_m: float, limit: _Extrapolated | None, period_s: float
-) -> Parts:
+) -> ErrorParts:
     """The parts of one cell, at the instants where all of them are known."""
     series = {
         "time_s": trace["time_s"],
@@ -236,17 +236,17 @@ def _parts(
     }
     logged = trace.get(f"geometric.{body.series}")
     if logged is None:
-        return Parts(**series)
+        return ErrorParts(**series)
     geometric = logged / body.scale
     series |= {"drive": series["total"] - geometric, "geometric": geometric}
     if limit is None:
-        return Parts(**series)
+        return ErrorParts(**series)
     here, there = shared(series["time_s"], limit.time_s, period_s)
     if len(here) < SHARED:
-        return Parts(**series)
+        return ErrorParts(**series)
     series = {name: values[here] for name, values in series.items()}
     floor = limit.error[there]
-    return Parts(**series, floor=floor, discretisation=series["geometric"] - floor)
+    return ErrorParts(**series, floor=floor, discretisation=series["geometric"] - floor)
 
 
 def shared(a_s: Array, b_s: Array, period_s: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -14,7 +14,7 @@ from models.errors import CrankcheckError
 from models.motion import Motion, State
 from models.scene import Scene
 from models.scene.cut_scenes import SegmentedScene
-from models.scene.hard import Chain
+from models.scene.hard import WindowChain
 from reports.stability.error_series import ErrorSeries
 from reports.stability.matrix import CaseFacts, Outcome
 from reports.way.way import own_parts
@@ -63,7 +63,7 @@ class Trial:
     open_m: float = 0.0
     settled_turns: float = 0.0
     limit_rad: float = math.nan
-    chain: Chain | None = None
+    chain: WindowChain | None = None
     throw: Throw | None = None
     followed_s: float = math.inf
     segments: int = 0

@@ -31,7 +31,7 @@ MOST_BYTES = 1_000_000_000
 
 
 @dataclass(frozen=True)
-class Part:
+class TablePart:
     """A file of a table that is as it was written. Its name tells the table, the time of writing,
     how many rows it has, and the hash of its bytes, so that no byte of it changes unseen, and what
     is lost with it is known."""
@@ -76,13 +76,13 @@ def write_part(place: Path, table: str, rows: pa.Table, time_ns: int) -> None:
     write(place / f"{table}-{time_ns:020d}-{rows.num_rows}-{_seal(raw)}.parquet", raw)
 
 
-def open_part(path: Path) -> Part:
+def open_part(path: Path) -> TablePart:
     """The part in a file. Raises UnreadableError for one that is not as it was written."""
     raw = regular_bytes(path, MOST_BYTES)
     if not path.stem.endswith(_seal(raw)):
         whole = raw.endswith(MAGIC)
         raise UnreadableError("not as it was written: its checksum differs" * whole or "cut short")
-    return Part(path, pq.ParquetFile(pa.BufferReader(raw)))
+    return TablePart(path, pq.ParquetFile(pa.BufferReader(raw)))
 
 
 def _seal(raw: bytes) -> str:
@@ -97,7 +97,7 @@ class Folder:
     ``fault`` is what is wrong with the folder itself, empty where it can be looked through.
     """
 
-    parts: Mapping[str, Part]
+    parts: Mapping[str, TablePart]
     faults: Mapping[str, UnreadableError]
     foreign: tuple[str, ...] = ()
     fault: str = ""

@@ -18,7 +18,7 @@ from models.errors import CrankcheckError, few
 from models.files.inputs import UnreadableError
 from reports.store.folder import (
     Folder,
-    Part,
+    TablePart,
     being_written,
     has_parts,
     is_written,
@@ -51,7 +51,7 @@ UNASKED = f"cells that no sweep in {MANIFEST} asked for; left out, until one ask
 
 
 @dataclass(frozen=True)
-class Examined:
+class ExaminedStore:
     """A store, looked through."""
 
     manifest: Manifest
@@ -68,7 +68,7 @@ class Examined:
             tables.append(rows if all(counting) else rows.filter(pa.array(counting)))
         return pa.concat_tables(tables, promote_options="permissive") if tables else None
 
-    def _counting(self, table: str, part: Part) -> Sequence[bool]:
+    def _counting(self, table: str, part: TablePart) -> Sequence[bool]:
         """Which rows of a part count: those written last, of cells that were asked for."""
         last, asked = self.folders[table].last[part.path.name], self.manifest.lines
         if table == "timings" or not asked:
@@ -77,7 +77,7 @@ class Examined:
         return [each and line in asked for each, line in zip(last, lines, strict=True)]
 
 
-def examine(folder: Path) -> Examined:
+def examine(folder: Path) -> ExaminedStore:
     """Look through a store.
 
     Raises
@@ -95,7 +95,7 @@ def examine(folder: Path) -> Examined:
     except UnreadableError as error:
         manifest = Manifest()
         damage.append(Damage(MANIFEST, str(error), aside=os.path.lexists(folder / MANIFEST)))
-    whole = Examined(manifest, folders)
+    whole = ExaminedStore(manifest, folders)
     damage += [*_cells(folder, whole), *_timings(folder, folders["timings"])]
     for table, place in folders.items():
         damage += [
@@ -106,7 +106,7 @@ def examine(folder: Path) -> Examined:
     return replace(whole, damage=(*damage, *_harmless(folder, whole)))
 
 
-def _cells(folder: Path, store: Examined) -> Iterator[Damage]:
+def _cells(folder: Path, store: ExaminedStore) -> Iterator[Damage]:
     """Parts of cells that are lost, and what the manifest knows to be missing besides."""
     cells, lost = store.folders["cells"], 0
     for name, error in cells.faults.items():
@@ -140,7 +140,7 @@ def _asked(manifest: Manifest) -> dict[str, int]:
     return {line: len(steps) for line, steps in asked.items()}
 
 
-def _harmless(folder: Path, store: Examined) -> Iterator[Damage]:
+def _harmless(folder: Path, store: ExaminedStore) -> Iterator[Damage]:
     """What is not of the store, or of cells that nobody asked for."""
     asked, parts = store.manifest.lines, store.folders["cells"].parts
     unasked = {
@@ -169,7 +169,7 @@ class Stored:
     manifest: Manifest
     cells: pd.DataFrame
     timings: pd.DataFrame
-    examined: Examined | None = field(default=None, repr=False, compare=False)
+    examined: ExaminedStore | None = field(default=None, repr=False, compare=False)
 
     @property
     def damage(self) -> tuple[Damage, ...]:
@@ -228,7 +228,7 @@ def read_store(folder: Path) -> Stored:
     return Stored(folder, store.manifest, joined, timings, store)
 
 
-def _examined(folder: Path) -> Examined:
+def _examined(folder: Path) -> ExaminedStore:
     """A store, looked through, of which a sweep may write more meanwhile; one that came to its end
     since then is seen by its lock before, and one that began by its lock after.
 
@@ -301,7 +301,7 @@ def _rows(folder: Path, name: str, *columns: str) -> Iterator[tuple[Any, ...]]:
         yield from zip(*(part.column(column).to_pylist() for column in columns), strict=True)
 
 
-def _frame(store: Examined | None, name: str, nested: str = "") -> pd.DataFrame:
+def _frame(store: ExaminedStore | None, name: str, nested: str = "") -> pd.DataFrame:
     """What can be read of a table, or of the rows that one of its columns holds."""
     rows = store.table(name, nested) if store else None
     if rows is not None and nested:

@@ -26,7 +26,7 @@ from reports.store.manifest import (
     read_manifest,
     table,
 )
-from reports.store.reader import STOPPED, Examined, examine
+from reports.store.reader import STOPPED, ExaminedStore, examine
 from sim.engine import Run
 
 EVERY_S = 1.0
@@ -176,7 +176,7 @@ def _create(folder: Path, names: Iterable[str]) -> None:
         ) from None
 
 
-def mend(folder: Path, store: Examined) -> list[str]:
+def mend(folder: Path, store: ExaminedStore) -> list[str]:
     """Move what is damaged into the folder ``damaged``, and keep of a cell that is there several
     times the row that counts; gives the lines that say so.
 

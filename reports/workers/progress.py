@@ -20,7 +20,7 @@ LINE_S = 10.0
 """Between two lines where there is no terminal."""
 
 
-class _Rate(ProgressColumn):
+class _Pace(ProgressColumn):
     """Cells in a second."""
 
     def render(self, task: Bar) -> Text:
@@ -38,7 +38,7 @@ def progress_bar(console: Console, what: str, total: int) -> Iterator[Callable[[
             TextColumn(f"{what:8}"),
             BarColumn(),
             MofNCompleteColumn(),
-            _Rate(),
+            _Pace(),
             TextColumn("left"),
             TimeRemainingColumn(),
         )

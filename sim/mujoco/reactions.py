@@ -22,7 +22,7 @@ from sim.engine.measure import arms, directions
 
 
 @dataclass(frozen=True)
-class Wrench:
+class JointWrench:
     """A ``force`` (T, 2) [N] and its ``moment`` (T,) [N m] about ``place`` (T, 2) [m]."""
 
     force: Array
@@ -34,13 +34,13 @@ class Wrench:
         x, y = (self.place - place).T
         return np.asarray(self.moment + x * self.force[:, 1] - y * self.force[:, 0])
 
-    def __neg__(self) -> Wrench:
-        return Wrench(-self.force, -self.moment, self.place)
+    def __neg__(self) -> JointWrench:
+        return JointWrench(-self.force, -self.moment, self.place)
 
-    def __sub__(self, other: Wrench) -> Wrench:
+    def __sub__(self, other: JointWrench) -> JointWrench:
         """About the place of the first."""
         moment = self.moment - other.moment_about(self.place)
-        return Wrench(self.force - other.force, moment, self.place)
+        return JointWrench(self.force - other.force, moment, self.place)
 
 
 PROBE = """<mujoco>
@@ -119,12 +119,12 @@ class JointForces:
         pulls = model.tendon_stiffness * longer + model.tendon_damping * data.ten_velocity
         self._pulls.append(self._senses * pulls)
 
-    def from_parent(self, limb: Limb) -> Wrench:
+    def from_parent(self, limb: Limb) -> JointWrench:
         """What the parent exerts on a limb, about the place where MuJoCo has it: the centre of mass
         of the tree that the limb is part of."""
         k = self._limbs.index(limb)
         given = np.array([each[k] for each in self._wrenches])
-        return Wrench(given[:, 1:], given[:, 0], np.array([each[k] for each in self._centres]))
+        return JointWrench(given[:, 1:], given[:, 0], np.array([each[k] for each in self._centres]))
 
     def of_load(self, load: int) -> Array:
         """The size of a load, (T,)."""
@@ -265,7 +265,7 @@ class _Reactions:
                 self._pin(slider.point, block, body, load.force)
         return moment
 
-    def _from_parent(self, limb: Limb) -> Wrench:
+    def _from_parent(self, limb: Limb) -> JointWrench:
         """What the parent exerts on a limb: what MuJoCo has, less the loads and springs on all that
         hangs on the limb, which it takes to come through the joint."""
         given = self._joint_forces.from_parent(limb)
@@ -278,23 +278,23 @@ class _Reactions:
                 given = given - acting
         return given
 
-    def _load(self, k: int) -> tuple[str, Wrench]:
+    def _load(self, k: int) -> tuple[str, JointWrench]:
         """The body on which a load acts in MuJoCo, and what it exerts there."""
         load = list(self._scene.loads.values())[k]
         size, at = self._joint_forces.of_load(k), point_of_application(self._scene, load)
         place = self._place(at.body, at.place)
         if load.point is None:
-            return at.body, Wrench(np.zeros_like(place), size, place)
+            return at.body, JointWrench(np.zeros_like(place), size, place)
         angle = at.direction_rad + (self._theta(at.body) if at.turns else np.zeros_like(size))
         force = size[:, None] * directions(angle)
-        return at.body, Wrench(force, np.zeros_like(size), place)
+        return at.body, JointWrench(force, np.zeros_like(size), place)
 
-    def _ends(self, spring: Spring, pull: Array) -> list[tuple[str, Wrench]]:
+    def _ends(self, spring: Spring, pull: Array) -> list[tuple[str, JointWrench]]:
         """The two bodies that a spring is between, and what it exerts on each."""
         if isinstance(spring, PinSpring):
             first, second = spring.bodies
             place = self._point(second, spring.point)
-            couple = Wrench(np.zeros_like(place), -pull, place)
+            couple = JointWrench(np.zeros_like(place), -pull, place)
             return [(first, -couple), (second, couple)]
         if isinstance(spring, LineSpring):
             (first, a), (second, b) = line_ends(self._scene, spring)
@@ -308,7 +308,7 @@ class _Reactions:
             start = end = self._point(second, slide.slider.point)
             axis = self._along(slide.slider)
         force, none = pull[:, None] * axis, np.zeros_like(pull)
-        return [(first, Wrench(force, none, start)), (second, Wrench(-force, none, end))]
+        return [(first, JointWrench(force, none, start)), (second, JointWrench(-force, none, end))]
 
     def _along(self, slider: Slider) -> Array:
         """The direction of the line of a slider, (T, 2)."""

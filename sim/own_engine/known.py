@@ -119,7 +119,7 @@ def _kind(value: object) -> str:
 
 
 @dataclass(frozen=True)
-class _Known:
+class _KnownEngine:
     """An engine, the object that it was made of, and how that is spelled."""
 
     engine: Engine
@@ -127,7 +127,7 @@ class _Known:
     spelling: str
 
 
-_known: dict[str, _Known] = {}
+_known: dict[str, _KnownEngine] = {}
 _told: dict[str, str] = {}
 
 
@@ -186,7 +186,7 @@ def _met(spelling: str, ours: Collection[str]) -> Engine:
         )
     before = next((o for n, o in _known.items() if n.casefold() == engine.name.casefold()), None)
     if before is None:
-        _known[engine.name] = _Known(watched(spelling, engine), value, spelling)
+        _known[engine.name] = _KnownEngine(watched(spelling, engine), value, spelling)
     elif before.value is not value:
         raise EngineError(
             f"engine {spelling}: it calls itself {engine.name}, as {before.spelling} does; give "

@@ -11,7 +11,7 @@ from models.files.assemble import scene_text
 from models.files.reading import every_shipped, load_scene, parse_scene, shipped
 from models.scene import Driver
 from models.scene.driver import Released, let_go
-from models.scene.hard import Chain
+from models.scene.hard import WindowChain
 from models.scene.loads import LineSpring, PinSpring, SlideSpring
 from tests.worlds.let_go import EVERYTHING
 
@@ -42,7 +42,7 @@ def test_free_scenes_ship_and_all_of_them_are_let_go() -> None:
 
 
 def test_the_shipped_chain_is_the_one_that_is_made() -> None:
-    made, read = Chain(2).scene(), load_scene("fourbar-chain")
+    made, read = WindowChain(2).scene(), load_scene("fourbar-chain")
     assert read.driver == Driver("rocker0", Released(math.pi / 2, -1.0, 10.0))
     words = {key: getattr(read, key) for key in ("name", "source", "note", "driver")}
     assert replace(made, **words) == read

@@ -19,7 +19,7 @@ from models.files.reading import load_scene, scene_texts
 from models.mjcf.document import build
 from models.mjcf.options import Writing
 from models.motion import Crossing, Motion
-from models.scene.hard import Chain
+from models.scene.hard import WindowChain
 from models.scene.laws import ConstantSpeed
 from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes
 from sim.run import run
@@ -27,7 +27,7 @@ from tests.second_opinions import newton
 
 SCENE = load_scene("fourbar-lecture-1")
 TIMES = np.linspace(0.0, 0.1, 3)
-CHAIN = ChainMotion(Chain(2))
+CHAIN = ChainMotion(WindowChain(2))
 NOT_NUMBERS = {
     "text": (["a", "b"], "could not convert string to float: .*a"),
     "one text": ("soon", "could not convert string to float: .*soon"),

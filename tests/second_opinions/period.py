@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.free.chart import Arc, Chart
+from analytic.free.chart import Chart, LimitedScene
 from analytic.free.machine import Machine
 from analytic.kinematics import repeats_after
 from models.array import Array
@@ -61,7 +61,7 @@ def period(scene: Scene) -> Period:
             f"{scene.name}: loads, dampers or friction put in energy or take it; a period is that "
             "of weights and springs alone"
         )
-    arc = Arc.of(scene, law.start_rad)
+    arc = LimitedScene.of(scene, law.start_rad)
     machine = Machine(scene, Chart(arc, None))
     start = np.array([law.start_rad])
     speed = np.array([law.speed_rad_s])
@@ -103,7 +103,7 @@ def _settled(scene: Scene, rule: Callable[[int], float]) -> float:
 
 
 def _turning_points(
-    arc: Arc, law: Released, left: Callable[[Array], Array], turn: float
+    arc: LimitedScene, law: Released, left: Callable[[Array], Array], turn: float
 ) -> tuple[float, float] | None:
     """The driver angles between which the motion swings, None where it turns over. Raises
     CrankcheckError where it passes a limit, or rests."""

@@ -13,7 +13,7 @@ from models.files.reading import load_scene
 from models.mjcf.options import has_control
 from models.motion import State
 from models.scene import Driver
-from models.scene.hard import Chain
+from models.scene.hard import WindowChain
 from models.scene.laws import ConstantSpeed, Oscillating
 from reports.contract.subject import numbers
 from sim.engine import Engine, Poses, Run
@@ -28,17 +28,17 @@ from tests.worlds import runs
 DT_S = 1e-3
 
 
-def start_of(chain: Chain) -> State:
+def start_of(chain: WindowChain) -> State:
     return ChainMotion(chain).motion(np.zeros(1)).state()
 
 
-def ran(chain: Chain, engine: Any, profile: str = "tuned", **given: Any) -> Run:
+def ran(chain: WindowChain, engine: Any, profile: str = "tuned", **given: Any) -> Run:
     """A free run of 0.4 s of 1 ms steps unless told otherwise: the rods lean by 55 deg then."""
     given = {"dt_s": DT_S, "steps": 400, "drive": "free", **given}
     return run(chain.scene(), start_of(chain), engine, profile, **given)
 
 
-def angle_error(chain: Chain, dt_s: float, name: str) -> float:
+def angle_error(chain: WindowChain, dt_s: float, name: str) -> float:
     """The largest error of any rod, in rad."""
     result = ran(chain, name, dt_s=dt_s, steps=round(0.4 / dt_s))
     assert (result.status, result.reason) == ("ok", "")
@@ -53,12 +53,12 @@ def adapter(request: pytest.FixtureRequest, fake_engine: ModuleType) -> Engine:
     name = str(request.param)
     if name in ENGINES:
         return engine(name)
-    exact = ChainMotion(Chain(2))
+    exact = ChainMotion(WindowChain(2))
     made: Engine = fake_engine.FakeEngine(lambda _, t: exact.motion(t), velocity_shift=0.5)
     return made
 
 
-def opened(adapter: Engine | str, chain: Chain, profile: str = "tuned") -> Any:
+def opened(adapter: Engine | str, chain: WindowChain, profile: str = "tuned") -> Any:
     given = {"profile": profile, "dt_s": DT_S, "drive": "free", "start": start_of(chain)}
     return runs.opened(chain.scene(), adapter, **given)
 
@@ -67,7 +67,7 @@ def opened(adapter: Engine | str, chain: Chain, profile: str = "tuned") -> Any:
 def test_free_sessions_step_as_they_record_and_go_on_where_they_were(
     adapter: Engine, profile: str
 ) -> None:
-    stepped, recorded, whole = (opened(adapter, Chain(2), profile) for _ in range(3))
+    stepped, recorded, whole = (opened(adapter, WindowChain(2), profile) for _ in range(3))
     stepped.step(60)
     first, second = recorded.record(20, 1), recorded.record(40, 1)
     one = numbers(whole.record(60, 1).poses)
@@ -79,7 +79,7 @@ def test_free_sessions_step_as_they_record_and_go_on_where_they_were(
 @pytest.mark.parametrize(("name", "order", "most"), [("mujoco", 4.0, 1e-10), ("pymunk", 2.0, 2e-5)])
 def test_a_rod_falls_as_a_pendulum_does(name: str, order: float, most: float) -> None:
     """No loop to close: the order is that of the integrator."""
-    rough, fine = angle_error(Chain(0), 8e-3, name), angle_error(Chain(0), 2e-3, name)
+    rough, fine = angle_error(WindowChain(0), 8e-3, name), angle_error(WindowChain(0), 2e-3, name)
     assert np.log(rough / fine) / np.log(4.0) == pytest.approx(order, abs=0.2)
     assert fine < most
 
@@ -89,7 +89,10 @@ def test_a_rod_falls_as_a_pendulum_does(name: str, order: float, most: float) ->
 def test_free_windows_converge_to_the_reduced_equation(
     name: str, order: float, most: float, count: int
 ) -> None:
-    rough, fine = angle_error(Chain(count), 4e-3, name), angle_error(Chain(count), 1e-3, name)
+    rough, fine = (
+        angle_error(WindowChain(count), 4e-3, name),
+        angle_error(WindowChain(count), 1e-3, name),
+    )
     assert np.log(rough / fine) / np.log(4.0) > order - 0.2
     assert fine < most
 
@@ -97,7 +100,7 @@ def test_free_windows_converge_to_the_reduced_equation(
 @pytest.mark.parametrize("name", ENGINES)
 def test_the_law_of_the_driver_plays_no_part(name: str) -> None:
     """Neither in the motion, nor in what step is too long or what speed is too high."""
-    chain = Chain(1)
+    chain = WindowChain(1)
     motions = []
     for law in (ConstantSpeed(0.0, 1e-9), Oscillating(3.0, 0.1, 1e6)):
         scene = replace(chain.scene(), driver=Driver("rocker0", law))
@@ -108,7 +111,7 @@ def test_the_law_of_the_driver_plays_no_part(name: str) -> None:
 
 
 def test_what_hangs_on_the_crank_of_a_free_model_is_refused(fake_engine: ModuleType) -> None:
-    chain = Chain(1)
+    chain = WindowChain(1)
     fake = fake_engine.FakeEngine(lambda _, t: ChainMotion(chain).motion(t))
     facts = opened(fake, chain).facts()
     told = (chain.scene(), start_of(chain))
@@ -125,7 +128,7 @@ def test_what_hangs_on_the_crank_of_a_free_model_is_refused(fake_engine: ModuleT
 def test_velocities_other_than_the_state_s_are_refused_whatever_the_law(
     fake_engine: ModuleType,
 ) -> None:
-    chain = Chain(1)
+    chain = WindowChain(1)
     fast = replace(chain.scene(), driver=Driver("rocker0", ConstantSpeed(0.0, 1e3)))
     fake = fake_engine.FakeEngine(lambda _, t: ChainMotion(chain).motion(t))
     facts = opened(fake, chain).facts()
@@ -138,7 +141,7 @@ def test_velocities_other_than_the_state_s_are_refused_whatever_the_law(
 
 
 def test_the_mjcf_of_a_free_crank_has_neither_flywheel_nor_motor() -> None:
-    chain = Chain(2)
+    chain = WindowChain(2)
     swinging = replace(chain.scene(), driver=Driver("rocker0", Oscillating(1.0, 0.5, 2.0)))
     held = resolved(engine("mujoco").profiles["as-shipped"], None)
     for scene in (chain.scene(), swinging):
@@ -157,18 +160,18 @@ def test_the_mjcf_of_a_free_crank_has_neither_flywheel_nor_motor() -> None:
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_a_free_crank_without_mass_is_unsupported_and_steps_too_long_are_refused(name: str) -> None:
-    scene = Chain(1).scene()
+    scene = WindowChain(1).scene()
     bare = replace(scene.links["rocker0"], mass_kg=0.0, inertia_kg_m2=0.0)
     light = replace(scene, links={**scene.links, "rocker0": bare})
-    result = run(light, start_of(Chain(1)), name, dt_s=DT_S, steps=10, drive="free")
+    result = run(light, start_of(WindowChain(1)), name, dt_s=DT_S, steps=10, drive="free")
     assert result.status == "unsupported"
     assert "rocker0: mass_kg 0" in result.reason
     with pytest.raises(EngineError, match=r"dt: 0\.5 s leaves 4 steps in a period of 2\.006 s"):
-        ran(Chain(1), name, dt_s=0.5)
+        ran(WindowChain(1), name, dt_s=0.5)
 
 
 def test_the_pace_of_free_motion_comes_from_the_state_and_from_gravity() -> None:
-    chain = Chain(1)
+    chain = WindowChain(1)
     scene, state = chain.scene(), start_of(chain)
     assert pace(scene, state, "prescribed") == 1.0
     assert pace(scene, state, "free") == pytest.approx(np.sqrt(9.81))
@@ -184,7 +187,7 @@ def test_the_pace_of_free_motion_comes_from_the_state_and_from_gravity() -> None
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_what_rests_without_weight_goes_on_resting(name: str) -> None:
-    chain = Chain(1, gravity_m_s2=0.0)
+    chain = WindowChain(1, gravity_m_s2=0.0)
     start = start_of(chain)
     still = replace(
         start,
@@ -206,11 +209,11 @@ def test_a_free_run_that_spins_away_is_diverged(fake_engine: ModuleType) -> None
             at = np.where(poses.time_s > 0.2, by, rod.omega)
             return replace(poses, bodies={**poses.bodies, "rocker1": replace(rod, omega=at)})
 
-        exact = ChainMotion(Chain(1))
+        exact = ChainMotion(WindowChain(1))
         return fake_engine.FakeEngine(lambda _, t: exact.motion(t), disturb=faster)
 
-    assert ran(Chain(1), spun(2e6)).status == "ok"
-    apart = ran(Chain(1), spun(4e6))
+    assert ran(WindowChain(1), spun(2e6)).status == "ok"
+    apart = ran(WindowChain(1), spun(4e6))
     assert (apart.status, apart.stopped_at_s) == ("diverged", pytest.approx(0.2))
 
 
@@ -221,9 +224,9 @@ def test_the_energy_of_a_run_is_that_of_the_closed_form_at_the_instants_of_the_v
     name: str, profile: str
 ) -> None:
     """MuJoCo's Euler steps have velocities half a step early, pymunk's are half a step late."""
-    turning, offs = ChainMotion(Chain(0)), []
+    turning, offs = ChainMotion(WindowChain(0)), []
     for dt_s in (4e-3, 1e-3):
-        result = ran(Chain(0), name, profile, dt_s=dt_s, steps=round(0.4 / dt_s))
+        result = ran(WindowChain(0), name, profile, dt_s=dt_s, steps=round(0.4 / dt_s))
         theta, omega, _ = turning.at(result.velocity_time_s)
         kinetic, height = omega**2 / 6, 0.5 * np.sin(theta)
         pairs = (

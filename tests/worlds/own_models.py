@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 
 from reports.judge.cell import Checked
-from reports.own_model.account import Account, Line, checked_line, read_here
+from reports.own_model.account import ModelAccount, ModelLine, checked_line, read_here
 from reports.own_model.assembly import ModelRequest
 from reports.own_model.judged import JudgedModel, judged_lines
 
@@ -66,16 +66,16 @@ def judged(text: str, joint: str, turns: float = 1.0, dt_s: float | None = None)
         return judged_lines(account, checked_line, lambda _: None)
 
 
-def read_text(folder: Path, text: str | bytes, **asked: object) -> Account:
+def read_text(folder: Path, text: str | bytes, **asked: object) -> ModelAccount:
     """A model of this text; its joint A is driven at 10 rad/s where nothing else is asked."""
     path = folder / "model.xml"
     path.write_bytes(text.encode() if isinstance(text, str) else text)
     return read_here(ModelRequest(path, **{"joint": "A", "speed_rad_s": 10.0, **asked}))  # type: ignore[arg-type]
 
 
-def line(account: Account, profile: str) -> Checked:
-    return checked_line(Line(account, profile))
+def line(account: ModelAccount, profile: str) -> Checked:
+    return checked_line(ModelLine(account, profile))
 
 
-def texts(account: Account) -> list[str]:
+def texts(account: ModelAccount) -> list[str]:
     return [each.text for each in account.disturbances]

@@ -16,7 +16,7 @@ from models.array import Array
 from models.files.reading import load_scene
 from models.motion import Motion
 from models.scene import Scene
-from reports.causes.cause import Case, Cause
+from reports.causes.cause import Cause, LogCase
 from reports.causes.find import causes
 from reports.compare.beside import Truth
 from reports.logs.channel import Channel, OwnLog, Reading
@@ -40,13 +40,13 @@ class Sheet:
     stamp: tuple[str, str] = ("t", "s")
 
     @property
-    def case(self) -> Case:
+    def case(self) -> LogCase:
         readings = tuple(
             Reading(channel, self.values[column], self.time_s)
             for column, channel in self.channels.items()
         )
         log = OwnLog("planted", self.scene, self.time_s, readings, self.stamp)
-        return Case(log, Truth(self.scene, bound=False), self.limits)
+        return LogCase(log, Truth(self.scene, bound=False), self.limits)
 
     def put(self, values: Mapping[str, Array]) -> Sheet:
         return replace(self, values={**self.values, **values})

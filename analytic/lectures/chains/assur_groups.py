@@ -102,7 +102,7 @@ MOST_LEFT = 14
 
 
 @dataclass(frozen=True)
-class DrivenJoint:
+class DrivenChainJoint:
     """A joint that may drive: its ``pin`` or ``slider``, and the two bodies that it moves against
     each other."""
 
@@ -134,7 +134,7 @@ class StructureByDriver:
     ``left`` are links that fall into none: the joint can not move then, or leaves them loose.
     """
 
-    joint: DrivenJoint
+    joint: DrivenChainJoint
     groups: tuple[ClassedGroup, ...]
     left: tuple[str, ...]
     is_own: bool
@@ -159,16 +159,16 @@ def by_drivers(scene: Scene, structure: Structure) -> list[StructureByDriver]:
     return [_driven(scene, structure, joint) for joint in _joints(structure)]
 
 
-def _joints(structure: Structure) -> Iterator[DrivenJoint]:
+def _joints(structure: Structure) -> Iterator[DrivenChainJoint]:
     """Every pin of two bodies, and every slider; of a pin that more bodies share, every pair."""
     for pin, bodies in structure.pins.items():
         for base, body in itertools.combinations(bodies, 2):
-            yield DrivenJoint(base, body, pin, None)
+            yield DrivenChainJoint(base, body, pin, None)
     for name, (body, base) in structure.prismatics.items():
-        yield DrivenJoint(base, body, None, name)
+        yield DrivenChainJoint(base, body, None, name)
 
 
-def _driven(scene: Scene, structure: Structure, joint: DrivenJoint) -> StructureByDriver:
+def _driven(scene: Scene, structure: Structure, joint: DrivenChainJoint) -> StructureByDriver:
     """The groups with a joint driven: its two bodies are one link of changing shape."""
     own = Compound(f"{joint.base} + {joint.body}", joint.base, joint.body, joint.pin, joint.slider)
     if GROUND in (joint.base, joint.body):

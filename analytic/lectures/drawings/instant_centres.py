@@ -57,7 +57,7 @@ class Centre:
 
 
 @dataclass(frozen=True)
-class _Known:
+class _KnownCentres:
     """A centre in homogeneous coordinates (3,)."""
 
     at: Array
@@ -74,28 +74,28 @@ def instant_centres(placement: PlacedMechanism) -> dict[Pair, Centre]:
     return {pair: _centre(known, size) for pair, known in found.items()}
 
 
-def _centre(known: _Known, size: float) -> Centre:
+def _centre(known: _KnownCentres, size: float) -> Centre:
     x, y, w = known.at
     if abs(w) < FAR:
         return Centre(None, -quarter_turn(np.array([x, y])), known.by)
     return Centre(size * np.array([x, y]) / w, None, known.by)
 
 
-def _of_joints(placement: PlacedMechanism, size: float) -> dict[Pair, _Known]:
+def _of_joints(placement: PlacedMechanism, size: float) -> dict[Pair, _KnownCentres]:
     """The centres that pins and sliders show."""
-    found: dict[Pair, _Known] = {}
+    found: dict[Pair, _KnownCentres] = {}
     for point, bodies in placement.structure.pins.items():
-        at = _Known(_unit(np.array([*placement.points[point] / size, 1.0])))
+        at = _KnownCentres(_unit(np.array([*placement.points[point] / size, 1.0])))
         found |= {frozenset(pair): at for pair in itertools.combinations(bodies, 2)}
     for slider, ends in placement.structure.prismatics.items():
         across = quarter_turn(placement.along(slider))
-        found[frozenset(ends)] = _Known(np.array([*across, 0.0]))
+        found[frozenset(ends)] = _KnownCentres(np.array([*across, 0.0]))
     return found
 
 
-def _crossings(bodies: list[str], found: Mapping[Pair, _Known]) -> dict[Pair, _Known]:
+def _crossings(bodies: list[str], found: Mapping[Pair, _KnownCentres]) -> dict[Pair, _KnownCentres]:
     """The centres that the known ones lead to at once, each by the two lines that cross best."""
-    new: dict[Pair, _Known] = {}
+    new: dict[Pair, _KnownCentres] = {}
     for pair in map(frozenset, itertools.combinations(bodies, 2)):
         if pair in found:
             continue
@@ -106,12 +106,12 @@ def _crossings(bodies: list[str], found: Mapping[Pair, _Known]) -> dict[Pair, _K
         ]
         at, by = max(crossed, key=lambda each: _length(each[0]), default=(np.zeros(3), ()))
         if _length(at) > SURE:
-            new[pair] = _Known(_unit(at), by)
+            new[pair] = _KnownCentres(_unit(at), by)
     return new
 
 
 def _lines(
-    pair: Pair, bodies: list[str], found: Mapping[Pair, _Known]
+    pair: Pair, bodies: list[str], found: Mapping[Pair, _KnownCentres]
 ) -> Iterator[tuple[tuple[Pair, Pair], Array]]:
     """The lines that the centre of a pair is on, one for each third body that both have a centre
     with, but for two that are one."""
@@ -167,7 +167,7 @@ def centrodes(motion: Motion, link: str, point: str) -> Centrodes:
 
 
 @dataclass(frozen=True)
-class Circle:
+class CentreCircle:
     """A circle through the velocity pole [m]: its middle (2,) and radius."""
 
     middle: Array
@@ -180,8 +180,8 @@ class CurvatureCircles:
     line), and acceleration pole of a body [m]."""
 
     pole: Array
-    inflection: Circle
-    still_speed: Circle | None
+    inflection: CentreCircle
+    still_speed: CentreCircle | None
     acceleration_pole: Array
 
 
@@ -210,5 +210,5 @@ def curvature_circles(drawn: DrawnPolygons, link: str) -> CurvatureCircles:
     return CurvatureCircles(pole, inflection, still, np.asarray(pole + away))
 
 
-def _through(pole: Array, diameter: Array) -> Circle:
-    return Circle(np.asarray(pole + 0.5 * diameter), float(np.hypot(*diameter)) / 2)
+def _through(pole: Array, diameter: Array) -> CentreCircle:
+    return CentreCircle(np.asarray(pole + 0.5 * diameter), float(np.hypot(*diameter)) / 2)

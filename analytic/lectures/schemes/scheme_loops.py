@@ -74,7 +74,7 @@ IN_PLANE = [2, 3, 4]
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedLink:
     """A link: its pose (4, 4) from the drawn one, and its twist for each freedom (6, f)."""
 
     pose: Array
@@ -107,9 +107,9 @@ class Loops:
         tree, closing = _spanned(scheme)
         return cls(scheme, frame, chains, columns, tree, closing, used)
 
-    def placed(self, q: Array) -> dict[str, Placed]:
+    def placed(self, q: Array) -> dict[str, PlacedLink]:
         """Every link as the joints of the tree place it, their freedoms at ``q`` (f,)."""
-        links = {GROUND: Placed(np.eye(4), np.zeros((6, self.freedoms)))}
+        links = {GROUND: PlacedLink(np.eye(4), np.zeros((6, self.freedoms)))}
         for joint, known, link in self.tree:
             links[link] = self._beyond(joint, known, links[known], q)
         return links
@@ -146,7 +146,7 @@ class Loops:
             joint.name: self._beyond(
                 joint,
                 joint.between[0],
-                Placed(links[joint.between[0]].pose, 0 * links[GROUND].twists),
+                PlacedLink(links[joint.between[0]].pose, 0 * links[GROUND].twists),
                 q,
             ).twists[:, self.columns[joint.name]]
             for joint in self.scheme.joints
@@ -158,7 +158,7 @@ class Loops:
         kept = [column for joint in scheme.joints for column in self.columns[joint.name]]
         return loops, q[kept]
 
-    def _beyond(self, joint: SchemeJoint, known: str, link: Placed, q: Array) -> Placed:
+    def _beyond(self, joint: SchemeJoint, known: str, link: PlacedLink, q: Array) -> PlacedLink:
         """Where a joint puts the link on its other side than ``known``."""
         first = self.columns[joint.name].start
         backward = known != joint.between[0]
@@ -169,7 +169,7 @@ class Loops:
             factor = -element.factor if backward else element.factor
             twists[:, column] += factor * carried(pose, element.twist)
             pose = pose @ displaced(element.twist, factor * q[column])
-        return Placed(pose, twists)
+        return PlacedLink(pose, twists)
 
 
 def _spanned(

@@ -1,8 +1,8 @@
 """Burmester's points: where a body can be held by a crank in four and in five of its positions.
 
 A point of the body that lies on one circle in all positions is a circle point, the middle of that
-circle its centre point; the two are the moving and the fixed pivot of a crank, here a `Dyad`. With
-e_j = exp(i alpha_j) and d_j the displacements from the first position, the point w is at
+circle its centre point; the two are the moving and the fixed pivot of a crank, here a `PoseDyad`.
+With e_j = exp(i alpha_j) and d_j the displacements from the first position, the point w is at
 e_j w + d_j, and with its centre m
 
     |d|^2 + d' e w + d e' w' - m' ((e - 1) w + d) - m ((e' - 1) w' + d') = 0      (' conjugates)
@@ -18,7 +18,7 @@ from collections.abc import Sequence
 import numpy as np
 from flint import acb, acb_mat, acb_poly, arb, ctx
 
-from analytic.lectures.synthesis.pose import Dyad, Pose
+from analytic.lectures.synthesis.pose import PlanePose, PoseDyad
 from models.array import Array
 from models.errors import CrankcheckError
 
@@ -34,7 +34,7 @@ SWEEP = 720
 """Turns of the compatibility linkage's first link that the curves are drawn by."""
 
 
-def five_positions(poses: Sequence[Pose]) -> list[Dyad]:
+def five_positions(poses: Sequence[PlanePose]) -> list[PoseDyad]:
     """All real dyads of five positions: none, two or four, in no order.
 
     Linear in w m', m', m and w, the four equations leave a quartic in w'. Its roots are isolated in
@@ -57,7 +57,7 @@ def five_positions(poses: Sequence[Pose]) -> list[Dyad]:
     )
 
 
-def _real_dyads(poses: Sequence[Pose]) -> list[Dyad] | None:
+def _real_dyads(poses: Sequence[PlanePose]) -> list[PoseDyad] | None:
     """The real dyads; None where balls of this size leave open which they are."""
     rows = [_row(poses[0], pose) for pose in poses[1:]]
     quartic, numerators, over = _quartic(rows)
@@ -78,14 +78,14 @@ def _real_dyads(poses: Sequence[Pose]) -> list[Dyad] | None:
         if meets == [k]:
             origin = poses[0].point
             place, centre = complex(w) + origin, complex(m) + origin
-            dyads.append(Dyad(centre, poses[0].back(place)))
+            dyads.append(PoseDyad(centre, poses[0].back(place)))
     return dyads
 
 
 Row = tuple[acb, ...]
 
 
-def _row(first: Pose, pose: Pose) -> Row:
+def _row(first: PlanePose, pose: PlanePose) -> Row:
     """Of one displacement, about the first reference point: the coefficients of w m', m', m (of
     degree 0 and 1 in w'), w, and the right side (of degree 0 and 1)."""
     angle = arb(pose.angle) - arb(first.angle)
@@ -134,7 +134,7 @@ def _quartic(rows: Sequence[Row]) -> tuple[acb_poly, tuple[acb_poly, ...], acb_p
     return of_wm * over - of_mc * of_w, (of_w, of_m, of_mc), over
 
 
-def four_positions(poses: Sequence[Pose], count: int = SWEEP) -> list[list[Dyad]]:
+def four_positions(poses: Sequence[PlanePose], count: int = SWEEP) -> list[list[PoseDyad]]:
     """Dyads of four positions along Burmester's curves: pieces of them, in order.
 
     A crank of vector v, turned by beta_j, has v (exp(i beta_j) - e_j) + m (1 - e_j) = d_j. Two of
@@ -159,14 +159,14 @@ def four_positions(poses: Sequence[Pose], count: int = SWEEP) -> list[list[Dyad]
     lead = int(np.argmin(np.abs(delta)))
     one, other = (lead + 1) % 3, (lead + 2) % 3
     beta = np.exp(2j * np.pi * np.arange(count + 1) / count)
-    pieces: list[list[Dyad]] = []
+    pieces: list[list[PoseDyad]] = []
     for sign in (1.0, -1.0):
         pieces += _sheet(first, e, d, a, delta, ground, (lead, one, other), beta, sign)
     return pieces
 
 
 def _sheet(
-    first: Pose,
+    first: PlanePose,
     e: Array,
     d: Array,
     a: Array,
@@ -175,7 +175,7 @@ def _sheet(
     order: tuple[int, int, int],
     beta: Array,
     sign: float,
-) -> list[list[Dyad]]:
+) -> list[list[PoseDyad]]:
     """The pieces of the curves with the compatibility linkage in one of its two assemblies."""
     lead, one, other = order
     rest = -(ground + delta[lead] * beta)
@@ -191,10 +191,10 @@ def _sheet(
         m = (x * d[one] - y * d[lead]) / det
         w = v + m
     good = np.isfinite(w) & np.isfinite(m) & (np.abs(det) > 1e-9)
-    pieces: list[list[Dyad]] = [[]]
+    pieces: list[list[PoseDyad]] = [[]]
     for place, centre, is_one in zip(w, m, good, strict=True):
         if is_one:
-            dyad = Dyad(complex(centre) + first.point, first.back(complex(place) + first.point))
+            dyad = PoseDyad(complex(centre) + first.point, first.back(complex(place) + first.point))
             pieces[-1].append(dyad)
         elif pieces[-1]:
             pieces.append([])

@@ -7,18 +7,18 @@ from analytic.lectures.synthesis.burmester import five_positions, four_positions
 from analytic.lectures.synthesis.design import (
     PIVOTS,
     CarriedBody,
-    Circle,
-    Curve,
     Dot,
+    DrawingStep,
+    DrawnCircle,
+    DrawnCurve,
     Element,
     Proposal,
     Segment,
-    Step,
 )
 from analytic.lectures.synthesis.driving_dyad import swings_little, with_driving_dyad
 from analytic.lectures.synthesis.pose import (
-    Dyad,
-    Pose,
+    PlanePose,
+    PoseDyad,
     about_bisector,
     about_circumcentre,
     about_given_pivot,
@@ -29,12 +29,12 @@ from analytic.lectures.synthesis.pose import (
 from models.errors import CrankcheckError
 from models.lectures.tasks.positions import CouplerTask
 
-Pair = tuple[Dyad, Dyad]
+Pair = tuple[PoseDyad, PoseDyad]
 BEYOND = 0.15
 """Of its length a bisector is drawn on."""
 
 
-def guiding_steps(body: CarriedBody, pair: Pair, *, inverted: bool) -> Iterator[Step]:
+def guiding_steps(body: CarriedBody, pair: Pair, *, inverted: bool) -> Iterator[DrawingStep]:
     """The construction: the body's places, bisectors or circles, and the links."""
     yield given_positions(body)
     for which, (dyad, pivot) in enumerate(zip(pair, PIVOTS, strict=True)):
@@ -45,13 +45,13 @@ def guiding_steps(body: CarriedBody, pair: Pair, *, inverted: bool) -> Iterator[
             yield _bisected(body, dyad, pivot, letter)
         else:
             words = f"{letter} is a circle point of all {len(body.poses)} positions, {pivot} the "
-            circle = Circle(dyad.fixed, dyad.radius(body.poses))
+            circle = DrawnCircle(dyad.fixed, dyad.radius(body.poses))
             dot = Dot(dyad.fixed, pivot, "result", fixed=True)
-            yield Step(words + "middle of its circle", (circle, dot))
+            yield DrawingStep(words + "middle of its circle", (circle, dot))
     yield links(body, pair)
 
 
-def given_positions(body: CarriedBody) -> Step:
+def given_positions(body: CarriedBody) -> DrawingStep:
     """The body in its positions: the line between two points of it, or a short one along its own
     x-axis."""
     elements: list[Element] = []
@@ -63,10 +63,10 @@ def given_positions(body: CarriedBody) -> Step:
         elements.append(Dot(pose.at(start), f"{name}{number}", "given"))
         if second:
             elements.append(Dot(pose.at(end), f"{second}{number}", "given"))
-    return Step(f"{name}{second} in its {len(body.poses)} positions", tuple(elements))
+    return DrawingStep(f"{name}{second} in its {len(body.poses)} positions", tuple(elements))
 
 
-def _bisected(body: CarriedBody, dyad: Dyad, pivot: str, letter: str) -> Step:
+def _bisected(body: CarriedBody, dyad: PoseDyad, pivot: str, letter: str) -> DrawingStep:
     """The fixed pivot on the bisectors between the places of a moving one."""
     places = [pose.at(dyad.moving) for pose in body.poses]
     elements: list[Element] = []
@@ -79,15 +79,15 @@ def _bisected(body: CarriedBody, dyad: Dyad, pivot: str, letter: str) -> Step:
     if len(places) == 2:
         words = f"{pivot} anywhere on the bisector of {names[0]}{names[1]}"
     else:
-        elements.append(Circle(dyad.fixed, dyad.radius(body.poses)))
+        elements.append(DrawnCircle(dyad.fixed, dyad.radius(body.poses)))
         words = (
             f"the bisectors of {names[0]}{names[1]} and {names[1]}{names[2]} meet in {pivot}, the "
             f"middle of the circle through {', '.join(names)}"
         )
-    return Step(words, tuple(elements))
+    return DrawingStep(words, tuple(elements))
 
 
-def _inverted(body: CarriedBody, dyad: Dyad, pivot: str, letter: str) -> Step:
+def _inverted(body: CarriedBody, dyad: PoseDyad, pivot: str, letter: str) -> DrawingStep:
     """The moving pivot from the places of a fixed one, as the body in position 1 sees it."""
     first = body.poses[0]
     places = [first.at(pose.back(dyad.fixed)) for pose in body.poses]
@@ -96,15 +96,15 @@ def _inverted(body: CarriedBody, dyad: Dyad, pivot: str, letter: str) -> Step:
     elements += [Dot(place, f"{pivot}'{number}") for number, place in enumerate(places[1:], 2)]
     for one, other in itertools.pairwise(places):
         elements.append(Segment(bisector(one, other).middle, centre, beyond=BEYOND))
-    elements += [Circle(centre, abs(centre - dyad.fixed)), Dot(centre, f"{letter}1", "result")]
-    return Step(
+    elements += [DrawnCircle(centre, abs(centre - dyad.fixed)), Dot(centre, f"{letter}1", "result")]
+    return DrawingStep(
         f"{pivot} as the body sees it: its places turned back into position 1 lie on a circle "
         f"about {letter}1",
         tuple(elements),
     )
 
 
-def links(body: CarriedBody, pair: Pair) -> Step:
+def links(body: CarriedBody, pair: Pair) -> DrawingStep:
     """The four-bar in its first position."""
     pins = [body.poses[0].at(dyad.moving) for dyad in pair]
     letters = [f"{body.letter(dyad.moving, which)}1" for which, dyad in enumerate(pair)]
@@ -118,17 +118,21 @@ def links(body: CarriedBody, pair: Pair) -> Step:
             for dyad, pivot in zip(pair, PIVOTS, strict=True)
         ),
     )
-    return Step(f"the links {PIVOTS[0]}{letters[0]}, {''.join(letters)} and "
+    return DrawingStep(f"the links {PIVOTS[0]}{letters[0]}, {''.join(letters)} and "
                 f"{PIVOTS[1]}{letters[1]}", elements)  # fmt: skip
 
 
-def curve_steps(body: CarriedBody, curves: Sequence[Sequence[Dyad]]) -> Iterator[Step]:
+def curve_steps(body: CarriedBody, curves: Sequence[Sequence[PoseDyad]]) -> Iterator[DrawingStep]:
     """Burmester's curves of four positions."""
     yield given_positions(body)
     centres = tuple(tuple(dyad.fixed for dyad in piece) for piece in curves)
     circles = tuple(tuple(body.poses[0].at(dyad.moving) for dyad in piece) for piece in curves)
-    yield Step("the centre-point curve: where fixed pivots can stand", (Curve(centres),))
-    yield Step("the circle-point curve: their moving pivots in position 1", (Curve(circles),))
+    yield DrawingStep(
+        "the centre-point curve: where fixed pivots can stand", (DrawnCurve(centres),)
+    )
+    yield DrawingStep(
+        "the circle-point curve: their moving pivots in position 1", (DrawnCurve(circles),)
+    )
 
 
 DISTANCES = (0.5, 1.0, 2.0)
@@ -179,7 +183,7 @@ def coupler_proposals(task: CouplerTask) -> tuple[list[Proposal], int]:
 
 def carried_body(task: CouplerTask) -> CarriedBody:
     """The body of a task in its positions."""
-    poses = tuple(Pose(point, angle) for point, angle in task.poses)
+    poses = tuple(PlanePose(point, angle) for point, angle in task.poses)
     return CarriedBody(task.name, task.source, poses, task.own_points)
 
 
@@ -250,7 +254,7 @@ def _many(task: CouplerTask, body: CarriedBody) -> tuple[list[Proposal], int]:
     return proposals, len(proposals)
 
 
-def _wished(task: CouplerTask, pieces: Sequence[Sequence[Dyad]]) -> list[Dyad]:
+def _wished(task: CouplerTask, pieces: Sequence[Sequence[PoseDyad]]) -> list[PoseDyad]:
     """Cranks along the curves: those whose fixed pivots stand where they are wished, if two do."""
     every = [dyad for piece in pieces for dyad in piece]
     region = task.pivots_in
@@ -258,7 +262,7 @@ def _wished(task: CouplerTask, pieces: Sequence[Sequence[Dyad]]) -> list[Dyad]:
     return _spread(inside if len(inside) > 1 else every, CURVE_DYADS)
 
 
-def _spread(every: Sequence[Dyad], count: int) -> list[Dyad]:
+def _spread(every: Sequence[PoseDyad], count: int) -> list[PoseDyad]:
     """About so many cranks, evenly."""
     return list(every[:: max(1, len(every) // count)])
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.kinematics import solve_driven
-from analytic.lectures.synthesis.pose import Dyad, Pose
+from analytic.lectures.synthesis.pose import PlanePose, PoseDyad
 from models.array import Array
 from models.lectures.draft import SPEED_RAD_S, Draft, bar, plate
 from models.motion import Motion
@@ -143,7 +143,7 @@ class Segment:
 
 
 @dataclass(frozen=True)
-class Circle:
+class DrawnCircle:
     """A circle, or an arc of it counter-clockwise from one direction to another [rad]."""
 
     centre: complex
@@ -153,18 +153,18 @@ class Circle:
 
 
 @dataclass(frozen=True)
-class Curve:
+class DrawnCurve:
     """A curve through many places, in pieces."""
 
     pieces: tuple[tuple[complex, ...], ...]
     look: Look = "auxiliary"
 
 
-Element = Dot | Segment | Circle | Curve
+Element = Dot | Segment | DrawnCircle | DrawnCurve
 
 
 @dataclass(frozen=True)
-class Step:
+class DrawingStep:
     """One step: what is done, in words, and what it draws."""
 
     words: str
@@ -189,7 +189,7 @@ class Proposal:
     driver: str
     positions: tuple[PrecisionPosition, ...]
     chosen: Mapping[str, str] = field(default_factory=dict)
-    steps: tuple[Step, ...] = ()
+    steps: tuple[DrawingStep, ...] = ()
     doubt: str = ""
     speed_rad_s: float = SPEED_RAD_S
     allowed: float = 0.0
@@ -209,16 +209,16 @@ class CarriedBody:
 
     name: str
     source: str
-    poses: tuple[Pose, ...]
+    poses: tuple[PlanePose, ...]
     points: Mapping[str, complex]
 
     def four_bar(
         self,
-        dyads: tuple[Dyad, Dyad],
+        dyads: tuple[PoseDyad, PoseDyad],
         driven: int = 0,
         *,
         chosen: Mapping[str, str] | None = None,
-        steps: Sequence[Step] = (),
+        steps: Sequence[DrawingStep] = (),
     ) -> Proposal:
         """The four-bar whose coupler the body is, held by two dyads, the first of which stands on
         O2; ``driven`` is which of them (0 or 1)."""
@@ -240,7 +240,7 @@ class CarriedBody:
         told = {**(chosen or {}), "driven at": PIVOTS[driven]}
         return Proposal(draft, INPUT, positions, told, tuple(steps))
 
-    def asked(self, driver_rad: float, pose: Pose) -> PrecisionPosition:
+    def asked(self, driver_rad: float, pose: PlanePose) -> PrecisionPosition:
         """The body in a pose while the driver has an angle [rad]."""
         places = (AskedPlace(point, pose.at(place)) for point, place in self.points.items())
         return PrecisionPosition(driver_rad, (AskedAngle(COUPLER, pose.angle), *places))

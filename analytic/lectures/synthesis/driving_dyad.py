@@ -28,11 +28,11 @@ from dataclasses import dataclass, replace
 
 from analytic.lectures.synthesis.design import (
     INPUT,
-    Circle,
     Dot,
+    DrawingStep,
+    DrawnCircle,
     Proposal,
     Segment,
-    Step,
     letters_beside,
 )
 from models.errors import CrankcheckError
@@ -74,27 +74,29 @@ class ToAndFro:
         """Where the crank's pin is in a position, 0 or 1."""
         return self.pivot + cmath.rect(self.crank_m, self.angles[position])
 
-    def steps(self, ends: tuple[complex, complex], letters: tuple[str, str, str]) -> list[Step]:
+    def steps(
+        self, ends: tuple[complex, complex], letters: tuple[str, str, str]
+    ) -> list[DrawingStep]:
         """The construction; ``letters`` are the crank's pivot, its pin, the rocker's pin."""
         pivot, pin, end = letters
         middle = 0.5 * sum(ends)
         far = max(ends, key=lambda place: abs(place - self.pivot))
         return [
-            Step(
+            DrawingStep(
                 f"the chord {end}1{end}2, and {pivot} on its extension",
                 (Segment(far, self.pivot), Dot(self.pivot, pivot, "result", fixed=True)),
             ),
-            Step(
+            DrawingStep(
                 f"half of {end}1{end}2 is the crank: its circle meets the line in {pin}1 and "
                 f"{pin}2",
                 (
                     Segment(middle, ends[0]),
-                    Circle(self.pivot, self.crank_m),
+                    DrawnCircle(self.pivot, self.crank_m),
                     Dot(self.pin(0), f"{pin}1", "result"),
                     Dot(self.pin(1), f"{pin}2"),
                 ),
             ),
-            Step(
+            DrawingStep(
                 f"{pin}1{end}1 is the coupler",
                 (
                     Segment(self.pivot, self.pin(0), "result"),
@@ -152,7 +154,7 @@ def with_driving_dyad(proposal: Proposal) -> Iterator[Proposal]:
             dots = tuple(Dot(end, f"{on}{n}") for n, end in enumerate(ends, 1))
             steps = (
                 *proposal.steps,
-                Step(f"{on} on the input link, in both positions", dots),
+                DrawingStep(f"{on} on the input link, in both positions", dots),
                 *found.steps((ends[0], ends[1]), (O6, own_pin, on)),
             )
             told = {f"{O6} from the chord's middle": f"{distance:.6g} m", "beyond": f"{on}{beyond}"}

@@ -24,12 +24,12 @@ from analytic.lectures.synthesis.design import (
     INPUT,
     PIVOTS,
     AskedPlace,
-    Curve,
     Dot,
+    DrawingStep,
+    DrawnCurve,
     PrecisionPosition,
     Proposal,
     Segment,
-    Step,
 )
 from analytic.lectures.synthesis.path.candidate import POINT, drafted
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve
@@ -43,7 +43,7 @@ DRAWN = 240
 
 
 @dataclass(frozen=True)
-class StraightLine:
+class StraightLinkage:
     """A linkage that leads a point nearly straight, and the part over which it does [m]."""
 
     four_bar: CouplerCurve
@@ -71,7 +71,7 @@ def placed(
     length_m: float,
     start: complex,
     direction_rad: float,
-) -> StraightLine:
+) -> StraightLinkage:
     """A textbook's linkage, with its line from a place on, and its part of a length [m]."""
     by = length_m / part.length_m * cmath.exp(1j * direction_rad) / part.along
     four_bar = book.moved(by, start - by * part.start)
@@ -90,10 +90,12 @@ def placed(
         "change of speed": f"{100.0 * own.uneven:.3g} % of its mean",
     }
     proposal = Proposal(draft, INPUT, positions, chosen, _steps(four_bar, own, angles))
-    return StraightLine(four_bar, own, proposal)
+    return StraightLinkage(four_bar, own, proposal)
 
 
-def _steps(four_bar: CouplerCurve, part: StraightPart, angles: list[float]) -> tuple[Step, ...]:
+def _steps(
+    four_bar: CouplerCurve, part: StraightPart, angles: list[float]
+) -> tuple[DrawingStep, ...]:
     """The line, the linkage in the first position on it, and the curve with these positions."""
     end = part.start + part.length_m * part.along
     first = np.array(angles[:1])
@@ -106,8 +108,8 @@ def _steps(four_bar: CouplerCurve, part: StraightPart, angles: list[float]) -> t
     )
     pairs = ((four_bar.o2, a), (a, b), (four_bar.o4, b), (a, p), (b, p))
     return (
-        Step("the line, and its length", (Segment(part.start, end, "given"),)),
-        Step(
+        DrawingStep("the line, and its length", (Segment(part.start, end, "given"),)),
+        DrawingStep(
             "the linkage in the textbook's proportions",
             (
                 *(Segment(*pair, "result") for pair in pairs),
@@ -115,9 +117,9 @@ def _steps(four_bar: CouplerCurve, part: StraightPart, angles: list[float]) -> t
                 Dot(four_bar.o4, PIVOTS[1], "result", fixed=True),
             ),
         ),
-        Step(
+        DrawingStep(
             "its coupler curve, and where this is on the line",
-            (Curve((tuple(four_bar.at(spread).tolist()),)), *met),
+            (DrawnCurve((tuple(four_bar.at(spread).tolist()),)), *met),
         ),
     )
 
@@ -198,7 +200,7 @@ def _corner(a: complex, p: complex, scale: float) -> complex:
     return a + half + 1j * half / abs(half) * math.sqrt((SIDE * scale) ** 2 - abs(half) ** 2)
 
 
-def _exact_steps(points: tuple[complex, ...], places: list[complex]) -> tuple[Step, ...]:
+def _exact_steps(points: tuple[complex, ...], places: list[complex]) -> tuple[DrawingStep, ...]:
     """The way, and the linkage in its middle."""
     o2, o4, a, b, p = points
     c = a + p - b
@@ -207,6 +209,6 @@ def _exact_steps(points: tuple[complex, ...], places: list[complex]) -> tuple[St
     pivots = Dot(o2, "O2", "result", fixed=True), Dot(o4, "O4", "result", fixed=True)
     links = tuple(Segment(*pair, "result") for pair in pairs)
     return (
-        Step("the way of P", (Segment(places[0], places[-1], "given"), *dots)),
-        Step("the linkage in the middle of the way", (*links, *pivots)),
+        DrawingStep("the way of P", (Segment(places[0], places[-1], "given"), *dots)),
+        DrawingStep("the linkage in the middle of the way", (*links, *pivots)),
     )

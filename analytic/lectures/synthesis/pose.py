@@ -17,7 +17,7 @@ all distances that a mechanism has."""
 
 
 @dataclass(frozen=True)
-class Pose:
+class PlanePose:
     """Where a body is: its reference point [m], and the angle of its own x-axis [rad]."""
 
     point: complex
@@ -56,13 +56,13 @@ def bisector(first: complex, second: complex) -> Bisector:
     return Bisector(0.5 * (first + second), 1j * across / abs(across))
 
 
-def turn_between(first: Pose, second: Pose) -> float:
+def turn_between(first: PlanePose, second: PlanePose) -> float:
     """The angle from one position to another [rad], in (-pi, pi]."""
     turn = math.remainder(second.angle - first.angle, math.tau)
     return math.pi if turn == -math.pi else turn
 
 
-def pole(first: Pose, second: Pose) -> complex | None:
+def pole(first: PlanePose, second: PlanePose) -> complex | None:
     """The rotopole: the point about which a body turns from one position into the other; None of a
     pure translation, whose pole is at infinity, across the way."""
     turn = turn_between(first, second)
@@ -82,7 +82,7 @@ def circle_through(a: complex, b: complex, c: complex) -> complex | None:
     return a + 1j * (p * abs(q) ** 2 - q * abs(p) ** 2) / (2.0 * across)
 
 
-def refuse_coinciding(poses: Sequence[Pose], size: float) -> None:
+def refuse_coinciding(poses: Sequence[PlanePose], size: float) -> None:
     """Raise CrankcheckError where two positions are one, over a ``size`` [m]."""
     for j, second in enumerate(poses):
         for i, first in enumerate(poses[:j]):
@@ -95,29 +95,29 @@ def refuse_coinciding(poses: Sequence[Pose], size: float) -> None:
 
 
 @dataclass(frozen=True)
-class Dyad:
+class PoseDyad:
     """A crank: its fixed pivot [m], its moving pivot in the body's own frame [m]."""
 
     fixed: complex
     moving: complex
 
-    def radius(self, poses: Sequence[Pose]) -> float:
+    def radius(self, poses: Sequence[PlanePose]) -> float:
         """The distance of its pivots [m]."""
         return abs(poses[0].at(self.moving) - self.fixed)
 
-    def turns(self, poses: Sequence[Pose]) -> list[float]:
+    def turns(self, poses: Sequence[PlanePose]) -> list[float]:
         """Its angle in each position [rad]."""
         return [cmath.phase(pose.at(self.moving) - self.fixed) for pose in poses]
 
 
-def about_bisector(poses: Sequence[Pose], moving: complex, distance_m: float) -> Dyad:
+def about_bisector(poses: Sequence[PlanePose], moving: complex, distance_m: float) -> PoseDyad:
     """Of two positions: the fixed pivot on the bisector of a moving one's places, so far from the
     middle, to the left of its way. Raises CrankcheckError of a point that stays."""
     first, second = (pose.at(moving) for pose in poses)
-    return Dyad(bisector(first, second).at(distance_m), moving)
+    return PoseDyad(bisector(first, second).at(distance_m), moving)
 
 
-def about_circumcentre(poses: Sequence[Pose], moving: complex, letter: str) -> Dyad:
+def about_circumcentre(poses: Sequence[PlanePose], moving: complex, letter: str) -> PoseDyad:
     """Of three positions: the fixed pivot in the middle of the circle through a moving one's
     places. Raises CrankcheckError where they lie on a line."""
     places = [pose.at(moving) for pose in poses]
@@ -129,10 +129,10 @@ def about_circumcentre(poses: Sequence[Pose], moving: complex, letter: str) -> D
             f"infinity, along {across:.4g} deg; a crank can not hold it (a slider on that line "
             "can); take another moving pivot"
         )
-    return Dyad(centre, moving)
+    return PoseDyad(centre, moving)
 
 
-def about_given_pivot(poses: Sequence[Pose], fixed: complex, letter: str) -> Dyad:
+def about_given_pivot(poses: Sequence[PlanePose], fixed: complex, letter: str) -> PoseDyad:
     """Of three positions and a fixed pivot: inversion, as the body sees it. To the body the pivot
     is in three places, and the middle of their circle is the moving pivot. Raises CrankcheckError
     where they lie on a line."""
@@ -142,7 +142,7 @@ def about_given_pivot(poses: Sequence[Pose], fixed: complex, letter: str) -> Dya
             f"seen from the body, {letter} lies on a line in the three positions: the moving pivot "
             "is at infinity; take another place for it"
         )
-    return Dyad(fixed, centre)
+    return PoseDyad(fixed, centre)
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ class SoundPairs:
     sound: int
 
 
-def sound_pairs(poses: Sequence[Pose], dyads: Sequence[Dyad]) -> SoundPairs:
+def sound_pairs(poses: Sequence[PlanePose], dyads: Sequence[PoseDyad]) -> SoundPairs:
     """The pairs, those first whose first crank leads through the poses in order and in one
     assembly; each part by the least sine of the transmission angle in the poses. It chooses among
     thousands: what is chosen is examined by the reference afterwards."""

@@ -33,12 +33,12 @@ import numpy as np
 from analytic.lectures.synthesis.design import (
     AskedAngle,
     AskedSlide,
-    Circle,
     Dot,
+    DrawingStep,
+    DrawnCircle,
     PrecisionPosition,
     Proposal,
     Segment,
-    Step,
 )
 from analytic.lectures.synthesis.driving_dyad import chord
 from analytic.lectures.synthesis.strokes import lag_of
@@ -59,7 +59,7 @@ class SwungRocker:
     rocker_m: float
     angles: tuple[float, float]
     ends: tuple[complex, complex]
-    seen: Circle
+    seen: DrawnCircle
 
 
 def crank_rockers(task: QuickReturnTask, lag: float) -> Iterator[Proposal]:
@@ -73,7 +73,7 @@ def crank_rockers(task: QuickReturnTask, lag: float) -> Iterator[Proposal]:
     reach = math.pi - lag
     for side in (1.0, -1.0):
         centre = 0.5 * sum(ends) + side * 1j * radius * math.cos(lag)
-        swung = SwungRocker(task.rocker_m, angles, ends, Circle(centre, radius))
+        swung = SwungRocker(task.rocker_m, angles, ends, DrawnCircle(centre, radius))
         for share in (np.arange(PLACES // 2) + 0.5) / (PLACES // 2):
             pivot = centre + side * 1j * radius * cmath.exp(1j * reach * (2.0 * share - 1.0))
             if (proposal := _crank_rocker(task, swung, pivot, lag)) is not None:
@@ -102,14 +102,16 @@ def _crank_rocker(
     )
     told = {"crank": f"{crank:.6g} m", "coupler": f"{coupler:.6g} m"}
     pin = pivot + cmath.rect(crank, turned[0])
-    steps = tuple(_rocker_steps(swung, Circle(pivot, crank), pin, lag))
+    steps = tuple(_rocker_steps(swung, DrawnCircle(pivot, crank), pin, lag))
     return Proposal(draft, "crank", positions, told, steps, turns_back="rocker")
 
 
-def _rocker_steps(swung: SwungRocker, turn: Circle, pin: complex, lag: float) -> Iterator[Step]:
+def _rocker_steps(
+    swung: SwungRocker, turn: DrawnCircle, pin: complex, lag: float
+) -> Iterator[DrawingStep]:
     """Both ends, the circle they are seen from, and that of the crank, its pin in position 1."""
     pivot, ends = turn.centre, swung.ends
-    yield Step(
+    yield DrawingStep(
         "the rocker O4 B in its end positions",
         (
             Dot(0j, O4, "given", fixed=True),
@@ -117,11 +119,11 @@ def _rocker_steps(swung: SwungRocker, turn: Circle, pin: complex, lag: float) ->
             *(Dot(end, f"B{n}", "given") for n, end in enumerate(ends, 1)),
         ),
     )
-    yield Step(
+    yield DrawingStep(
         f"the circle from which B1 B2 is seen under a = {math.degrees(lag):.6g} deg, and O2 on it",
         (swung.seen, Dot(pivot, O2, "result", fixed=True)),
     )
-    yield Step(
+    yield DrawingStep(
         "half the difference of O2 B1 and O2 B2 is the crank, half their sum the coupler",
         (
             *(Segment(pivot, end) for end in ends),
@@ -239,9 +241,9 @@ def _add_ram(
 
 def _steps(
     pivot: complex, crank: float, angles: tuple[float, float], ends: list[complex], lag: float
-) -> Iterator[Step]:
+) -> Iterator[DrawingStep]:
     """The limits of a lever or guide about O4, and the crank's angles there [rad]."""
-    yield Step(
+    yield DrawingStep(
         f"the limits of the guide about O4, and O2 above it by {pivot.imag:.6g} m",
         (
             Dot(0j, O4, "given", fixed=True),
@@ -250,11 +252,11 @@ def _steps(
         ),
     )
     pins = [pivot + cmath.rect(crank, angle) for angle in angles]
-    yield Step(
+    yield DrawingStep(
         f"the crank's circle: its pin is at A1 and A2 there, and 180 deg + {_degrees(lag)} of the "
         "turn lie above them",
         (
-            Circle(pivot, crank),
+            DrawnCircle(pivot, crank),
             Segment(pivot, pins[0], "result"),
             Segment(pivot, pins[1]),
             Dot(pins[0], "A1", "result"),

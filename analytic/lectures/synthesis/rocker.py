@@ -9,17 +9,23 @@ from analytic.lectures.synthesis.design import (
     Asked,
     AskedAngle,
     AskedPlace,
-    Circle,
     Dot,
+    DrawingStep,
+    DrawnCircle,
     Element,
     PrecisionPosition,
     Proposal,
     Segment,
-    Step,
     letters_beside,
 )
 from analytic.lectures.synthesis.driving_dyad import ToAndFro, choices
-from analytic.lectures.synthesis.pose import Pose, bisector, pole, refuse_coinciding, turn_between
+from analytic.lectures.synthesis.pose import (
+    PlanePose,
+    bisector,
+    pole,
+    refuse_coinciding,
+    turn_between,
+)
 from models.errors import CrankcheckError
 from models.lectures.draft import Draft, bar, plate
 from models.lectures.tasks.positions import RockerTask
@@ -35,9 +41,9 @@ class Swung:
 
     pivot: complex
     ends: tuple[complex, complex]
-    poses: tuple[Pose, Pose]
+    poses: tuple[PlanePose, PlanePose]
     points: Mapping[str, complex]
-    steps: tuple[Step, ...]
+    steps: tuple[DrawingStep, ...]
     pin: str = ""
 
 
@@ -66,7 +72,7 @@ def _by_angle(task: RockerTask) -> Swung:
     half = math.radians(0.5 * task.swing_deg)
     angles = (0.5 * math.pi + half, 0.5 * math.pi - half)
     one, other = (cmath.rect(task.rocker_m, angle) for angle in angles)
-    step = Step(
+    step = DrawingStep(
         f"the rocker O4 B in its end positions, {task.swing_deg:g} deg apart",
         (
             Dot(0j, O4, "given", fixed=True),
@@ -76,13 +82,13 @@ def _by_angle(task: RockerTask) -> Swung:
             Dot(other, "B2", "given"),
         ),
     )
-    poses = (Pose(0j, angles[0]), Pose(0j, angles[1]))
+    poses = (PlanePose(0j, angles[0]), PlanePose(0j, angles[1]))
     return Swung(0j, (one, other), poses, {}, (step,))
 
 
 def _by_positions(task: RockerTask) -> Swung:
     """The rotopole of the two positions is O4; B lies on the line from it to the first point."""
-    first, second = (Pose(point, angle) for point, angle in task.body.poses)
+    first, second = (PlanePose(point, angle) for point, angle in task.body.poses)
     own = task.body.own_points
     size = abs(second.point - first.point) + max(map(abs, own.values()))
     refuse_coinciding((first, second), size)
@@ -111,7 +117,7 @@ def _by_positions(task: RockerTask) -> Swung:
     turn = cmath.exp(1j * turn_between(first, second))
     ends = (pivot + radius * arm, pivot + radius * arm * turn)
     # The rocker's own frame: O4 at its origin, B on its x-axis.
-    poses = (Pose(pivot, cmath.phase(arm)), Pose(pivot, cmath.phase(arm * turn)))
+    poses = (PlanePose(pivot, cmath.phase(arm)), PlanePose(pivot, cmath.phase(arm * turn)))
     # A point in the pole stays there whatever the rocker does.
     points = {name: poses[0].back(first.at(own[name])) for name in off_pole}
     if is_pin:
@@ -121,8 +127,8 @@ def _by_positions(task: RockerTask) -> Swung:
 
 
 def _pole_steps(
-    places: tuple[Pose, Pose], own: Mapping[str, complex], pivot: complex
-) -> Iterator[Step]:
+    places: tuple[PlanePose, PlanePose], own: Mapping[str, complex], pivot: complex
+) -> Iterator[DrawingStep]:
     """The body in its positions, and the bisectors that meet in the pole."""
     elements: list[Element] = [
         Dot(pose.at(each), f"{name}{number}", "given")
@@ -132,9 +138,9 @@ def _pole_steps(
     if len(own) > 1:
         one, other = own.values()
         elements = [*(Segment(pose.at(one), pose.at(other), "given") for pose in places), *elements]
-    yield Step("the body in its two positions", tuple(elements))
+    yield DrawingStep("the body in its two positions", tuple(elements))
     ways = [(places[0].at(each), places[1].at(each)) for each in own.values()]
-    yield Step(
+    yield DrawingStep(
         f"the bisectors of {' and '.join(f'{n}1{n}2' for n in own)} meet in the rotopole O4"
         if len(own) > 1
         else "the body turns from one into the other about the rotopole O4",
@@ -145,13 +151,13 @@ def _pole_steps(
     )
 
 
-def _pin_step(pivot: complex, ends: tuple[complex, complex], pin: str, letter: str) -> Step:
+def _pin_step(pivot: complex, ends: tuple[complex, complex], pin: str, letter: str) -> DrawingStep:
     """The rocker's pin in both positions."""
     words = f"{pin} on the line from O4 to {letter}1, and on the same arc in position 2"
-    return Step(
+    return DrawingStep(
         words if letter else f"{pin} at its distance from O4, in both positions",
         (
-            Circle(pivot, abs(ends[0] - pivot)),
+            DrawnCircle(pivot, abs(ends[0] - pivot)),
             *(Segment(pivot, end) for end in ends),
             *(Dot(end, f"{pin}{number}") for number, end in enumerate(ends, 1)),
         ),
@@ -181,11 +187,11 @@ def _proposal(task: RockerTask, swung: Swung, distance_m: float, beyond: int) ->
         for angle, pose in zip(found.angles, swung.poses, strict=True)
     )
     steps = (*swung.steps, *found.steps(swung.ends, (O2, crank_pin, rocker_pin)))
-    links = Step("the rocker", (Segment(swung.pivot, swung.ends[0], "result"),))
+    links = DrawingStep("the rocker", (Segment(swung.pivot, swung.ends[0], "result"),))
     told = {"O2 from the chord's middle": f"{distance_m:.6g} m", "beyond": f"{rocker_pin}{beyond}"}
     return Proposal(draft, "crank", positions, told, (*steps, links), turns_back="rocker")
 
 
-def _asked(swung: Swung, pose: Pose) -> tuple[Asked, ...]:
+def _asked(swung: Swung, pose: PlanePose) -> tuple[Asked, ...]:
     places = (AskedPlace(name, pose.at(place)) for name, place in swung.points.items())
     return (AskedAngle("rocker", pose.angle), *places)

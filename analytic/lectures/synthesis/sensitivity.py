@@ -29,7 +29,7 @@ ON_THE_WAY = 49
 
 
 @dataclass(frozen=True)
-class Dimension:
+class TolerancedDimension:
     """A number of a scene: a coordinate of a point on a body (0 along x, 1 along y)."""
 
     body: str
@@ -49,7 +49,7 @@ class Sensitivity:
 
     examined: Examined
     asked: tuple[tuple[int, Asked], ...]
-    dimensions: tuple[Dimension, ...]
+    dimensions: tuple[TolerancedDimension, ...]
     slopes: Array
 
     def worst(self, tolerance_m: float) -> Array:
@@ -156,7 +156,7 @@ def pinned(scene: Scene) -> set[str]:
     return shared | {slider.point for slider in scene.sliders.values()}
 
 
-def is_measured(examined: Examined, one: Dimension) -> bool:
+def is_measured(examined: Examined, one: TolerancedDimension) -> bool:
     """Whether a dimension is one of a drawing: of a bar its length, and not where a point lies that
     is asked for and holds nothing."""
     if one.body == "ground":
@@ -182,17 +182,17 @@ def _points_of(link: Table) -> dict[str, complex]:
     return {name: complex(*place) for name, place in points.items()}
 
 
-def _dimensions(draft: Draft) -> Iterator[Dimension]:
+def _dimensions(draft: Draft) -> Iterator[TolerancedDimension]:
     """The coordinates of all points of the ground and of the links."""
     for body, points in (("ground", draft.ground), *_bodies(draft)):
-        yield from (Dimension(body, point, axis) for point in points for axis in (0, 1))
+        yield from (TolerancedDimension(body, point, axis) for point in points for axis in (0, 1))
 
 
 def _bodies(draft: Draft) -> list[tuple[str, dict[str, complex]]]:
     return [(name, _points_of(link)) for name, link in draft.links.items()]
 
 
-def _varied(draft: Draft, by: Mapping[Dimension, float]) -> Draft:
+def _varied(draft: Draft, by: Mapping[TolerancedDimension, float]) -> Draft:
     """The draft with dimensions changed [m]."""
     ground, links = dict(draft.ground), dict(_bodies(draft))
     for one, delta in by.items():

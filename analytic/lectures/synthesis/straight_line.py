@@ -36,7 +36,7 @@ from typing import Literal
 
 from scipy.optimize import minimize_scalar  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.lectures.synthesis.line_draft import StraightLine, placed, refuse_none
+from analytic.lectures.synthesis.line_draft import StraightLinkage, placed, refuse_none
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve
 from analytic.lectures.synthesis.straight_part import StraightPart, longest, measured
 from models.errors import CrankcheckError
@@ -92,7 +92,7 @@ def straight_line(
     deviation: float | None = None,
     start: complex = 0j,
     direction_rad: float = 0.0,
-) -> StraightLine:
+) -> StraightLinkage:
     """A textbook's linkage of which a part of a length [m] is straight.
 
     Parameters
@@ -135,7 +135,7 @@ def hoeken(
     even: Even = "line",
     start: complex = 0j,
     direction_rad: float = 0.0,
-) -> StraightLine:
+) -> StraightLinkage:
     """Hoeken's crank-rocker, its ground chosen for the narrowest band about the line, or for the
     evenest speed along it.
 

@@ -28,12 +28,12 @@ import numpy as np
 
 from analytic.lectures.synthesis.design import (
     AskedSlide,
-    Circle,
     Dot,
+    DrawingStep,
+    DrawnCircle,
     PrecisionPosition,
     Proposal,
     Segment,
-    Step,
 )
 from models.errors import CrankcheckError
 from models.lectures.draft import Draft, bar
@@ -206,10 +206,10 @@ def _proposal(task: StrokeTask, ends: Ends) -> Proposal:
     return Proposal(draft, "crank", positions, told, steps, turns_back=SLIDER)
 
 
-def _steps(task: StrokeTask, ends: Ends) -> Iterator[Step]:
+def _steps(task: StrokeTask, ends: Ends) -> Iterator[DrawingStep]:
     """The construction in the plane of the scene."""
     first, second = ends.first, ends.second
-    yield Step(
+    yield DrawingStep(
         f"the stroke, {task.stroke_m:g} m on the slider's line",
         (
             Segment(first, second, "given", beyond=0.2),
@@ -221,24 +221,24 @@ def _steps(task: StrokeTask, ends: Ends) -> Iterator[Step]:
         lag = lag_of(task.time_ratio)
         radius = 0.5 * abs(second - first) / math.sin(lag)
         centre = 0.5 * (first + second) + 1j * 0.5 * abs(second - first) / math.tan(lag)
-        yield Step(
+        yield DrawingStep(
             f"the circle from which B1 B2 is seen under a = {math.degrees(lag):.6g} deg, and O2 "
             "on it",
-            (Circle(centre, radius), Dot(0j, O2, "result", fixed=True)),
+            (DrawnCircle(centre, radius), Dot(0j, O2, "result", fixed=True)),
         )
     else:
-        yield Step(
+        yield DrawingStep(
             f"O2 beside the line by {-first.imag:.6g} m", (Dot(0j, O2, "result", fixed=True),)
         )
     equal = task.form == "isosceles"
-    yield Step(
+    yield DrawingStep(
         "crank and rod are a quarter of the stroke each, and O2 is its middle"
         if equal
         else "O2 B1 is rod less crank, O2 B2 rod and crank: half their difference is the crank",
-        (Segment(0j, first), Segment(0j, second), Circle(0j, ends.crank)),
+        (Segment(0j, first), Segment(0j, second), DrawnCircle(0j, ends.crank)),
     )
     pin = cmath.rect(ends.crank, ends.angles[0])
-    yield Step(
+    yield DrawingStep(
         "crank and rod in position 1",
         (Segment(0j, pin, "result"), Segment(pin, first, "result"), Dot(pin, "A1", "result")),
     )

@@ -17,7 +17,13 @@ from itertools import pairwise
 import numpy as np
 
 from analytic.elastic.discretisation import Modes
-from analytic.elastic.natural import MOST, Sensitivity, lowest_rad_s, natural_modes, sensitivity
+from analytic.elastic.natural import (
+    MOST,
+    FrequencySensitivity,
+    lowest_rad_s,
+    natural_modes,
+    sensitivity,
+)
 from analytic.elastic.periodic import LinearForm
 from analytic.elastic.reduced import ReducedForm
 from analytic.lectures.vibration.floquet import (
@@ -29,7 +35,7 @@ from analytic.lectures.vibration.floquet import (
     stability,
     window_count,
 )
-from analytic.lectures.vibration.steady_vibration import AnySpeed, Swing, swings
+from analytic.lectures.vibration.steady_vibration import AnySpeed, VibrationSwing, swings
 from models.array import Array
 from models.errors import CrankcheckError, cut
 from models.scene import Scene
@@ -49,9 +55,9 @@ class AtSpeed:
 
     speed_rad_s: float
     ratio: float
-    swings: Mapping[str, Swing]
+    swings: Mapping[str, VibrationSwing]
     stability: Stability
-    sensitivity: Sensitivity
+    sensitivity: FrequencySensitivity
 
     @property
     def deviations(self) -> tuple[Deviation, ...]:
@@ -128,13 +134,13 @@ class OverSpeeds:
                 b, after = speed, off
         return speed
 
-    def _sensitivity(self, speed: float) -> Sensitivity:
+    def _sensitivity(self, speed: float) -> FrequencySensitivity:
         return _solved(self.form, self.every.linear(speed), math.tau / speed)[2]
 
 
 def _solved(
     form: ReducedForm, linear: LinearForm, period_s: float
-) -> tuple[Array, Stability, Sensitivity]:
+) -> tuple[Array, Stability, FrequencySensitivity]:
     """The coefficients at the instants of linearised equations (N, m), and what is told of them.
 
     By windows, each with matrices of its own: the one large matrix of harmonic balance

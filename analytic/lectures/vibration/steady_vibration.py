@@ -135,7 +135,7 @@ PLACES = 41
 
 
 @dataclass(frozen=True)
-class Swing:
+class VibrationSwing:
     """A link at N instants of a period: the deflection of its middle and its extension [m], (N,).
 
     ``largest_m`` is the largest deflection of any place on a link that bends, ``place_m`` from its
@@ -169,7 +169,7 @@ class Swing:
         return spectrum(self.series)
 
 
-def swings(form: ReducedForm, z: Array) -> dict[str, Swing]:
+def swings(form: ReducedForm, z: Array) -> dict[str, VibrationSwing]:
     """How the elastic links swing with coefficients (N, m) over a period, by name."""
     found, every = {}, form.about_origin(z)
     for name, (body, own) in form.assembly.elastic.items():
@@ -179,7 +179,7 @@ def swings(form: ReducedForm, z: Array) -> dict[str, Swing]:
         across, extension = body.deflections(q, x), body.extension(q)
         away = np.abs(across) if bends else np.abs(extension)[:, None]
         when, place = np.unravel_index(int(away.argmax()), away.shape)
-        found[name] = Swing(
+        found[name] = VibrationSwing(
             name, length, bends, across[:, PLACES // 2], extension,
             float(away[when, place]), float(x[place]) if bends else length, int(when),
         )  # fmt: skip
@@ -224,12 +224,12 @@ class SteadyVibration:
         return stability_of(self.form, self.motion)
 
     @cached_property
-    def swings(self) -> dict[str, Swing]:
+    def swings(self) -> dict[str, VibrationSwing]:
         """How each link swings."""
         return swings(self.form, self.motion.z)
 
     @cached_property
-    def theories(self) -> dict[str, dict[str, Swing]]:
+    def theories(self) -> dict[str, dict[str, VibrationSwing]]:
         """The same by equations that are linear in the deflections: with the stiffness that links
         gain by being pulled, and without, as in the thesis."""
         found = {}

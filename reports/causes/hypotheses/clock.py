@@ -38,7 +38,7 @@ FASTEST = 1e3
 
 
 @dataclass(frozen=True)
-class Clock:
+class ClockFault:
     """What a stamp t [s] of the log stands for: t + start + gain (t - first)."""
 
     first_s: float
@@ -92,20 +92,20 @@ def drift(inquiry: Inquiry) -> Iterator[Account]:
                     return  # nothing is left that needs a drift
 
 
-def _fitted(inquiry: Inquiry, column: str, *, paced: bool) -> Clock | None:
+def _fitted(inquiry: Inquiry, column: str, *, paced: bool) -> ClockFault | None:
     """The clock of one channel: fitted to its beginning, then to more and more of it, so that it is
     never off by much of a turn."""
     reading = inquiry.excerpts[column].reading
     first_s = float(reading.instants[0])
     ages, period = reading.instants - first_s, inquiry.period_s
     least = float(ages[min(LEAST_ROWS, ages.size) - 1])
-    near = Clock(first_s, 0.0, 0.0)
+    near = ClockFault(first_s, 0.0, 0.0)
     clock = _grown(inquiry, column, near, max(FIRST * period, least), paced=paced)
     if clock is not None:
         return clock
     width = max(SCANNED * period, least)
     starts = np.arange(1, SCAN) / SCAN * period
-    clocks = [Clock(first_s, float(start), 0.0) for start in starts]
+    clocks = [ClockFault(first_s, float(start), 0.0) for start in starts]
     there = inquiry.into(column, _rows(ages, width))
     best = min(clocks, key=lambda each: _rest(there, column, each, paced=paced))
     return _grown(inquiry, column, best, width, paced=paced)
@@ -117,8 +117,8 @@ def _rows(ages: Array, width: float) -> Rows:
 
 
 def _grown(
-    inquiry: Inquiry, column: str, clock: Clock, width: float, *, paced: bool
-) -> Clock | None:
+    inquiry: Inquiry, column: str, clock: ClockFault, width: float, *, paced: bool
+) -> ClockFault | None:
     """The clock near another that tells the beginning of a channel, and then all of it."""
     ages = inquiry.excerpts[column].reading.instants - clock.first_s
     while True:
@@ -132,19 +132,19 @@ def _grown(
         width *= GROWTH
 
 
-def _nearest(there: Inquiry, column: str, clock: Clock, *, paced: bool) -> Clock | None:
+def _nearest(there: Inquiry, column: str, clock: ClockFault, *, paced: bool) -> ClockFault | None:
     """The clock near another that leaves least of what a channel is off at some rows."""
 
     def residual(numbers: Array) -> Array:
-        tried = Clock(clock.first_s, float(numbers[0]), float(numbers[1]))
+        tried = ClockFault(clock.first_s, float(numbers[0]), float(numbers[1]))
         return there.errors(tried.world(there.world, paced=paced))[column]
 
     delta = (1e-6 * there.period_s, 1e-6)
     found = fitted(residual, (clock.start_s, clock.gain), delta)
-    return None if found is None else Clock(clock.first_s, float(found[0]), float(found[1]))
+    return None if found is None else ClockFault(clock.first_s, float(found[0]), float(found[1]))
 
 
-def _rest(there: Inquiry, column: str, clock: Clock, *, paced: bool) -> float:
+def _rest(there: Inquiry, column: str, clock: ClockFault, *, paced: bool) -> float:
     """What a clock leaves of the error of a column; no end where there is no mechanism."""
     try:
         errors = there.errors(clock.world(there.world, paced=paced))
@@ -153,19 +153,19 @@ def _rest(there: Inquiry, column: str, clock: Clock, *, paced: bool) -> float:
     return there.excerpts[column].rest(errors[column])
 
 
-def _told(inquiry: Inquiry, column: str, clock: Clock) -> Iterator[Account]:
+def _told(inquiry: Inquiry, column: str, clock: ClockFault) -> Iterator[Account]:
     """The accounts of a clock, and of the one that starts with the scene's where that does."""
     thin = inquiry.thin
     excerpt = thin.excerpts[column]
 
     def residual(numbers: Array) -> Array:
-        tried = Clock(clock.first_s, 0.0, float(numbers[0]))
+        tried = ClockFault(clock.first_s, 0.0, float(numbers[0]))
         return thin.errors(tried.world(thin.world, paced=False), [column])[column]
 
     clocks = [(clock, 2)]
     if excerpt.channel.kind.order == 0:
         found = fitted(residual, [clock.gain], [1e-7])
-        same = None if found is None else Clock(clock.first_s, 0.0, float(found[0]))
+        same = None if found is None else ClockFault(clock.first_s, 0.0, float(found[0]))
         if same is not None and same.runs:
             clocks.append((same, 1))
     for each, numbers in clocks:
@@ -174,7 +174,7 @@ def _told(inquiry: Inquiry, column: str, clock: Clock) -> Iterator[Account]:
             yield told
 
 
-def _either(inquiry: Inquiry, column: str, clock: Clock, cost: float) -> Account | None:
+def _either(inquiry: Inquiry, column: str, clock: ClockFault, cost: float) -> Account | None:
     """The account of a clock or of a driver of another pace, whichever leaves less; it says of both
     where nothing tells them apart."""
     time = inquiry.channel(column).time
@@ -200,7 +200,7 @@ def _left(account: Account, other: Account) -> float:
     return max(account.rests.get(column, 1.0) for column in (*account.rests, *other.rests))
 
 
-def _words(inquiry: Inquiry, clock: Clock) -> tuple[str, str]:
+def _words(inquiry: Inquiry, clock: ClockFault) -> tuple[str, str]:
     """A clock in words, and the driver that would show the same."""
     law, pace = inquiry.world.scene.driver.law, 1.0 + clock.gain
     slow = "slow" if clock.gain > 0.0 else "fast"

@@ -31,7 +31,7 @@ FARTHEST = 1.0
 
 
 @dataclass(frozen=True)
-class Dimension:
+class DimensionFault:
     """One number of a scene, in ``unit`` m or rad: what it is called, what it is, and the scene
     with another one. A ``point`` that two numbers place is the same for both."""
 
@@ -62,13 +62,13 @@ def _told_alone(inquiry: Inquiry, column: str) -> bool:
     return min(rests, default=1.0) < BEST
 
 
-def dimensions(scene: Scene) -> list[Dimension]:
+def dimensions(scene: Scene) -> list[DimensionFault]:
     """All numbers that the places of a scene follow from."""
-    found: list[Dimension] = []
+    found: list[DimensionFault] = []
     for point, place in scene.ground.items():
         for axis in (0, 1):
             name, where = f"{'xy'[axis]} of the ground pivot {point}", f"ground {point}"
-            found.append(Dimension(name, place[axis], _ground(point, axis), point=where))
+            found.append(DimensionFault(name, place[axis], _ground(point, axis), point=where))
     for link in scene.links.values():
         found += _of_link(link)
     for slider in scene.sliders.values():
@@ -84,7 +84,7 @@ def _ground(point: str, axis: int) -> Callable[[Scene, float], Scene]:
     return changed
 
 
-def _of_link(link: Link) -> Iterator[Dimension]:
+def _of_link(link: Link) -> Iterator[DimensionFault]:
     """The distance between the first two points of a link, and the places of the others."""
     names = list(link.points)
     if len(names) > 1:
@@ -92,13 +92,13 @@ def _of_link(link: Link) -> Iterator[Dimension]:
         length = math.hypot(x1 - x0, y1 - y0)
         words = f"length {names[0]}{names[1]} of {link.name}"
         if length > 0.0:
-            yield Dimension(words, length, _length(link.name, names[0], names[1]))
+            yield DimensionFault(words, length, _length(link.name, names[0], names[1]))
     for point in names[2:]:
         for axis in (0, 1):
             words = f"{'xy'[axis]} of {point} in the frame of {link.name}"
             place = f"{link.name} {point}"
             value = link.points[point][axis]
-            yield Dimension(words, value, _place(link.name, point, axis), point=place)
+            yield DimensionFault(words, value, _place(link.name, point, axis), point=place)
 
 
 def _length(name: str, first: str, second: str) -> Callable[[Scene, float], Scene]:
@@ -128,7 +128,7 @@ def _moved(scene: Scene, name: str, point: str, place: tuple[float, float]) -> S
     return replace(scene, links={**scene.links, name: link})
 
 
-def _of_slider(slider: Slider) -> Iterator[Dimension]:
+def _of_slider(slider: Slider) -> Iterator[DimensionFault]:
     """How far the line lies to its left of where it is in the scene, and its directions."""
     line = f"the line of slider {slider.name}"
     sine, cosine = math.sin(slider.direction_rad), math.cos(slider.direction_rad)
@@ -144,10 +144,10 @@ def _of_slider(slider: Slider) -> Iterator[Dimension]:
         return _slid(scene, replace(slider, angle_rad=value))
 
     where = "" if slider.on == GROUND else f" on {slider.on}"
-    yield Dimension(f"distance of {line}{where} to its left", 0.0, beside)
-    yield Dimension(f"direction of {line}{where}", slider.direction_rad, turned, "rad")
+    yield DimensionFault(f"distance of {line}{where} to its left", 0.0, beside)
+    yield DimensionFault(f"direction of {line}{where}", slider.direction_rad, turned, "rad")
     if slider.link is not None:
-        yield Dimension(f"angle of {slider.link} to {line}", slider.angle_rad, tilted, "rad")
+        yield DimensionFault(f"angle of {slider.link} to {line}", slider.angle_rad, tilted, "rad")
 
 
 def _slid(scene: Scene, slider: Slider) -> Scene:
@@ -160,7 +160,7 @@ def _with(place: tuple[float, float], axis: int, value: float) -> tuple[float, f
 
 
 def _residual(
-    inquiry: Inquiry, columns: Sequence[str], chosen: Sequence[Dimension]
+    inquiry: Inquiry, columns: Sequence[str], chosen: Sequence[DimensionFault]
 ) -> Callable[[Array], Array]:
     """What is left of the errors of columns, each over its size, where dimensions are changed; it
     raises CrankcheckError where there is no such mechanism."""
@@ -178,8 +178,8 @@ def _residual(
 
 
 def _likely(
-    inquiry: Inquiry, columns: Sequence[str], every: Sequence[Dimension]
-) -> list[Dimension]:
+    inquiry: Inquiry, columns: Sequence[str], every: Sequence[DimensionFault]
+) -> list[DimensionFault]:
     """The dimensions that change what is expected, by what a straight line leaves of the errors."""
     thin, found = inquiry.thin, []
     errors = np.concatenate([thin.excerpts[c].error / thin.excerpts[c].size.rms for c in columns])
@@ -196,7 +196,9 @@ def _likely(
     return [every[number_of] for _, number_of in sorted(found)]
 
 
-def _told(inquiry: Inquiry, columns: Sequence[str], chosen: Sequence[Dimension]) -> Account | None:
+def _told(
+    inquiry: Inquiry, columns: Sequence[str], chosen: Sequence[DimensionFault]
+) -> Account | None:
     """The account of other values of dimensions; fitted again without the channels that these do
     not explain, which something else may be wrong with."""
     start = [0.0] * len(chosen)
@@ -213,7 +215,7 @@ def _told(inquiry: Inquiry, columns: Sequence[str], chosen: Sequence[Dimension])
     return told
 
 
-def _account(inquiry: Inquiry, chosen: Sequence[Dimension], found: Array) -> Account | None:
+def _account(inquiry: Inquiry, chosen: Sequence[DimensionFault], found: Array) -> Account | None:
     """The account of fitted changes."""
     scene, longest = inquiry.world.scene, inquiry.world.scene.longest_m
     words = []

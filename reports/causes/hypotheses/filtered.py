@@ -12,7 +12,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, NUMBER, Account, later
-from reports.causes.cause import Excerpt, Size
+from reports.causes.cause import CauseSize, Excerpt
 from reports.causes.fit import fitted
 from reports.causes.inquiry import Inquiry
 from reports.output.numbers import duration
@@ -88,8 +88,8 @@ def _told(stretch: Inquiry, column: str, name: str, left: Array, phrase: str) ->
     """The account of a filter; None of one that lets next to nothing through, or of a curve that
     is merely like what it would make."""
     excerpt = stretch.excerpts[column]
-    passed = Size.of_signal(excerpt.expected + excerpt.error - left).rms
-    if passed < PASSED * Size.of_signal(excerpt.expected).rms or not excerpt.told_apart(left):
+    passed = CauseSize.of_signal(excerpt.expected + excerpt.error - left).rms
+    if passed < PASSED * CauseSize.of_signal(excerpt.expected).rms or not excerpt.told_apart(left):
         return None
     return stretch.account(name, CAUSE + NUMBER, {column: left}, phrase)
 

@@ -10,7 +10,7 @@ from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.scene.laws import ConstantSpeed
 from reports.causes.account import CAUSE, NUMBER, Account, later
-from reports.causes.cause import EXPLAINED, Excerpt, Size
+from reports.causes.cause import EXPLAINED, CauseSize, Excerpt
 from reports.causes.fit import fitted
 from reports.causes.hypotheses.samples import resolution
 from reports.causes.inquiry import MOVED, Inquiry
@@ -95,8 +95,8 @@ class Search:
         if not found or abs(found) > MOST_PERIODS * self.inquiry.period_s:
             return None
         rate = (residual(np.array([found + delta])) - residual(near)) / delta
-        left = Size.of(residual(near)).rms
-        moving = Size.of(rate).rms
+        left = CauseSize.of(residual(near)).rms
+        moving = CauseSize.of(rate).rms
         if not moving:
             return None
         return Delay(column, found, left / moving / math.sqrt(excerpt.rows.size))
@@ -200,7 +200,7 @@ def _told(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
 
 def _clearly(excerpt: Excerpt, error: Array, expected: Array) -> bool:
     """Whether a delay explains an error that is within its limit, and would show in it."""
-    change = Size.of(excerpt.beside(expected) - excerpt.error).largest
+    change = CauseSize.of(excerpt.beside(expected) - excerpt.error).largest
     return CLEAR * excerpt.rest(error) <= 1.0 and change > MOVED * excerpt.size.largest
 
 
@@ -217,7 +217,7 @@ def _everything(
     shown = [
         column
         for column, excerpt in inquiry.excerpts.items()
-        if Size.of(excerpt.beside(expected[column]) - excerpt.error).largest
+        if CauseSize.of(excerpt.beside(expected[column]) - excerpt.error).largest
         > max(excerpt.limit, MOVED * excerpt.size.largest)
     ]
     late = [column for column in shown if column in explained]

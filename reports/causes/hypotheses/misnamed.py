@@ -12,7 +12,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account
-from reports.causes.cause import EXPLAINED, Excerpt, Size, levelled
+from reports.causes.cause import EXPLAINED, CauseSize, Excerpt, levelled
 from reports.causes.inquiry import Inquiry
 from reports.logs.channel import Channel
 from reports.logs.kinds import KINDS, UNITS, Kind
@@ -99,14 +99,16 @@ def _told(
     own, channel = excerpt.channel, other.channel
     expected = channel.expected(motion)
     moves = np.ptp(expected) > 1e-9 * np.max(np.abs(expected))
-    if Size.of(expected).largest <= excerpt.nothing or (other.name != "misnamed" and not moves):
+    if CauseSize.of(expected).largest <= excerpt.nothing or (
+        other.name != "misnamed" and not moves
+    ):
         return None  # a number that stays is in many places
     values = excerpt.values * (own.sign * channel.sign)
     error = channel.error(values, expected)
     zero = 0.0
     if other.any_zero:
         zero, error = levelled(error, channel)
-    if Size.of(error).largest > EXPLAINED * excerpt.size_beside(expected).largest:
+    if CauseSize.of(error).largest > EXPLAINED * excerpt.size_beside(expected).largest:
         return None
     size = UNITS[channel.kind.dimension][channel.unit]
     instead = replace(channel, offset=own.offset - channel.sign * zero / size)
@@ -217,7 +219,7 @@ def _held(inquiry: Inquiry, column: str) -> Iterator[tuple[str, ColumnContent]]:
             enough = min(enough, excerpt.limit)
         for channel, values in _read_as(own.values, own.channel, excerpt.channel):
             error = channel.error(values, excerpt.expected)
-            if Size.of(error).largest <= enough:
+            if CauseSize.of(error).largest <= enough:
                 yield other, ColumnContent(channel, error)
                 break
 

@@ -9,7 +9,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, later, number
-from reports.causes.cause import BROUGHT_WITHIN, Excerpt, Rows, Size, levelled
+from reports.causes.cause import BROUGHT_WITHIN, CauseSize, Excerpt, Rows, levelled
 from reports.causes.inquiry import Inquiry
 from reports.logs.channel import Channel
 from reports.logs.kinds import UNITS, si
@@ -28,7 +28,7 @@ NO_GAIN = 1e-5
 
 
 @dataclass(frozen=True)
-class StraightLine:
+class StraightLineFault:
     """Readings as ``gain`` times what is expected, plus ``zero``; ``unit`` is another one of which
     the gain is made, and ``cost`` what it takes to believe."""
 
@@ -45,7 +45,7 @@ def straight(inquiry: Inquiry) -> Iterator[Account]:
         excerpt = inquiry.excerpts[column]
         if excerpt.nought:
             yield from _each(
-                inquiry, excerpt, [StraightLine("offset", CAUSE + NUMBER, 1.0, shifted=True)]
+                inquiry, excerpt, [StraightLineFault("offset", CAUSE + NUMBER, 1.0, shifted=True)]
             )
         elif np.ptp(excerpt.expected) <= excerpt.nothing:
             # A channel that stays: a zero explains whatever is there, and is the last thing to be.
@@ -57,32 +57,34 @@ def straight(inquiry: Inquiry) -> Iterator[Account]:
             yield from _each(inquiry, excerpt, [*_known(excerpt.channel), *_fitted(excerpt)])
 
 
-def _each(inquiry: Inquiry, excerpt: Excerpt, lines: Iterable[StraightLine]) -> Iterator[Account]:
+def _each(
+    inquiry: Inquiry, excerpt: Excerpt, lines: Iterable[StraightLineFault]
+) -> Iterator[Account]:
     """The accounts of those lines that explain a channel."""
     yield from filter(None, (_told(inquiry, excerpt, line) for line in lines))
 
 
-def _known(channel: Channel) -> Iterator[StraightLine]:
+def _known(channel: Channel) -> Iterator[StraightLineFault]:
     """The lines whose gain is a sign or a ratio of units."""
-    yield StraightLine("sign", CAUSE, -1.0)
-    yield StraightLine("offset", CAUSE + NUMBER, 1.0, shifted=True)
-    yield StraightLine("sign", CAUSE + CHOICE + NUMBER, -1.0, shifted=True)
+    yield StraightLineFault("sign", CAUSE, -1.0)
+    yield StraightLineFault("offset", CAUSE + NUMBER, 1.0, shifted=True)
+    yield StraightLineFault("sign", CAUSE + CHOICE + NUMBER, -1.0, shifted=True)
     units = UNITS[channel.kind.dimension]
     for unit, size in units.items():
         gain = units[channel.unit] / size
         if gain != 1.0:
-            yield StraightLine("unit", CAUSE + CHOICE, gain, unit=unit)
-            yield StraightLine("unit", CAUSE + 2 * CHOICE, -gain, unit=unit)
-            yield StraightLine("unit", CAUSE + CHOICE + NUMBER, gain, shifted=True, unit=unit)
+            yield StraightLineFault("unit", CAUSE + CHOICE, gain, unit=unit)
+            yield StraightLineFault("unit", CAUSE + 2 * CHOICE, -gain, unit=unit)
+            yield StraightLineFault("unit", CAUSE + CHOICE + NUMBER, gain, shifted=True, unit=unit)
 
 
-def _fitted(excerpt: Excerpt) -> Iterator[StraightLine]:
+def _fitted(excerpt: Excerpt) -> Iterator[StraightLineFault]:
     """The lines whose gain is fitted, with a zero and without."""
     even = CHOICE if _steady_rate(excerpt) else 0.0  # more likely the driver has another speed
     for gain, shifted in _gains(excerpt):
         if abs(gain) > LEAST_GAIN and abs(gain - 1.0) > NO_GAIN:
             cost = CAUSE + NUMBER * (2 if shifted else 1) + even
-            yield StraightLine("scaled", cost, gain, shifted=shifted)
+            yield StraightLineFault("scaled", cost, gain, shifted=shifted)
 
 
 def _gains(excerpt: Excerpt) -> Iterable[tuple[float, bool]]:
@@ -105,7 +107,7 @@ def _gains(excerpt: Excerpt) -> Iterable[tuple[float, bool]]:
     return [(min(through)[1], False), (free, True)]
 
 
-def _told(inquiry: Inquiry, excerpt: Excerpt, line: StraightLine) -> Account | None:
+def _told(inquiry: Inquiry, excerpt: Excerpt, line: StraightLineFault) -> Account | None:
     """The account of a line, its zero fitted where it has one."""
     channel = excerpt.channel
     values = excerpt.values
@@ -123,7 +125,7 @@ def _told(inquiry: Inquiry, excerpt: Excerpt, line: StraightLine) -> Account | N
     return inquiry.account(line.name, line.cost, errors, phrase, corrections=corrections)
 
 
-def _correction(line: StraightLine, channel: Channel, zero: float) -> dict[str, object]:
+def _correction(line: StraightLineFault, channel: Channel, zero: float) -> dict[str, object]:
     """What mends it in the map: a reading in SI is ``sign * (number + offset) * unit``."""
     if line.name == "scaled":
         return {}
@@ -141,7 +143,7 @@ def _correction(line: StraightLine, channel: Channel, zero: float) -> dict[str, 
 
 
 def _phrase(
-    line: StraightLine, channel: Channel, zero: float, inquiry: Inquiry, excerpt: Excerpt
+    line: StraightLineFault, channel: Channel, zero: float, inquiry: Inquiry, excerpt: Excerpt
 ) -> str:
     """What is wrong, in words."""
     unit = line.unit or channel.unit
@@ -264,7 +266,7 @@ def _told_of_turns(
     if rest > BROUGHT_WITHIN or (rest > 0.1 and np.max(np.abs(left)) > excerpt.limit):
         return None
     name, cost, phrase = said
-    over = float(np.max(np.abs(left))) / Size.of(excerpt.error).largest
+    over = float(np.max(np.abs(left))) / CauseSize.of(excerpt.error).largest
     return Account(name, cost, {column: rest}, {column: over}, phrase, {column: correction})
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from reports.causes.account import CHOICE, Account
-from reports.causes.cause import TIGHT, Excerpt, Size
+from reports.causes.cause import TIGHT, CauseSize, Excerpt
 from reports.causes.hypotheses.filtered import filtered
 from reports.causes.hypotheses.late import late
 from reports.causes.hypotheses.misnamed import misnamed
@@ -76,7 +76,7 @@ def _unclear(inquiry: Inquiry) -> list[str]:
 def _well(first: First, column: str, second: Account) -> bool:
     """Whether two faults leave so little that they are no chance."""
     excerpt = first.inquiry.excerpts[column]
-    largest = second.lefts[column] * Size.of(excerpt.error).largest
+    largest = second.lefts[column] * CauseSize.of(excerpt.error).largest
     return second.rests[column] <= TIGHT or largest <= excerpt.limit
 
 
@@ -84,7 +84,7 @@ def _both(inquiry: Inquiry, column: str, first: First, second: Account) -> Accou
     """The account of both, beside the error that there was."""
     before, after = inquiry.excerpts[column], first.inquiry.excerpts[column]
     share = after.size.largest / before.size.largest
-    left = Size.of(after.error).largest / Size.of(before.error).largest
+    left = CauseSize.of(after.error).largest / CauseSize.of(before.error).largest
     phrase = f"{first.phrase}, and beside that {second.phrase.removeprefix('{who} ')}"
     return replace(
         second,
@@ -139,10 +139,10 @@ def _likely(excerpt: Excerpt, fresh: Excerpt) -> bool:
     error = fresh.error
     if fresh.channel.kind.turns:
         error = np.remainder(error + math.pi, math.tau) - math.pi
-    expected = Size.of_signal(fresh.expected, fresh.nothing).rms
-    ratio = Size.of_signal(fresh.expected + error).rms / expected
-    nearer = Size.of(error).rms < NEARER * Size.of(excerpt.error).rms
-    small = Size.of(error).rms < NEARER * expected
+    expected = CauseSize.of_signal(fresh.expected, fresh.nothing).rms
+    ratio = CauseSize.of_signal(fresh.expected + error).rms / expected
+    nearer = CauseSize.of(error).rms < NEARER * CauseSize.of(excerpt.error).rms
+    small = CauseSize.of(error).rms < NEARER * expected
     return (nearer or small) and 1.0 / LIKE < ratio < LIKE
 
 

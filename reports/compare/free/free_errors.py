@@ -19,7 +19,7 @@ from reports.compare.free.free_facts import FreeFacts, energy_rows, momentum_row
 from reports.compare.free.free_truth import FreeBeside
 from reports.compare.hardness import conditioning, uneven
 from reports.compare.tracks import Track, length
-from reports.compare.whole_errors import TWICE, Parts, force_rows, whole_errors
+from reports.compare.whole_errors import TWICE, ComparedParts, force_rows, whole_errors
 from reports.quantities.free import GEOMETRY, PHASE
 
 COURSE = 400
@@ -42,7 +42,7 @@ def compared(beside: Beside, errors: Errors | None) -> Errors:
     borne = force_rows(beside)
     least = LEAST_SINE if facts.passages else 0.0
     farthest = float(np.max(np.abs(at.driver_rad)))
-    parts = Parts(
+    parts = ComparedParts(
         placed=[*_phase_and_places(beside, same_time, at), *geometry],
         notes=(*notes, *_notes(beside, facts)),
         borne=replace(borne, facts=replace(borne.facts, load_slopes={}), unsure={}),

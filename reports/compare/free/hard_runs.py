@@ -11,7 +11,7 @@ from analytic.free.exact_motions import ChainMotion, ToggleBarrier
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
-from models.scene.hard import Chain
+from models.scene.hard import WindowChain
 from reports.compare.branch import AWAY_RAD, CLOSED, HERE_RAD
 from reports.compare.errors import Departure
 from sim.engine import Engine, Run, SettingValue
@@ -28,7 +28,7 @@ class ChainErrors:
     to the ground line [rad], all 0 in truth; ``gap_m`` the largest gap of a pin [m].
     """
 
-    chain: Chain
+    chain: WindowChain
     run: Run
     time_s: Array
     place_m: Array
@@ -69,7 +69,7 @@ class ChainErrors:
 
 
 def hold(
-    chain: Chain,
+    chain: WindowChain,
     engine: str | Engine,
     profile: str = "tuned",
     *,
@@ -99,7 +99,7 @@ def hold(
     return compared(chain, done)
 
 
-def compared(chain: Chain, done: Run) -> ChainErrors:
+def compared(chain: WindowChain, done: Run) -> ChainErrors:
     """The comparison of a free run of the chain. Raises CrankcheckError for one without a log."""
     if done.motion is None or done.energy is None:
         why = done.reason or f"it was run under the drive {done.drive}"
@@ -136,7 +136,7 @@ def _velocity_error(turning: ChainMotion, done: Run) -> Array:
     return np.asarray(np.hypot(*(done.motion.points["B0"].velocity - true).T))
 
 
-def _leaning(chain: Chain, motion: Motion, index: int) -> str:
+def _leaning(chain: WindowChain, motion: Motion, index: int) -> str:
     """The rod that stands at the largest angle to those that it is parallel to in truth."""
     angles = {name: float(motion.links[name].theta[index]) for name in chain.rockers()}
     middle = float(np.median(list(angles.values())))
@@ -145,7 +145,7 @@ def _leaning(chain: Chain, motion: Motion, index: int) -> str:
     return max(off, key=lambda name: off[name])
 
 
-def _lean(chain: Chain, motion: Motion) -> Array:
+def _lean(chain: WindowChain, motion: Motion) -> Array:
     """The largest angle between rods that are parallel in truth [rad], (T,)."""
     rockers = np.stack([motion.links[name].theta for name in chain.rockers()])
     couplers = [np.abs(motion.links[name].theta) for name in chain.couplers()]

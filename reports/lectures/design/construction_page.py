@@ -5,9 +5,9 @@ import numpy as np
 from analytic.lectures.drawings.placed_mechanism import PlacedMechanism
 from analytic.lectures.synthesis.design import (
     AskedPlace,
-    Circle,
-    Curve,
     Dot,
+    DrawnCircle,
+    DrawnCurve,
     Element,
     Proposal,
     names_of,
@@ -104,9 +104,9 @@ def _element(
         at = list(xy(element.place))
         return {"at": at, "letter": element.letter, "fixed": element.fixed, "look": element.look}
     lines = strokes(element, low, high)
-    if isinstance(element, Circle):
+    if isinstance(element, DrawnCircle):
         lines = [np.concatenate([line[:-1:EVERY], line[-1:]]) for line in lines]
-    is_curve = isinstance(element, Curve) and id(element) in curves
+    is_curve = isinstance(element, DrawnCurve) and id(element) in curves
     look = f"curve-{curves[id(element)] % len(CURVES)}" if is_curve else element.look
     return {"look": look, "lines": _flat(lines)}
 

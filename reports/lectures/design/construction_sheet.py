@@ -10,7 +10,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle as Round
 
-from analytic.lectures.synthesis.design import Circle, Curve, Dot, Element, Proposal, Step
+from analytic.lectures.synthesis.design import (
+    Dot,
+    DrawingStep,
+    DrawnCircle,
+    DrawnCurve,
+    Element,
+    Proposal,
+)
 from analytic.lectures.synthesis.examine import Examined
 from models.array import Array
 from models.errors import CrankcheckError
@@ -25,7 +32,7 @@ from reports.lectures.design.construction_view import (
     xy,
 )
 from reports.lectures.design.step_column import (
-    Part,
+    ColumnPart,
     height_of,
     parts_of,
     write_column,
@@ -52,7 +59,10 @@ NUMBERED, NUMBER_PLACES = 2, 14
 
 
 def dot_letters(
-    steps: Sequence[Step], points: Mapping[str, Array], at: Callable[[Array], Array], box: Box
+    steps: Sequence[DrawingStep],
+    points: Mapping[str, Array],
+    at: Callable[[Array], Array],
+    box: Box,
 ) -> list[Letter]:
     """The letters of all dots in the box, and of the mechanism's ``points`` [m] that have no letter
     by then: C1 is also the letter of a point C in the first position."""
@@ -75,7 +85,9 @@ def dot_letters(
     ]
 
 
-def step_numbers(steps: Sequence[Step], drawn: Mapping[int, Sequence[Array]]) -> list[Letter]:
+def step_numbers(
+    steps: Sequence[DrawingStep], drawn: Mapping[int, Sequence[Array]]
+) -> list[Letter]:
     """The number of each step at its longest lines [mm] that are no links; ``drawn`` are the lines
     of elements, by their identity."""
     letters = []
@@ -88,7 +100,7 @@ def step_numbers(steps: Sequence[Step], drawn: Mapping[int, Sequence[Array]]) ->
         )
         for _, each in longest[:NUMBERED]:
             line = max(drawn[id(each)], key=_length)
-            colour = look_of(each, steps).colour if isinstance(each, Curve) else QUIET
+            colour = look_of(each, steps).colour if isinstance(each, DrawnCurve) else QUIET
             letters.append(Letter(f"({number})", _along(line), 0.1, NUMBER, colour))
     return letters
 
@@ -126,7 +138,7 @@ class ConstructionSheet:
     middle: Array
     box: Box
     column: Box
-    words: list[list[Part]]
+    words: list[list[ColumnPart]]
     paper: Paper
 
     def at(self, places: Array) -> Array:
@@ -243,7 +255,7 @@ def _draw(axes: Axes, sheet: ConstructionSheet, element: Element, gid: str) -> l
         return []
     look = look_of(element, sheet.view.steps)
     lines = [sheet.at(part) for part in strokes(element, *sheet.cut)]
-    if isinstance(element, Circle) and element.arc is None and _is_whole(sheet, element):
+    if isinstance(element, DrawnCircle) and element.arc is None and _is_whole(sheet, element):
         # a drawing program is to have it as a circle
         middle, radius = sheet.at(xy(element.centre)), element.radius / sheet.scale
         axes.add_patch(
@@ -255,7 +267,7 @@ def _draw(axes: Axes, sheet: ConstructionSheet, element: Element, gid: str) -> l
     return lines
 
 
-def _is_whole(sheet: ConstructionSheet, circle: Circle) -> bool:
+def _is_whole(sheet: ConstructionSheet, circle: DrawnCircle) -> bool:
     """Whether all of a circle is on the paper."""
     low, high = sheet.cut
     middle = xy(circle.centre)

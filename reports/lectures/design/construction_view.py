@@ -13,15 +13,15 @@ from analytic.circuits.arcs import SignedScene
 from analytic.kinematics import solve_driven
 from analytic.lectures.drawings.placed_mechanism import DriverState, PlacedMechanism
 from analytic.lectures.synthesis.design import (
-    Circle,
-    Curve,
     Dot,
+    DrawingStep,
+    DrawnCircle,
+    DrawnCurve,
     Element,
     Look,
     PrecisionPosition,
     Proposal,
     Segment,
-    Step,
 )
 from analytic.lectures.synthesis.examine import UNMET, Examined, examine
 from models.array import Array
@@ -56,19 +56,19 @@ LOOKS: dict[Look, Stroke] = {
 }
 
 
-def look_of(element: Element, steps: Sequence[Step]) -> Stroke:
+def look_of(element: Element, steps: Sequence[DrawingStep]) -> Stroke:
     """That of an element among all of them."""
-    if isinstance(element, Curve) and element.look == "auxiliary":
+    if isinstance(element, DrawnCurve) and element.look == "auxiliary":
         curves = curves_of(steps)
         number = next(k for k, curve in enumerate(curves) if curve is element)
         return Stroke(CURVES[number % len(CURVES)], 0.8)
     return LOOKS[element.look]
 
 
-def curves_of(steps: Sequence[Step]) -> list[Curve]:
+def curves_of(steps: Sequence[DrawingStep]) -> list[DrawnCurve]:
     """The curves that are drawn on the way, in their order."""
     every = (element for step in steps for element in step.elements)
-    return [each for each in every if isinstance(each, Curve) and each.look == "auxiliary"]
+    return [each for each in every if isinstance(each, DrawnCurve) and each.look == "auxiliary"]
 
 
 LEAST = 1e-9
@@ -93,16 +93,16 @@ def _lines(element: Element, low: Array, high: Array) -> Iterator[Array]:
         case Segment(start, end, _, beyond):
             more = beyond * (end - start)
             yield np.array([xy(start - more), xy(end + more)])
-        case Circle(centre, radius):
+        case DrawnCircle(centre, radius):
             for first, last in _arcs(element, low, high):
                 yield arc_places(xy(centre), radius, first, last)
-        case Curve(pieces):
+        case DrawnCurve(pieces):
             for piece in pieces:
                 if len(piece) > 1:
                     yield np.array([xy(place) for place in piece])
 
 
-def _arcs(circle: Circle, low: Array, high: Array) -> Iterator[tuple[float, float]]:
+def _arcs(circle: DrawnCircle, low: Array, high: Array) -> Iterator[tuple[float, float]]:
     """The parts of a circle or an arc that may be in a box, from angle to angle [rad]."""
     near = near_angles(xy(circle.centre), circle.radius, low, high)
     if circle.arc is None:
@@ -180,7 +180,7 @@ class ConstructionView:
         return ConstructionView(examined, placements, _shown(examined, placements))
 
     @property
-    def steps(self) -> tuple[Step, ...]:
+    def steps(self) -> tuple[DrawingStep, ...]:
         return self.examined.proposal.steps
 
     @property
@@ -228,11 +228,11 @@ def _extent(element: Element) -> Iterable[complex]:
             return [place]
         case Segment(start, end):
             return [start, end]
-        case Circle(centre, radius, "given", arc):
+        case DrawnCircle(centre, radius, "given", arc):
             first, last = arc or (0.0, math.tau)
             angles = np.linspace(first, first + ((last - first) % math.tau or math.tau), FEW_PLACES)
             return [complex(place) for place in centre + radius * np.exp(1j * angles)]
-        case Curve(pieces, "given"):
+        case DrawnCurve(pieces, "given"):
             return [place for piece in pieces for place in piece]
     return []
 
@@ -252,9 +252,9 @@ def _words_of(element: Element, number: int) -> tuple[complex, str]:
             return place, letter or f"a point of step {number}"
         case Segment(start, end):
             return 0.5 * (start + end), f"a line of step {number}"
-        case Circle(centre, radius):
+        case DrawnCircle(centre, radius):
             return centre, f"a circle of step {number} with the radius {readable(radius)} m"
-        case Curve(pieces):
+        case DrawnCurve(pieces):
             every = [place for piece in pieces for place in piece] or [0j]
             return every[len(every) // 2], f"a curve of step {number}"
 

@@ -28,7 +28,7 @@ KEY: dict[Look, str] = {"given": "given", "auxiliary": "construction"}
 
 
 @dataclass(frozen=True)
-class Part:
+class ColumnPart:
     """A paragraph of the column: what hangs before it, a number or the sample of a line."""
 
     words: str
@@ -49,24 +49,24 @@ class Part:
         return wrapped(self.words, room, SMALL)
 
 
-def parts_of(view: ConstructionView, far: Iterable[str]) -> list[list[Part]]:
+def parts_of(view: ConstructionView, far: Iterable[str]) -> list[list[ColumnPart]]:
     """What is told of a construction, in groups."""
     proposal = view.examined.proposal
-    steps = [Part(step.words, f"({k})") for k, step in enumerate(view.steps, 1)]
-    chosen = [Part(f"{name}: {value}") for name, value in proposal.chosen.items()]
+    steps = [ColumnPart(step.words, f"({k})") for k, step in enumerate(view.steps, 1)]
+    chosen = [ColumnPart(f"{name}: {value}") for name, value in proposal.chosen.items()]
     doubts = [proposal.doubt] * bool(proposal.doubt) + view.examined.defects
-    off = [Part(words) for words in far]
+    off = [ColumnPart(words) for words in far]
     groups = [
         steps,
         [_titled("Chosen"), *chosen] if chosen else [],
-        [_titled("Doubts"), *map(Part, doubts)] if doubts else [],
+        [_titled("Doubts"), *map(ColumnPart, doubts)] if doubts else [],
         [_titled("Off the paper"), *off] if off else [],
         _key(view),
     ]
     return [group for group in groups if group]
 
 
-def _key(view: ConstructionView) -> list[Part]:
+def _key(view: ConstructionView) -> list[ColumnPart]:
     """What the lines are, of those that there are."""
     coloured = {id(curve) for curve in curves_of(view.steps)}  # by the numbers of their steps
     every = [each for step in view.steps for each in step.elements if id(each) not in coloured]
@@ -74,21 +74,21 @@ def _key(view: ConstructionView) -> list[Part]:
     key = [(words, LOOKS[look]) for look, words in KEY.items() if look in looks]
     key.append(("mechanism in position 1", LOOKS["result"]))
     key += [("in the other positions", Stroke(OTHERS, OTHERS_WIDTH))] * bool(view.others)
-    return [Part(words, look, QUIET) for words, look in key]
+    return [ColumnPart(words, look, QUIET) for words, look in key]
 
 
-def _titled(words: str) -> Part:
-    return Part(words, weight="bold")
+def _titled(words: str) -> ColumnPart:
+    return ColumnPart(words, weight="bold")
 
 
-def height_of(groups: Sequence[Sequence[Part]], width: float) -> float:
+def height_of(groups: Sequence[Sequence[ColumnPart]], width: float) -> float:
     """What groups need in a column of a width [mm]."""
     rows = sum(len(part.lines(width)) for group in groups for part in group)
     parts = sum(len(group) for group in groups)
     return 2 * INSET_MM + ROW_MM * rows + GAP_MM * (0.5 * parts + len(groups))
 
 
-def write_column(axes: Axes, groups: Sequence[Sequence[Part]], column: Box) -> None:
+def write_column(axes: Axes, groups: Sequence[Sequence[ColumnPart]], column: Box) -> None:
     """All groups from the top of a column that is high enough."""
     left, y = column.left + INSET_MM, column.bottom + column.height - INSET_MM
     for group in groups:
@@ -104,7 +104,7 @@ def write_column(axes: Axes, groups: Sequence[Sequence[Part]], column: Box) -> N
         y -= GAP_MM
 
 
-def _hang(axes: Axes, part: Part, left: float, base: float) -> None:
+def _hang(axes: Axes, part: ColumnPart, left: float, base: float) -> None:
     """What stands before a paragraph, on the base line of its first row."""
     if isinstance(part.before, Stroke):
         start, end = np.array([left, base + 0.8]), np.array([left + SAMPLE_MM, base + 0.8])

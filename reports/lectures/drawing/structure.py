@@ -37,7 +37,7 @@ SAME = 1e-6
 
 
 @dataclass(frozen=True)
-class Assembled:
+class SceneAssembly:
     """One assembly: the mechanism as it stands, its ``branch`` there, and whether it is the one
     that the scene itself moves in."""
 
@@ -61,7 +61,7 @@ class Assembled:
         return {group.branch_key for group in self.placement.structure.groups}
 
 
-def all_assemblies(scene: Scene, structure: Structure, coordinate: float) -> list[Assembled]:
+def all_assemblies(scene: Scene, structure: Structure, coordinate: float) -> list[SceneAssembly]:
     """Every assembly with the driver at a coordinate [rad, or m of a slider], in the order of the
     branches, each with the numbers that it has where a motion starts there.
 
@@ -87,7 +87,7 @@ def all_assemblies(scene: Scene, structure: Structure, coordinate: float) -> lis
         branch = dict(zip([*keys, *triads], chosen, strict=True))
         placement = _placed(replace(there, branch=branch), state)
         if placement is not None:
-            every.append(Assembled(placement, branch, own is not None and _is(placement, own)))
+            every.append(SceneAssembly(placement, branch, own is not None and _is(placement, own)))
     return every
 
 
@@ -225,7 +225,7 @@ def _group_in_words(group: ClassedGroup) -> str:
     return f"{kind} ({', '.join(group.links)})"
 
 
-def _show_assemblies(console: Console, every: list[Assembled], at: str) -> None:
+def _show_assemblies(console: Console, every: list[SceneAssembly], at: str) -> None:
     """Every assembly, by the angles of its links."""
     _say(console, f"\n{_counted(every)} with {at}" + (" (* this scene's)" if every else ""))
     if not every:
@@ -244,11 +244,11 @@ def _show_assemblies(console: Console, every: list[Assembled], at: str) -> None:
     console.print(table)
 
 
-def _caption(one: Assembled) -> str:
+def _caption(one: SceneAssembly) -> str:
     return f"branch: {one.words}" + ("; this scene's" if one.is_own else "")
 
 
-def _counted(every: list[Assembled]) -> str:
+def _counted(every: list[SceneAssembly]) -> str:
     many = len(every)
     return f"{many or 'no'} assembl{'y' if many == 1 else 'ies'}"
 

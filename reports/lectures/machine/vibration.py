@@ -253,12 +253,12 @@ def _write(
     folder = request.output
     if folder is None:
         return
-    from reports.lectures.machine.vibration_figures import Drawing, write_figures
+    from reports.lectures.machine.vibration_figures import VibrationDrawing, write_figures
 
     for name, text in written.texts.items():
         write(folder / name, text(found))
     drawings = [
-        Drawing(name, partial(draw, found))
+        VibrationDrawing(name, partial(draw, found))
         for name, draw in zip(written.figures, written.draws(), strict=True)
     ]
     figures = write_figures(folder, drawings, scene.name)

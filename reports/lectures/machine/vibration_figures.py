@@ -36,14 +36,14 @@ SMALLEST = 1e-7
 
 
 @dataclass(frozen=True)
-class Drawing:
+class VibrationDrawing:
     """A figure by its name, and what draws it."""
 
     name: str
     draw: Callable[[], Figure]
 
 
-def write_figures(folder: Path, drawings: Iterable[Drawing], title: str) -> list[str]:
+def write_figures(folder: Path, drawings: Iterable[VibrationDrawing], title: str) -> list[str]:
     """Write figures in all formats; returns the names of the files. Raises CrankcheckError where
     the system refuses."""
     names = []

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.elastic.natural import Sensitivity, link_modes, lowest_rad_s
+from analytic.elastic.natural import FrequencySensitivity, link_modes, lowest_rad_s
 from analytic.lectures.vibration.floquet import STABLE
 from analytic.lectures.vibration.over_speeds import HIGHEST, InertiaMap, OverSpeeds
 from analytic.lectures.vibration.steady_vibration import SteadyVibration
@@ -147,7 +147,7 @@ def stability_text(vibration: SteadyVibration) -> str:
     return "Stable, without damping: deviations neither grow nor fall."
 
 
-def resonance_text(found: Sensitivity) -> str:
+def resonance_text(found: FrequencySensitivity) -> str:
     """How far it is from a resonance."""
     if found.size < NEAR:
         return (

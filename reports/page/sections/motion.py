@@ -25,7 +25,7 @@ from reports.drawing.moving import (
 )
 from reports.output.numbers import error_text
 from reports.page.sections.section import BUDGET, Section, chosen, steps_held
-from reports.results.error_parts import CurveBody, Parts, Split, split, worst_body
+from reports.results.error_parts import CurveBody, ErrorParts, Split, split, worst_body
 from reports.results.lines import Line
 from reports.results.overview import Report
 
@@ -139,7 +139,7 @@ class _DrawnScene:
             ],
         }
 
-    def _parts(self, parts: Parts | None) -> dict[str, object] | None:
+    def _parts(self, parts: ErrorParts | None) -> dict[str, object] | None:
         """The curves of one cell, and the number of their axis."""
         if parts is None:
             return None
@@ -150,7 +150,7 @@ class _DrawnScene:
             "axis": self.axes.setdefault(axis, len(self.axes)),
         }
 
-    def _axis(self, parts: Parts) -> dict[str, object]:
+    def _axis(self, parts: ErrorParts) -> dict[str, object]:
         """Where the driver is [deg or m], angles from the first turn on, and the part of the period
         [%]."""
         part = (parts.time_s - parts.time_s[0]) / self.scene.driver.law.period_s

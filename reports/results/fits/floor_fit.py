@@ -30,7 +30,7 @@ from models.array import Array
 
 
 @dataclass(frozen=True)
-class Curve:
+class ErrorCurve:
     """A curve through points; ``coefficient`` is C [unit / s^order], below 0 where the error comes
     up to its floor.
 
@@ -82,7 +82,7 @@ class Allowed:
     floor: tuple[float, float]
 
 
-def straight(dt_s: Array, error: Array) -> Curve:
+def straight(dt_s: Array, error: Array) -> ErrorCurve:
     """C dt^p, p of any sign, through two points or more (shape (n,))."""
     x, e = np.log(dt_s / dt_s.min()), np.log(error)
     away = x - x.mean()
@@ -90,7 +90,7 @@ def straight(dt_s: Array, error: Array) -> Curve:
     level = float(e.mean() - order * x.mean())
     misfit = float(np.sum((e - level - order * x) ** 2))
     finest = float(dt_s.min())
-    return Curve(order, 0.0, math.exp(level) / finest**order, finest, misfit, len(e), 2)
+    return ErrorCurve(order, 0.0, math.exp(level) / finest**order, finest, misfit, len(e), 2)
 
 
 def curvature(dt_s: Array, error: Array) -> Array:
@@ -165,7 +165,7 @@ BELOW = -0.3
 be a guess about steps that nobody ran."""
 
 
-def added(dt_s: Array, error: Array) -> Curve:
+def added(dt_s: Array, error: Array) -> ErrorCurve:
     """floor + C dt^p through three points or more (shape (n,))."""
     scan, same = _Scan(dt_s, error), np.ones(1)
     near, width = ORDERS, ORDERS[1] - ORDERS[0]
@@ -178,10 +178,10 @@ def added(dt_s: Array, error: Array) -> Curve:
     level, _ = scan.fit(same, np.array([order]), unit)
     size, share, finest = math.exp(level.item()), _share(unit).item(), float(dt_s.min())
     coefficient = size * share / finest**order
-    return Curve(order, size * (1.0 - share), coefficient, finest, misfit, len(error), 3)
+    return ErrorCurve(order, size * (1.0 - share), coefficient, finest, misfit, len(error), 3)
 
 
-def opposed(dt_s: Array, error: Array) -> Curve | None:
+def opposed(dt_s: Array, error: Array) -> ErrorCurve | None:
     """The curve of any alignment through four points or more (shape (n,)); None where there is
     none.
 
@@ -203,11 +203,15 @@ def opposed(dt_s: Array, error: Array) -> Curve | None:
     order, level, part = float(OPPOSED_ORDERS[best]), math.sqrt(floor[best]), math.sqrt(step[best])
     alignment, coefficient = float(cross[best]) / (2.0 * level * part), part / finest**order
     least = float(misfit[best])
-    return Curve(order, level, coefficient, finest, least, len(error), 4, alignment)
+    return ErrorCurve(order, level, coefficient, finest, least, len(error), 4, alignment)
 
 
 def within(
-    dt_s: Array, error: Array, best: Curve, more: Sequence[float], alignments: Sequence[float] = ()
+    dt_s: Array,
+    error: Array,
+    best: ErrorCurve,
+    more: Sequence[float],
+    alignments: Sequence[float] = (),
 ) -> list[Allowed]:
     """Orders and floors of the curves whose misfit is at most that of ``best`` and ``more``, for
     each of several; of the alignment of ``best`` alone, or also of others, and all near it."""
@@ -229,7 +233,7 @@ def within(
     return [_allowed(best, orders, rest, level, (limit - misfit) / len(error)) for limit in limits]
 
 
-def _allowed(best: Curve, orders: Array, rest: Array, level: Array, slack: Array) -> Allowed:
+def _allowed(best: ErrorCurve, orders: Array, rest: Array, level: Array, slack: Array) -> Allowed:
     """Least and largest order and floor of ``best`` and the curves that leave a ``slack`` per
     point; ``rest`` is the share of E that is floor. Shapes (i, k, m)."""
     inside = slack >= 0.0

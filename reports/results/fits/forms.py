@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from reports.results.fits.floor_fit import ORDERS, Curve, added, curvature, opposed, straight
+from reports.results.fits.floor_fit import ORDERS, ErrorCurve, added, curvature, opposed, straight
 
 LEAST_SCATTER = 0.02
 """The largest error of a run is not known better than this: samples miss its peak."""
@@ -33,7 +33,7 @@ LEAST_REST, MOST_REST = 0.5, 2.0
 class Form:
     """A form with its least number of points."""
 
-    fit: Callable[[Array, Array], Curve | None]
+    fit: Callable[[Array, Array], ErrorCurve | None]
     least: int
 
 
@@ -42,12 +42,12 @@ FLOOR = Form(added, 3)
 OPPOSED = Form(opposed, 5)
 
 
-def scatter(curve: Curve) -> float:
+def scatter(curve: ErrorCurve) -> float:
     """The scatter of the points of a curve, at least what is unavoidable."""
     return max(curve.scatter, LEAST_SCATTER if curve.freedom else UNKNOWN_SCATTER)
 
 
-def uncertainty(curve: Curve) -> float:
+def uncertainty(curve: ErrorCurve) -> float:
     """The root of what a misfit may be larger by, for an uncertainty that holds 68.3 %.
 
     Scatter times Student's t (Cornish-Fisher series; 1 % low at one degree of freedom).
@@ -56,7 +56,7 @@ def uncertainty(curve: Curve) -> float:
     return scatter(curve) * (1.0 + per / 2.0 + per**2 / 4.0 + per**3 / 16.0)
 
 
-def longest(form: Form, dts: Array, errors: Array) -> Curve | None:
+def longest(form: Form, dts: Array, errors: Array) -> ErrorCurve | None:
     """A form through as many points as lie on one curve, the coarsest left out one after another.
 
     Points are finest first, at three different steps or more. None where no curve exists.
@@ -75,7 +75,7 @@ def longest(form: Form, dts: Array, errors: Array) -> Curve | None:
     return best
 
 
-def _off(others: Curve) -> float:
+def _off(others: ErrorCurve) -> float:
     """By how much a point that is off the curve of the others makes the misfit larger."""
     return (_times(others.freedom) * scatter(others)) ** 2
 
@@ -98,7 +98,7 @@ def slower(than: float, dts: Array, errors: Array) -> bool:
     return abs(straight(dts[last], errors[last]).order) < than
 
 
-def floor_seen(curve: Curve, dts: Array, errors: Array) -> bool:
+def floor_seen(curve: ErrorCurve, dts: Array, errors: Array) -> bool:
     """Whether the points of a curve show its floor: it is most of the finest error, the curve has
     all but stopped to fall, and no power of dt alone goes through the same points."""
     if not LEAST_REST <= curve.rest <= MOST_REST or abs(curve.slope) > LEVEL:
@@ -109,7 +109,7 @@ def floor_seen(curve: Curve, dts: Array, errors: Array) -> bool:
     return abs(line.order) < FLAT or better(curve, line)
 
 
-def opposed_seen(dts: Array, errors: Array) -> Curve | None:
+def opposed_seen(dts: Array, errors: Array) -> ErrorCurve | None:
     """A floor that works against the step, through as many points as show it; None without."""
     if not slower(LEVEL, dts, errors):
         return None
@@ -123,7 +123,7 @@ def opposed_seen(dts: Array, errors: Array) -> Curve | None:
     return None
 
 
-def better(curve: Curve, than: Curve) -> bool:
+def better(curve: ErrorCurve, than: ErrorCurve) -> bool:
     """Whether a curve is clearly better than one with fewer parameters, through the same points."""
     return than.misfit - curve.misfit > (CLEARLY * scatter(curve)) ** 2
 

@@ -17,7 +17,7 @@ import numpy as np
 from models.array import Array
 from reports.judge.three_steps import AT_ROUNDING
 from reports.output.numbers import count, short
-from reports.results.fits.floor_fit import ALIGNMENTS, ORDERS, Curve, reach, straight, within
+from reports.results.fits.floor_fit import ALIGNMENTS, ORDERS, ErrorCurve, reach, straight, within
 from reports.results.fits.forms import (
     FLAT,
     FLOOR,
@@ -71,7 +71,7 @@ class LineFit:
     floor_error: float = math.nan
     floor_below: float = math.nan
     scatter: float = math.nan
-    curve: Curve | None = None
+    curve: ErrorCurve | None = None
 
     @property
     def runs(self) -> tuple[tuple[float, float], ...]:
@@ -166,7 +166,7 @@ def _fitted(line: LineFit, fit: tuple[int, ...]) -> LineFit:
     return _without_floor(line, fit, dts, errors)
 
 
-def _with_floor(line: LineFit, dts: Array, errors: Array, curve: Curve) -> LineFit:
+def _with_floor(line: LineFit, dts: Array, errors: Array, curve: ErrorCurve) -> LineFit:
     """A floor, with the doubt of curves of any alignment; its order where the points tell it."""
     dts, errors, more = dts[: curve.points], errors[: curve.points], uncertainty(curve)
     (alone,) = within(dts, errors, curve, [more**2])
@@ -200,7 +200,7 @@ def _without_floor(line: LineFit, fit: tuple[int, ...], dts: Array, errors: Arra
     )
 
 
-def _on(line: LineFit, fit: tuple[int, ...], curve: Curve) -> LineFit:
+def _on(line: LineFit, fit: tuple[int, ...], curve: ErrorCurve) -> LineFit:
     """The line with a curve, and the points that it goes through."""
     used = _mask(fit[: curve.points], len(line.used))
     return replace(line, used=used, curve=curve, scatter=curve.scatter)

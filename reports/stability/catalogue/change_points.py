@@ -9,7 +9,7 @@ from analytic.free.exact_motions import ChainMotion
 from models.scene import Scene
 from models.scene.hard import (
     SOURCE,
-    Chain,
+    WindowChain,
     double_parallelogram,
     fourbar,
     slider_crank,
@@ -183,7 +183,7 @@ def _three_rockers(steps: float) -> Trial:
 
 
 def _windows(number: float) -> Trial:
-    chain = Chain(round(number))
+    chain = WindowChain(round(number))
     scene = chain.scene()
     period = scene.driver.law.period_s
     return Trial(

@@ -8,7 +8,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.causes.cause import Case, Cause, Excerpt
+from reports.causes.cause import Cause, Excerpt, LogCase
 from reports.causes.find import causes
 from reports.compare.beside import Truth
 from reports.compare.errors import Error, Errors, largest
@@ -49,7 +49,7 @@ class DrivenLog:
     def explained(self, held: HeldLog) -> tuple[Sequence[Cause], Sequence[str]]:
         if held.fit is not None and not held.fit.explains:
             return (), (NO_FIT,)
-        case = Case(held.log, held.truth, limits_by_column(held.log, held.evidence, held.errors))
+        case = LogCase(held.log, held.truth, limits_by_column(held.log, held.evidence, held.errors))
         found = causes(case)
         return found, (*seldom(case), *of_no_cause(case, found, held.errors))
 
@@ -69,7 +69,7 @@ SMALL, MOST = 0.1, 0.7
 """A part of an error at the logged angle of the driver that is little of it, and most of it."""
 
 
-def of_no_cause(case: Case, causes: Sequence[Cause], errors: Errors) -> tuple[str, ...]:
+def of_no_cause(case: LogCase, causes: Sequence[Cause], errors: Errors) -> tuple[str, ...]:
     """Of what is out and has no cause: a sentence on the drive, the geometry and the joints, and
     one on how the columns that are off most go on, places first. Raises CrankcheckError where the
     scene has no reference."""
@@ -88,7 +88,7 @@ def of_no_cause(case: Case, causes: Sequence[Cause], errors: Errors) -> tuple[st
     return (*((parts,) if parts else ()), *(lines if shapes else ()))
 
 
-def seldom(case: Case) -> Iterator[str]:
+def seldom(case: LogCase) -> Iterator[str]:
     """What is to be known of an angle of the driver that is out, and turns by half a turn or more
     from row to row."""
     scene, time_s = case.truth.scene, case.log.time_s

@@ -55,7 +55,7 @@ KINDS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Closure:
+class ModelClosure:
     """A `connect` or `weld` between two bodies.
 
     ``anchors`` are the two copies of its point in space (3,) [m] as the model is drawn;
@@ -91,7 +91,7 @@ def body_name(model: Any, body: int) -> str:
     return name_of(model, mujoco.mjtObj.mjOBJ_BODY, body) or f"body{body}"
 
 
-def equalities(model: Any, data: Any) -> tuple[list[Closure], list[Coupling]]:
+def equalities(model: Any, data: Any) -> tuple[list[ModelClosure], list[Coupling]]:
     """The active equalities of the model, at the pose of ``data``."""
     closures, couplings = [], []
     if int(model.opt.disableflags) & IDLE:
@@ -108,7 +108,7 @@ def equalities(model: Any, data: Any) -> tuple[list[Closure], list[Coupling]]:
     return closures, couplings
 
 
-def _closure(model: Any, data: Any, index: int, name: str, kind: str) -> Closure:
+def _closure(model: Any, data: Any, index: int, name: str, kind: str) -> ModelClosure:
     ends = (int(model.eq_obj1id[index]), int(model.eq_obj2id[index]))
     own = model.eq_data[index]
     if int(model.eq_objtype[index]) == SITE:
@@ -134,7 +134,7 @@ def _closure(model: Any, data: Any, index: int, name: str, kind: str) -> Closure
     if not np.isfinite([*anchors, *rotation]).all():
         raise ModelError(f"<{kind}> {name}: its anchor or pose is not finite")
     turns = kind == "connect" or float(own[10]) == 0.0
-    return Closure(
+    return ModelClosure(
         index,
         name,
         "connect" if turns else "weld",

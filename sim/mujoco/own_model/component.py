@@ -14,8 +14,8 @@ from models.array import Array
 from models.errors import few, suggestion
 from sim.mujoco.own_model.closures import (
     IDLE,
-    Closure,
     Coupling,
+    ModelClosure,
     ModelError,
     body_name,
     equalities,
@@ -108,7 +108,7 @@ class Component:
     plane: Plane
     driven: int
     bodies: tuple[RigidBody, ...]
-    closures: tuple[Closure, ...]
+    closures: tuple[ModelClosure, ...]
 
     def rigid(self, body: int) -> int:
         """The rigid body of a body of the model."""
@@ -180,7 +180,7 @@ def joint_name(model: Any, joint: int) -> str:
     return name or f"a joint of {body_name(model, int(model.jnt_bodyid[joint]))}"
 
 
-def _together(model: Any, body: int, closures: Sequence[Closure]) -> set[int]:
+def _together(model: Any, body: int, closures: Sequence[ModelClosure]) -> set[int]:
     """The rigid bodies that joints and closures tie to that of a body, the ground left out."""
     ties = [
         (rigid(model, root), rigid(model, int(model.body_parentid[root])))
@@ -207,7 +207,7 @@ def _refuse_couplings(model: Any, couplings: Sequence[Coupling], ids: set[int]) 
             )
 
 
-def _refuse_open(model: Any, closures: Sequence[Closure]) -> None:
+def _refuse_open(model: Any, closures: Sequence[ModelClosure]) -> None:
     if not closures:
         idle = int(model.neq - np.count_nonzero(model.eq_active0))
         if int(model.opt.disableflags) & IDLE:
@@ -282,7 +282,7 @@ def loose_joints(component: Component) -> list[str]:
     return [joint_name(model, joint) for joint, moves in zip(joints, moving, strict=True) if moves]
 
 
-def _rows(component: Component, closure: Closure) -> Array:
+def _rows(component: Component, closure: ModelClosure) -> Array:
     """The speeds in the plane that a closure forbids, (2 or 3, nv)."""
     model, data, plane = component.model, component.data, component.plane
     ends = []

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from models.scene import Point
-from sim.mujoco.own_model.closures import Closure, ModelError, body_name, point_of, scene_name
+from sim.mujoco.own_model.closures import ModelClosure, ModelError, body_name, point_of, scene_name
 from sim.mujoco.own_model.component import PARALLEL_DEG, WORLD, Component, RigidBody
 
 PAIRS = {
@@ -53,7 +53,7 @@ class Placement:
 
 
 @dataclass(frozen=True)
-class Mark:
+class ModelMark:
     """A place on a link, as the link is drawn."""
 
     link: int
@@ -65,11 +65,11 @@ class Pivot:
     """A pin between two links: each has its own copy."""
 
     name: str
-    marks: tuple[Mark, Mark]
+    marks: tuple[ModelMark, ModelMark]
 
 
 @dataclass(frozen=True)
-class Guide:
+class ModelGuide:
     """``rider`` slides along ``direction`` of link ``on``: the whole link, or, where ``mark`` says
     so, one point of it, through ``through`` on the link ``on``. Where the whole link slides
     ``meets`` says where its places are on the link ``on``, as the pair is drawn."""
@@ -79,7 +79,7 @@ class Guide:
     rider: int
     direction: complex
     through: complex
-    mark: Mark | None = None
+    mark: ModelMark | None = None
     meets: Placement = Placement()
 
 
@@ -90,17 +90,17 @@ class Linkage:
     component: Component
     placements: Mapping[int, tuple[int, Placement]]
     pivots: tuple[Pivot, ...]
-    guides: tuple[Guide, ...]
+    guides: tuple[ModelGuide, ...]
 
     @property
     def links(self) -> tuple[int, ...]:
         """The moving links, in the order of the file."""
         return tuple(sorted({link for link, _ in self.placements.values()} - {WORLD}))
 
-    def mark(self, body: int, place: complex) -> Mark:
+    def mark(self, body: int, place: complex) -> ModelMark:
         """A place that is drawn on a rigid body, on its link."""
         link, placement = self.placements[body]
-        return Mark(link, placement(place))
+        return ModelMark(link, placement(place))
 
 
 def linkage(component: Component) -> Linkage:
@@ -115,7 +115,7 @@ def linkage(component: Component) -> Linkage:
     bare = Linkage(component, _welded(component), (), ())
     pairs = [pair for body in component.bodies for pair in _pairs(bare, body)]
     pivots = [pair for pair in pairs if isinstance(pair, Pivot)]
-    guides = [pair for pair in pairs if isinstance(pair, Guide)]
+    guides = [pair for pair in pairs if isinstance(pair, ModelGuide)]
     for each in component.closures:
         if each.kind == "connect":
             ends = [
@@ -149,7 +149,7 @@ def _welded(component: Component) -> dict[int, tuple[int, Placement]]:
     return placed
 
 
-def _placement(component: Component, weld: Closure) -> Placement:
+def _placement(component: Component, weld: ModelClosure) -> Placement:
     """Where the second body of a weld stands when it holds, from where it is drawn."""
     drawn = component.data.xmat[weld.bodies[1]].reshape(3, 3)
     turn, tilt_deg = component.plane.turned(weld.rotation @ drawn.T)
@@ -161,7 +161,7 @@ def _placement(component: Component, weld: Closure) -> Placement:
     return Placement(unit, first - unit * second)
 
 
-def _pairs(bare: Linkage, body: RigidBody) -> Iterator[Pivot | Guide]:
+def _pairs(bare: Linkage, body: RigidBody) -> Iterator[Pivot | ModelGuide]:
     """What ties a body to its parent."""
     kinds = " ".join(joint.kind for joint in body.joints)
     kind = PAIRS.get(kinds)
@@ -182,7 +182,7 @@ def _pairs(bare: Linkage, body: RigidBody) -> Iterator[Pivot | Guide]:
     elif slide is not None and hinge is None:
         link, placement = on_parent
         direction = placement.turn * slide.direction
-        yield Guide(
+        yield ModelGuide(
             slide.name,
             link,
             own,
@@ -195,7 +195,7 @@ def _pairs(bare: Linkage, body: RigidBody) -> Iterator[Pivot | Guide]:
         link, placement = bare.placements[upper]
         mark = bare.mark(lower, hinge.anchor)
         direction = placement.turn * slide.direction * (1 if upper == body.parent else -1)
-        yield Guide(hinge.name, link, mark.link, direction, placement(hinge.anchor), mark)
+        yield ModelGuide(hinge.name, link, mark.link, direction, placement(hinge.anchor), mark)
 
 
 SAME = 1e-9
@@ -210,7 +210,7 @@ class NamedPoint:
     """A point with its marks on the links that carry it, as the links are drawn."""
 
     name: str
-    marks: tuple[Mark, ...]
+    marks: tuple[ModelMark, ...]
 
     @cached_property
     def places(self) -> Mapping[int, complex]:
@@ -230,7 +230,7 @@ class Near:
 
 def points(linkage: Linkage, bodies: Container[str]) -> list[NamedPoint]:
     """All points of the linkage, in the order of the file."""
-    groups: list[tuple[list[str], list[Mark]]] = []
+    groups: list[tuple[list[str], list[ModelMark]]] = []
     tolerance = SAME * size(linkage)
     for names, marks in _ties(linkage):
         same = [group for group in groups if _meet(group[1], marks, tolerance)]
@@ -277,7 +277,7 @@ def _extent(places: Sequence[complex]) -> float:
     return max((abs(a - b) for a in places for b in places), default=0.0)
 
 
-def _ties(linkage: Linkage) -> Iterator[tuple[list[str], list[Mark]]]:
+def _ties(linkage: Linkage) -> Iterator[tuple[list[str], list[ModelMark]]]:
     """The marks of every pin, of every point on a line, and one of each link that carries nothing
     but lines: a link without a point is none."""
     marked: set[int] = {WORLD}
@@ -291,10 +291,10 @@ def _ties(linkage: Linkage) -> Iterator[tuple[list[str], list[Mark]]]:
     for guide in linkage.guides:
         if guide.on not in marked:
             marked.add(guide.on)
-            yield [guide.name], [Mark(guide.on, guide.through)]
+            yield [guide.name], [ModelMark(guide.on, guide.through)]
 
 
-def _meet(first: Sequence[Mark], second: Sequence[Mark], tolerance: float) -> bool:
+def _meet(first: Sequence[ModelMark], second: Sequence[ModelMark], tolerance: float) -> bool:
     return any(
         a.link == b.link and abs(a.place - b.place) <= tolerance for a in first for b in second
     )

@@ -11,7 +11,15 @@ from models.scene.joints import block_name
 from models.scene.laws import ConstantSpeed
 from sim.mujoco.own_model.closures import ModelError, body_name, scene_name
 from sim.mujoco.own_model.component import WORLD, joint_name, rigid
-from sim.mujoco.own_model.linkage import Guide, Linkage, Mark, NamedPoint, Placement, pair, points
+from sim.mujoco.own_model.linkage import (
+    Linkage,
+    ModelGuide,
+    ModelMark,
+    NamedPoint,
+    Placement,
+    pair,
+    points,
+)
 
 
 @dataclass(frozen=True)
@@ -47,7 +55,7 @@ CENTRED = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Parts:
+class SceneParts:
     """By link id what it is ``called`` and its ``matter``, without the ground; all ``points``;
     which links are ``blocks``, that are a point and a mass; the ``driver``, and what its joint
     ``reads`` as it is drawn [rad]."""
@@ -70,7 +78,7 @@ class Parts:
         return next(point for point in self.points if point.name == name)
 
 
-def parts_of(linkage: Linkage) -> Parts:
+def parts_of(linkage: Linkage) -> SceneParts:
     """The parts of a linkage.
 
     Raises
@@ -93,7 +101,7 @@ def parts_of(linkage: Linkage) -> Parts:
     _refuse_loose(linkage, driver, called)
     matter = {link: matter_of(linkage, link) for link in linkage.links}
     reads = float(model.qpos0[model.jnt_qposadr[joint]])
-    bare = Parts(linkage, called, found, matter, (), driver, reads)
+    bare = SceneParts(linkage, called, found, matter, (), driver, reads)
     blocks = [link for link in linkage.links if link != driver and _is_block(bare, link)]
     parts = replace(bare, blocks=blocks)
     return replace(parts, points=[*found, *_centres(parts)])
@@ -121,7 +129,7 @@ def _refuse_loose(linkage: Linkage, driver: int, called: Mapping[int, str]) -> N
         )
 
 
-def _is_block(parts: Parts, link: int) -> bool:
+def _is_block(parts: SceneParts, link: int) -> bool:
     """Whether a sliding link is a block: one point, that holds its mass, and nothing on it."""
     guides = parts.linkage.guides
     slides = [guide for guide in guides if guide.rider == link and guide.mark is None]
@@ -132,7 +140,7 @@ def _is_block(parts: Parts, link: int) -> bool:
     return abs(place - centre) <= CENTRED * max(abs(place), abs(centre), 1e-12)
 
 
-def _centres(parts: Parts) -> list[NamedPoint]:
+def _centres(parts: SceneParts) -> list[NamedPoint]:
     """The centres of mass of links that have one point alone: such a link has no length, and none
     of its places but that one would be judged."""
     taken = {point.name for point in parts.points}
@@ -143,7 +151,7 @@ def _centres(parts: Parts) -> list[NamedPoint]:
         if link not in parts.blocks and len(own) == 1 and apart > CENTRED * abs(centre):
             name = scene_name(f"{parts.called[link]}-centre", "P", taken)
             taken.add(name)
-            centres.append(NamedPoint(name, (Mark(link, centre),)))
+            centres.append(NamedPoint(name, (ModelMark(link, centre),)))
     return centres
 
 
@@ -156,7 +164,7 @@ class SceneRead:
     scene: Scene
     frames: Mapping[int, Placement]
     names: Mapping[int, str]
-    parts: Parts
+    parts: SceneParts
 
     @property
     def points(self) -> tuple[NamedPoint, ...]:
@@ -205,7 +213,7 @@ def scene_of(linkage: Linkage, name: str, source: str) -> SceneRead:
     return SceneRead(scene, frames, names, parts)
 
 
-def _link(parts: Parts, link: int, frame: Placement) -> Link:
+def _link(parts: SceneParts, link: int, frame: Placement) -> Link:
     """A link in its own frame."""
     matter = parts.matter[link]
     return Link(
@@ -217,7 +225,7 @@ def _link(parts: Parts, link: int, frame: Placement) -> Link:
     )
 
 
-def _frame(parts: Parts, link: int) -> Placement:
+def _frame(parts: SceneParts, link: int) -> Placement:
     """The frame of a link: origin in its first point, x-axis towards its second, along its line,
     or towards its centre of mass."""
     places = [point.places[link] for point in parts.points_of(link)]
@@ -232,7 +240,7 @@ def _frame(parts: Parts, link: int) -> Placement:
     return Placement(turn, -turn * origin)
 
 
-def _reading(parts: Parts, frame: Placement) -> Placement:
+def _reading(parts: SceneParts, frame: Placement) -> Placement:
     """The frame of the driven link, turned about its origin so that its angle is what the joint
     reads: all that is told of the driver's angle is in the joint's own coordinate."""
     component = parts.linkage.component
@@ -241,14 +249,17 @@ def _reading(parts: Parts, frame: Placement) -> Placement:
     return Placement(turn, turn / frame.turn * frame.shift)
 
 
-def _block_frame(parts: Parts, guide: Guide, slider: Slider, on: Placement) -> Placement:
+def _block_frame(parts: SceneParts, guide: ModelGuide, slider: Slider, on: Placement) -> Placement:
     """The frame of a block: its point is its origin, and its x-axis lies along the line."""
     turn = cmath.exp(-1j * slider.direction_rad) * on.turn * guide.meets.turn
     return Placement(turn, -turn * parts.point(slider.point).places[guide.rider])
 
 
 def _slider(
-    parts: Parts, guide: Guide, frames: Mapping[int, Placement], sliders: Mapping[str, Slider]
+    parts: SceneParts,
+    guide: ModelGuide,
+    frames: Mapping[int, Placement],
+    sliders: Mapping[str, Slider],
 ) -> Slider:
     """A pair that slides."""
     rider, on = guide.rider, frames[guide.on]

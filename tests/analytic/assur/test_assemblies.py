@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.assur.assemblies import Assembly, assemblies
+from analytic.assur.assemblies import TriadAssembly, assemblies
 from analytic.assur.eliminant import (
     AngleRow,
     CircleRow,
@@ -92,13 +92,13 @@ def test_a_homotopy_finds_the_same_assemblies(kinds: Kinds, seeds: range) -> Non
             assert left < 2e-15 * size * size, (seed, left)
 
 
-def away(one: Assembly, angle: float, x: float, y: float) -> float:
+def away(one: TriadAssembly, angle: float, x: float, y: float) -> float:
     """How far an assembly is from a pose, its place in lengths of itself."""
     off = math.dist(one.place, (x, y)) / (1.0 + math.hypot(*one.place))
     return abs(math.remainder(one.angle_rad - angle, math.tau)) + off
 
 
-def residual(row: LegRow, one: Assembly) -> float:
+def residual(row: LegRow, one: TriadAssembly) -> float:
     z, turn = complex(*one.place), complex(math.cos(one.angle_rad), math.sin(one.angle_rad))
     if isinstance(row, CircleRow):
         return abs(z + turn * complex(*row.a) - complex(*row.pin)) - row.length

@@ -19,7 +19,7 @@ from models.errors import CrankcheckError, ReachError
 from models.files.reading import parse_scene
 from models.motion import Motion
 from models.scene import Scene
-from models.scene.hard import Chain
+from models.scene.hard import WindowChain
 from models.scene.laws import FromRest, Law, Oscillating, SpeedChange
 from tests.analytic import four_bars, oracle
 from tests.analytic.chain import law_at
@@ -291,16 +291,16 @@ def test_a_law_that_rests_in_a_change_point_starts_on_the_branch_that_it_goes_to
 
 def test_a_chain_of_windows_is_followed_through_flat_up_to_six() -> None:
     theta = np.array([1.5, 0.5, 0.0, -0.5])
-    motion = driven(Chain(6).scene(), theta)
+    motion = driven(WindowChain(6).scene(), theta)
     assert np.allclose(motion.links["rocker6"].theta, theta, rtol=0, atol=1e-9)
     with pytest.raises(CrankcheckError, match=r"B7 is in a change point with no smooth motion"):
-        driven(Chain(7).scene(), theta)
+        driven(WindowChain(7).scene(), theta)
 
 
 @pytest.mark.parametrize("count", [8, slowly(40, reason="what is refused at the eighth window")])
 def test_longer_chains_of_windows_are_refused_at_any_angle(count: int) -> None:
     with pytest.raises(CrankcheckError, match=r"B8 is singular .*: change a length$"):
-        driven(Chain(count).scene(), np.array([1.5]))
+        driven(WindowChain(count).scene(), np.array([1.5]))
 
 
 POWERS = few(range(2, 13), (2, 7, 12), "between these nothing changes")

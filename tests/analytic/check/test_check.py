@@ -17,7 +17,7 @@ from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
 from models.motion import Motion
 from models.scene import Same, Scene
-from models.scene.hard import Chain
+from models.scene.hard import WindowChain
 from models.scene.joints import centre_of, frames
 from reports.compare.beside import truth_of
 from reports.contract.oscillators import centres
@@ -194,8 +194,8 @@ def test_newton_says_when_a_guess_leads_nowhere() -> None:
         newton.solve(scene, np.zeros(1), nowhere)
 
 
-@pytest.mark.parametrize("chain", [Chain(1), Chain(3, 0.5, 2.0, 3.0, -0.7)])
-def test_a_chain_of_windows_falls_as_its_closed_form(chain: Chain) -> None:
+@pytest.mark.parametrize("chain", [WindowChain(1), WindowChain(3, 0.5, 2.0, 3.0, -0.7)])
+def test_a_chain_of_windows_falls_as_its_closed_form(chain: WindowChain) -> None:
     free, scene = ChainMotion(chain), chain.scene()
     duration_s = 0.1 * free.period_s
     motion = free.motion(np.array([0.0, duration_s]))

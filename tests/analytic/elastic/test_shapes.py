@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp  # type: ignore[import-untyped]
 
-from analytic.elastic.beam import Beam, ElasticBody
+from analytic.elastic.beam import BeamBody, ElasticBody
 from analytic.elastic.discretisation import SegmentChain, SegmentedBody
 from analytic.elastic.shapes import (
     HermiteElements,
@@ -18,13 +18,13 @@ from analytic.elastic.shapes import (
     shortening,
 )
 from models.array import Array
-from models.scene.cut_links import Line
+from models.scene.cut_links import LinkLine
 from models.scene.elastic import ElasticLink
 
 LENGTH_M, DENSITY_KG_M, FLEXURAL_N_M2, AXIAL_N = 0.75, 0.243, 4.725, 6.3e6
 LINK = ElasticLink("rod", FLEXURAL_N_M2, AXIAL_N)
-STRAIGHT = Line(("A", "B"), (0.0, 0.0), 0.0, LENGTH_M, DENSITY_KG_M)
-ASKEW = Line(("A", "B"), (0.11, -0.07), 0.6, LENGTH_M, DENSITY_KG_M)
+STRAIGHT = LinkLine(("A", "B"), (0.0, 0.0), 0.0, LENGTH_M, DENSITY_KG_M)
+ASKEW = LinkLine(("A", "B"), (0.11, -0.07), 0.6, LENGTH_M, DENSITY_KG_M)
 """A line that does not start at the origin of the link's frame."""
 MARKERS = [(None, 0.0), (ASKEW.at(0.3), 0.2), ((0.4, 0.25), 0.0), (ASKEW.at(LENGTH_M), 0.0)]
 GRAVITY = (1.3, -9.81)
@@ -34,7 +34,7 @@ SHAPES: dict[str, Shapes] = {
     "polynomials": LegendrePolynomials(LENGTH_M, 5, 3),
     "elements": HermiteElements(LENGTH_M, 3, bends=True, stretches=True),
 }
-Body = Beam | SegmentChain
+Body = BeamBody | SegmentChain
 BODIES: dict[str, Body] = {
     f"{kind} {'stiffened' if stiff else 'linear'}": ElasticBody(LINK, ASKEW, shapes, stiff).body(
         MARKERS, GRAVITY
@@ -44,7 +44,7 @@ BODIES: dict[str, Body] = {
 } | {"chain": SegmentedBody(ElasticLink("rod", FLEXURAL_N_M2), ASKEW, 5).body(MARKERS, GRAVITY)}
 
 
-def beam(shapes: Shapes, pull_m_s2: float = 0.0, *, stiffened: bool = True) -> Beam:
+def beam(shapes: Shapes, pull_m_s2: float = 0.0, *, stiffened: bool = True) -> BeamBody:
     """A straight one, under a pull across it."""
     return ElasticBody(LINK, STRAIGHT, shapes, stiffened).body((), (0.0, -pull_m_s2))
 
@@ -57,7 +57,7 @@ def chain(count: int, pull_m_s2: float = 0.0, *, corrected: bool = False) -> Seg
 def across(own: Body) -> Array:
     """What leaves the line of a link where it is, a motion a column."""
     by = np.eye(own.size)[:, 3:]
-    if isinstance(own, Beam):
+    if isinstance(own, BeamBody):
         return by[:, : own.shapes.across]
     # The first segment turns so that the far end stays on the line: minus the mean of the others.
     n = own.own.count
@@ -76,7 +76,7 @@ def across_rad_s(own: Body) -> Array:
     return frequencies(own, across(own))
 
 
-def along_rad_s(own: Beam) -> Array:
+def along_rad_s(own: BeamBody) -> Array:
     return frequencies(own, np.eye(own.size)[:, 3 + own.shapes.across :])
 
 
@@ -246,7 +246,7 @@ def _full(entries: dict[tuple[int, int], float]) -> Array:
 
 
 def assembled(count: int) -> tuple[Array, Array, Array, Array]:
-    """C, D, m and stiffness of all nodes in the order of `Beam`'s coefficients: deflections and
+    """C, D, m and stiffness of all nodes in the order of `BeamBody`'s coefficients: deflections and
     slopes within the pins, then displacements along."""
     own, size = LENGTH_M / count, 3 * (count + 1)
     c, d, mass, stiffness = np.zeros(size), np.zeros(size), *(np.zeros((2, size, size)))

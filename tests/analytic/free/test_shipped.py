@@ -25,7 +25,7 @@ from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
 from models.scene import Scene
 from models.scene.characteristics import Constant
-from models.scene.hard import UPRIGHT, Chain
+from models.scene.hard import UPRIGHT, WindowChain
 from models.scene.joints import centre_of, mass_of
 from models.scene.loads import Load
 from tests.analytic.free.mechanisms import (
@@ -115,7 +115,7 @@ def test_energy_balances_at_any_time(name: str, until_s: float) -> None:
 )
 def test_the_chain_goes_as_its_closed_form_says(until_s: float) -> None:
     free, time_s = released(load_scene("fourbar-chain"), until_s), np.linspace(0.0, until_s, 333)
-    off = np.abs(free.law.at(time_s)[0] - ChainMotion(Chain(2)).at(time_s)[0])
+    off = np.abs(free.law.at(time_s)[0] - ChainMotion(WindowChain(2)).at(time_s)[0])
     assert off.max() <= (1e-11 if until_s <= 1.0 else 1e-9)
     assert np.all(off <= free.error_rad(time_s) + 1e-13)
 
@@ -123,7 +123,7 @@ def test_the_chain_goes_as_its_closed_form_says(until_s: float) -> None:
 def test_the_period_of_the_chain_is_that_of_its_closed_form() -> None:
     one = period(load_scene("fourbar-chain"))
     assert one.swing_rad is None
-    assert one.time_s == pytest.approx(ChainMotion(Chain(2)).period_s, abs=1e-12)
+    assert one.time_s == pytest.approx(ChainMotion(WindowChain(2)).period_s, abs=1e-12)
 
 
 @pytest.mark.parametrize("until_s", [1.2, slowly(10.0, reason="many swings")])
@@ -231,12 +231,17 @@ def test_a_period_is_refused_where_there_is_none(mechanism: Scene, said: str) ->
         period(mechanism)
 
 
-CHAINS = [Chain(1), Chain(40), Chain(3, 0.5, 2.0, 3.0, -0.7), Chain(2, gravity_m_s2=0.0)]
+CHAINS = [
+    WindowChain(1),
+    WindowChain(40),
+    WindowChain(3, 0.5, 2.0, 3.0, -0.7),
+    WindowChain(2, gravity_m_s2=0.0),
+]
 
 
 @pytest.mark.parametrize("count", [1, 2, 7, 40, 200])
 def test_a_chain_has_as_many_rods_and_dyads_as_windows_want(count: int) -> None:
-    scene = Chain(count).scene()
+    scene = WindowChain(count).scene()
     assert len(scene.links) == 2 * count + 1
     assert {"A0", f"B{count}", "B0"} <= scene.pins.keys()
     assert {len(bodies) for bodies in scene.pins.values()} == ({2, 3} if count > 1 else {2})
@@ -256,7 +261,7 @@ def test_a_chain_has_as_many_rods_and_dyads_as_windows_want(count: int) -> None:
 )
 def test_numbers_that_make_no_chain_are_refused(wrong: dict[str, float], said: str) -> None:
     with pytest.raises(CrankcheckError, match=said):
-        Chain(**{"count": 2, **wrong})  # type: ignore[arg-type]
+        WindowChain(**{"count": 2, **wrong})  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("rest", [1.0, 0.3, 1e-3, 1e-9])
@@ -285,7 +290,7 @@ def taylor(theta: mpmath.mpf, omega: mpmath.mpf, gain: mpmath.mpf) -> Iterator[t
 
 
 @pytest.mark.parametrize("chain", few(CHAINS, CHAINS[2:3], "the one in which no number is 1"))
-def test_closed_form_solves_the_reduced_equation_by_series_in_30_digits(chain: Chain) -> None:
+def test_closed_form_solves_the_reduced_equation_by_series_in_30_digits(chain: WindowChain) -> None:
     """From the equation and the start alone, over more than a turn."""
     n, turning = chain.count, ChainMotion(chain)
     times = 0.05 * np.arange(101)
@@ -302,7 +307,7 @@ def test_closed_form_solves_the_reduced_equation_by_series_in_30_digits(chain: C
 
 
 @pytest.mark.parametrize("chain", CHAINS)
-def test_energy_over_all_bodies_is_that_of_the_closed_form_and_constant(chain: Chain) -> None:
+def test_energy_over_all_bodies_is_that_of_the_closed_form_and_constant(chain: WindowChain) -> None:
     turning, times = ChainMotion(chain), np.linspace(0.0, 20.0, 401)
     theta, omega, _ = turning.at(times)
     energy = turning.energy(theta, omega)
@@ -327,7 +332,7 @@ def summed(scene: Scene, turning: ChainMotion, times: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("count", [0, 1, 2, 5])
 def test_the_equation_of_motion_follows_from_newton_euler_of_all_bodies(count: int) -> None:
-    scene, turning = Chain(count).scene(), ChainMotion(Chain(count))
+    scene, turning = WindowChain(count).scene(), ChainMotion(WindowChain(count))
     system = Constraints(scene)
     for t in (0.0, 0.3, 0.7):
         motion = turning.motion(np.array([t]))
@@ -342,10 +347,10 @@ def test_the_equation_of_motion_follows_from_newton_euler_of_all_bodies(count: i
 
 
 def test_the_motion_of_the_pins_is_that_of_the_closed_form_of_the_linkage() -> None:
-    turning, times = ChainMotion(Chain(2)), np.linspace(0.0, 0.5, 11)
+    turning, times = ChainMotion(WindowChain(2)), np.linspace(0.0, 0.5, 11)
     found = turning.motion(times)
     rocker = found.links["rocker0"]
-    other = solve_driven(Chain(2).scene(), rocker.theta, rocker.omega, rocker.alpha)
+    other = solve_driven(WindowChain(2).scene(), rocker.theta, rocker.omega, rocker.alpha)
     for name, point in found.points.items():
         for quantity, array in vars(point).items():
             assert array == pytest.approx(getattr(other.points[name], quantity), abs=1e-11)
@@ -355,7 +360,7 @@ def test_the_motion_of_the_pins_is_that_of_the_closed_form_of_the_linkage() -> N
 
 
 def test_a_period_is_a_whole_turn_against_the_sense_of_the_axes() -> None:
-    turning = ChainMotion(Chain(40))
+    turning = ChainMotion(WindowChain(40))
     theta, omega, alpha = turning.at(turning.period_s * np.array([0.0, 0.5, 1.0, 5.0]))
     assert theta == pytest.approx(UPRIGHT - math.tau * np.array([0.0, 0.5, 1.0, 5.0]), abs=1e-12)
     assert omega == pytest.approx([-1.0, -turning.fastest_rad_s, -1.0, -1.0], abs=1e-12)

@@ -17,7 +17,7 @@ from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
-from models.scene.hard import Chain
+from models.scene.hard import WindowChain
 from models.scene.loads import Load
 from models.scene.moved import scaled
 from models.scene.tabulated import Tabulated
@@ -223,21 +223,21 @@ def test_a_load_that_holds_the_slider_is_said() -> None:
 
 def test_a_chain_goes_through_its_flat_positions() -> None:
     """At which its mobility is N + 1: twice down, and twice up, in one turn and a bit."""
-    turning = ChainMotion(Chain(2))
-    free = release_multibody(Chain(2).scene(), 2.0, near=turning.motion(np.zeros(1)).state())
+    turning = ChainMotion(WindowChain(2))
+    free = release_multibody(WindowChain(2).scene(), 2.0, near=turning.motion(np.zeros(1)).state())
     time_s = np.linspace(0.0, 2.0, 81)
     found, (theta, _, alpha) = free.at(time_s), turning.at(time_s)
     assert abs(theta[-1] - theta[0]) > math.tau
-    for rocker in Chain(2).rockers():
+    for rocker in WindowChain(2).rockers():
         assert found.links[rocker].theta == pytest.approx(theta, abs=1e-11)
         assert found.links[rocker].alpha == pytest.approx(alpha, abs=1e-6)
     assert len(free.change_points_s) == 2
 
 
 def test_within_a_passage_the_motion_is_smooth() -> None:
-    turning = ChainMotion(Chain(1))
+    turning = ChainMotion(WindowChain(1))
     near = turning.motion(np.zeros(1)).state()
-    free = release_multibody(Chain(1).scene(), 0.75, Projection(1e-11), near=near)
+    free = release_multibody(WindowChain(1).scene(), 0.75, Projection(1e-11), near=near)
     (passage,) = free._history.passages
     flat = np.linspace(passage.begin_s, passage.end_s, 9)
     theta, _, alpha = turning.at(flat)

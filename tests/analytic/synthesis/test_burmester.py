@@ -6,12 +6,12 @@ from collections.abc import Iterable
 
 import numpy as np
 import pytest
-from pylinkage.synthesis import Pose as TheirPose
+from pylinkage.synthesis import PlanePose as TheirPose
 from pylinkage.synthesis import compute_pole, function_generation, motion_generation
 
 from analytic.lectures.synthesis.burmester import five_positions, four_positions
 from analytic.lectures.synthesis.function.fourbar import fourbars
-from analytic.lectures.synthesis.pose import Dyad, Pose, about_circumcentre, pole
+from analytic.lectures.synthesis.pose import PlanePose, PoseDyad, about_circumcentre, pole
 from models.errors import CrankcheckError
 from tests.analytic.assur.homotopy import Equation, finite_solutions
 from tests.worlds.tiers import few
@@ -21,12 +21,12 @@ ONE, W_M_BAR, W_BAR_M = (0, 0, 0, 0), (1, 0, 0, 1), (0, 1, 1, 0)
 FINITE = 4
 
 
-def random_poses(number: int, count: int) -> list[Pose]:
+def random_poses(number: int, count: int) -> list[PlanePose]:
     draw = np.random.default_rng([7, number]).uniform(-1.0, 1.0, (count, 3))
-    return [Pose(complex(x, y), float(3.0 * turn)) for x, y, turn in draw]
+    return [PlanePose(complex(x, y), float(3.0 * turn)) for x, y, turn in draw]
 
 
-def equation(first: Pose, pose: Pose) -> Equation:
+def equation(first: PlanePose, pose: PlanePose) -> Equation:
     """The circle of a displacement in w, w', m and m', about the plane's own origin."""
     e = cmath.exp(1j * (pose.angle - first.angle))
     d = pose.point - e * first.point
@@ -35,21 +35,21 @@ def equation(first: Pose, pose: Pose) -> Equation:
     return {ONE: abs(d) ** 2, W_M_BAR: 1.0 - e, W_BAR_M: 1.0 - e_bar, **single}
 
 
-def by_homotopy(poses: list[Pose]) -> list[Dyad]:
+def by_homotopy(poses: list[PlanePose]) -> list[PoseDyad]:
     """All real solutions, by following paths to all four."""
     every = finite_solutions([equation(poses[0], pose) for pose in poses[1:]], FINITE)
     assert len(every) == FINITE
     off = np.abs(every[:, 1] - every[:, 0].conj()) + np.abs(every[:, 3] - every[:, 2].conj())
     own = every[off < 1e-8 * (1.0 + np.abs(every).max(axis=1))]
-    return [Dyad(complex(m), poses[0].back(complex(w))) for w, _, m, _ in own]
+    return [PoseDyad(complex(m), poses[0].back(complex(w))) for w, _, m, _ in own]
 
 
-def away(one: Dyad, others: Iterable[Dyad]) -> float:
+def away(one: PoseDyad, others: Iterable[PoseDyad]) -> float:
     """How far the nearest of others is from a dyad."""
     return min(abs(one.fixed - o.fixed) + abs(one.moving - o.moving) for o in others)
 
 
-def spread(poses: list[Pose], dyad: Dyad) -> float:
+def spread(poses: list[PlanePose], dyad: PoseDyad) -> float:
     """How far the moving pivot is from one circle, over the size."""
     radii = [abs(pose.at(dyad.moving) - dyad.fixed) for pose in poses]
     return (max(radii) - min(radii)) / (1.0 + max(radii))
@@ -70,7 +70,7 @@ def test_five_positions_have_all_their_cranks_and_no_others(part: int) -> None:
     assert len(counts) > 1
 
 
-def coupler_poses(angles: list[float]) -> tuple[list[Pose], list[Dyad]]:
+def coupler_poses(angles: list[float]) -> tuple[list[PlanePose], list[PoseDyad]]:
     """A coupler with its two cranks: four-bar 0.4, 1.0, 0.8, 1.1."""
     a, b, c, d = 0.4, 1.0, 0.8, 1.1
     poses = []
@@ -78,8 +78,8 @@ def coupler_poses(angles: list[float]) -> tuple[list[Pose], list[Dyad]]:
         pin = cmath.rect(a, angle)
         arm = d - pin
         turn = math.acos((abs(arm) ** 2 + b**2 - c**2) / (2.0 * abs(arm) * b))
-        poses.append(Pose(pin, cmath.phase(arm) + turn))
-    return poses, [Dyad(0j, 0j), Dyad(d + 0j, b + 0j)]
+        poses.append(PlanePose(pin, cmath.phase(arm) + turn))
+    return poses, [PoseDyad(0j, 0j), PoseDyad(d + 0j, b + 0j)]
 
 
 def test_curves_of_four_positions_hold_the_body_and_pass_its_cranks_and_theirs_come_near() -> None:
@@ -100,22 +100,22 @@ def test_a_crank_of_five_positions_lies_on_the_curves_of_four() -> None:
 
 
 def test_a_body_that_turns_about_a_pivot_has_too_many_cranks_to_list() -> None:
-    poses = [Pose(0j, angle) for angle in (0.0, 0.3, 0.7, 1.0, 1.6)]
+    poses = [PlanePose(0j, angle) for angle in (0.0, 0.3, 0.7, 1.0, 1.6)]
     with pytest.raises(CrankcheckError, match="so special"):
         five_positions(poses)
 
 
-def their(pose: Pose) -> TheirPose:
+def their(pose: PlanePose) -> TheirPose:
     return TheirPose(pose.point.real, pose.point.imag, pose.angle)
 
 
-def theirs(poses: list[Pose]) -> list[Dyad]:
+def theirs(poses: list[PlanePose]) -> list[PoseDyad]:
     """The cranks of all four-bars that pylinkage proposes for a body's positions."""
     own = [their(pose) for pose in poses]
     found = motion_generation(own, require_grashof=False, max_solutions=200).raw_solutions
     pairs = [(one.ground_pivot_a, one.crank_pivot_b) for one in found]
     pairs += [(one.ground_pivot_d, one.coupler_pivot_c) for one in found]
-    return [Dyad(complex(*fixed), poses[0].back(complex(*pin))) for fixed, pin in pairs]
+    return [PoseDyad(complex(*fixed), poses[0].back(complex(*pin))) for fixed, pin in pairs]
 
 
 def test_three_positions_are_held_by_the_same_cranks() -> None:

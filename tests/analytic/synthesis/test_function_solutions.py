@@ -14,7 +14,7 @@ from analytic.lectures.synthesis.function.fourbar import FourBarGenerator, fourb
 from analytic.lectures.synthesis.function.generator import Generator
 from analytic.lectures.synthesis.function.slider_crank import SliderCrankGenerator, slider_cranks
 from analytic.lectures.synthesis.function.task import FunctionTask, GivenFunction, MechanismKind
-from analytic.lectures.synthesis.pose import Pose
+from analytic.lectures.synthesis.pose import PlanePose
 from models.array import Array
 from models.errors import CrankcheckError
 from tests.worlds.tiers import slowly
@@ -151,7 +151,7 @@ def by_burmester(turns: Array, ways: Array) -> list[Array]:
     its pin B on a circle about A. That the pivots O4 and O2 are such a pair is the trivial one.
     """
     pairs = zip(turns.tolist(), ways.tolist(), strict=True)
-    poses = [Pose(cmath.exp(-1j * turn), way - turn) for turn, way in pairs]
+    poses = [PlanePose(cmath.exp(-1j * turn), way - turn) for turn, way in pairs]
     found = []
     for dyad in five_positions(poses):
         if abs(dyad.fixed) + abs(dyad.moving) > 1e-9:

@@ -20,7 +20,7 @@ from analytic.lectures.synthesis.path.atlas import (
     smooth,
     spread,
 )
-from analytic.lectures.synthesis.path.candidate import Candidate, drafted, in_order
+from analytic.lectures.synthesis.path.candidate import FourBarCandidate, drafted, in_order
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, assembled, cognates
 from analytic.lectures.synthesis.path.fit import _Problem, placed
 from analytic.lectures.synthesis.path.pieces import open_starts, pieces
@@ -46,7 +46,7 @@ def random_curve(rng: np.random.Generator) -> CouplerCurve:
         if one.family == "limited":
             continue
         turn = np.linspace(0.0, math.tau, 100)
-        good = Candidate(one, turn, np.zeros(100)).least_sine > math.sin(LEAST_TRANSMISSION)
+        good = FourBarCandidate(one, turn, np.zeros(100)).least_sine > math.sin(LEAST_TRANSMISSION)
         if good and one.size < LARGEST * float(np.std(one.at(turn))):
             return one.moved(complex(*rng.normal(size=2)), complex(*rng.normal(size=2)))
 

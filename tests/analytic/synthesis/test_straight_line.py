@@ -11,7 +11,7 @@ import pytest
 
 from analytic.kinematics import solve_driven
 from analytic.lectures.synthesis.examine import examine
-from analytic.lectures.synthesis.line_draft import StraightLine, peaucellier
+from analytic.lectures.synthesis.line_draft import StraightLinkage, peaucellier
 from analytic.lectures.synthesis.path.unit_four_bar import Complexes
 from analytic.lectures.synthesis.straight_line import (
     TEXTBOOK,
@@ -57,7 +57,7 @@ def rows(table: str) -> list[list[float]]:
     return [[float(each) for each in line.split()] for line in table.strip().splitlines()]
 
 
-def by_reference(found: StraightLine, count: int = 301) -> Complexes:
+def by_reference(found: StraightLinkage, count: int = 301) -> Complexes:
     """Where the reference has the coupler point, from end to end of the part [m]."""
     examined = examine(found.proposal)
     assert not examined.defects

@@ -17,7 +17,7 @@ from models.array import Array
 from models.files.reading import load_scene
 from models.motion import Motion
 from reports.causes.account import change
-from reports.causes.cause import Case, Cause
+from reports.causes.cause import Cause, LogCase
 from reports.causes.find import causes
 from reports.compare.beside import Truth
 from reports.logs.channel import Channel, OwnLog, Reading
@@ -32,7 +32,7 @@ ANGLE = PLAIN.values["rocker_a"]
 FOUR = of(angle("rocker"), angle("coupler"), omega("rocker"), omega("coupler"))
 
 
-def mended(case: Case, column: str, correction: Mapping[str, object]) -> float:
+def mended(case: LogCase, column: str, correction: Mapping[str, object]) -> float:
     """The largest error of a column over its limit, where its map says what a correction says."""
     reading = next(each for each in case.readings if each.channel.column == column)
     old = reading.channel
@@ -302,5 +302,5 @@ def test_readings_of_copies_are_looked_at_where_they_have_limits() -> None:
     channel = Channel("C2_x", KINDS["point", "x"], "C", "m", on="rocker")
     copy = Reading(channel, 1000.0 * channel.expected(motion), time_s)
     log = OwnLog("copied", SCENE, time_s, (), copies=(copy,))
-    (cause,) = causes(Case(log, Truth(SCENE), {"C2_x": 1e-3}))
+    (cause,) = causes(LogCase(log, Truth(SCENE), {"C2_x": 1e-3}))
     assert cause.correction == {"unit": "mm"}

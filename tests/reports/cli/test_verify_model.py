@@ -12,7 +12,7 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
-from reports.own_model.account import Account, CheckedLine, checked_line, read_here
+from reports.own_model.account import CheckedLine, ModelAccount, checked_line, read_here
 from reports.own_model.judged import JudgedModel, judged_lines
 from reports.requests import verify_model
 from reports.requests.verify import VerifyRequest
@@ -25,7 +25,7 @@ ONCE = f"{DRIVEN} --no-convergence"
 INCLUDING = SLIDER_CRANK.replace('<option timestep="0.002"/>', '<include file="parts/option.xml"/>')
 
 
-def run_here(account: Account, _: object, done: Callable[[CheckedLine], None]) -> JudgedModel:
+def run_here(account: ModelAccount, _: object, done: Callable[[CheckedLine], None]) -> JudgedModel:
     """All lines in this process."""
     return judged_lines(account, checked_line, done)
 

@@ -12,13 +12,13 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
-from models.scene.hard import Chain
+from models.scene.hard import WindowChain
 from reports.compare.free.hard_runs import ChainErrors, compared, hold
 from sim.engine import BodyPose, Poses
 from sim.run import run
 from tests.worlds.fake.engine import FakeEngine, turned_link
 
-CHAIN = Chain(2)
+CHAIN = WindowChain(2)
 
 
 def held(disturb: Callable[[Poses], Poses] = lambda poses: poses, **given: Any) -> ChainErrors:
@@ -123,7 +123,7 @@ def test_pymunk_as_shipped_loses_energy_in_them_but_keeps_the_rods_parallel() ->
 
 
 def test_a_rod_alone_and_a_chain_without_weight_are_measured_too() -> None:
-    assert hold(Chain(0), "pymunk", dt_s=1e-3, duration_s=0.5).energy_drift < 1e-3
-    weightless = hold(Chain(1, gravity_m_s2=0.0), "mujoco", dt_s=1e-3, duration_s=0.5)
+    assert hold(WindowChain(0), "pymunk", dt_s=1e-3, duration_s=0.5).energy_drift < 1e-3
+    weightless = hold(WindowChain(1, gravity_m_s2=0.0), "mujoco", dt_s=1e-3, duration_s=0.5)
     assert weightless.energy_drift < 1e-6
     assert weightless.place_until(0.5) < 1e-6

@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.own_model.account import Account
+from reports.own_model.account import ModelAccount
 from reports.own_model.judged import JudgedModel
 from reports.own_model.sentences import NO_HELP, verdict_text
 from reports.own_model.table import show
@@ -17,7 +17,7 @@ from tests.worlds.own_four_bar import BY_SITES, CLOSED, planted, rocker
 from tests.worlds.own_models import FACTS, judged, line, read_text, texts
 
 
-def read(folder: Path, *edits: str) -> Account:
+def read(folder: Path, *edits: str) -> ModelAccount:
     return read_text(folder, planted(*edits), converge=False)
 
 

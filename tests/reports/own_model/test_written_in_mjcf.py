@@ -12,7 +12,7 @@ import pytest
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.judge.halving import worst_place
-from reports.own_model.account import Account, read_here
+from reports.own_model.account import ModelAccount, read_here
 from reports.own_model.assembly import ModelRequest
 from tests.worlds.own_four_bar import BY_SITES, CLOSED, HEALTHY, ROCKER_JOINT, planted, tied
 from tests.worlds.own_models import line, read_text, texts
@@ -142,7 +142,7 @@ def test_an_attached_model_is_read(tmp_path: Path) -> None:
     assert_four_bar(read_text(tmp_path, text, joint="mine/A").scene, "mine-")
 
 
-def starts(found: Account) -> float:
+def starts(found: ModelAccount) -> float:
     """What the driven joint reads at the start [rad]."""
     return float(found.scene.driver.law.at(np.zeros(1))[0][0])
 
@@ -173,12 +173,12 @@ def test_the_driver_is_told_in_the_coordinate_of_its_joint(tmp_path: Path) -> No
 FOLDER = Path(__file__).parents[2] / "worlds" / "public_models"
 
 
-def read(name: str, joint: str, **more: object) -> Account:
+def read(name: str, joint: str, **more: object) -> ModelAccount:
     asked = {"speed_rad_s": 10.0, "converge": False, **more}
     return read_here(ModelRequest(FOLDER / f"{name}.xml", joint, **asked))  # type: ignore[arg-type]
 
 
-def error_of(account: Account, profile: str) -> float:
+def error_of(account: ModelAccount, profile: str) -> float:
     """The largest error of place of a line."""
     return float(worst_place(line(account, profile).errors).pure)  # type: ignore[arg-type]
 

@@ -22,7 +22,7 @@ from reports.requests.report import ReportRequest
 from reports.store import folder as lock
 from reports.store import folder as part
 from reports.store import writer as mending
-from reports.store.folder import Part, open_part, write_part
+from reports.store.folder import TablePart, open_part, write_part
 from reports.store.manifest import BUSY, NESTED, Manifest, read_manifest
 from reports.store.reader import examine, read_store, stored_costs, stored_keys
 from reports.store.writer import Writer
@@ -190,7 +190,7 @@ def test_a_part_that_a_sweep_replaces_meanwhile_is_read_where_it_is_now(
 ) -> None:
     replaced = []
 
-    def opened(path: Path) -> Part:
+    def opened(path: Path) -> TablePart:
         if not replaced:  # as where a cell that a limit ended is to be run again
             replaced.append(path)
             open_part(path).write_again([False, True])

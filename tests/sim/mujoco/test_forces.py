@@ -20,7 +20,7 @@ from models.mjcf.document import build
 from models.motion import Forces
 from models.scene import Scene
 from models.scene.characteristics import Constant, Sine
-from models.scene.hard import Chain
+from models.scene.hard import WindowChain
 from models.scene.joints import block_name
 from models.scene.loads import CoulombFriction, Load
 from models.scene.tabulated import Tabulated
@@ -233,7 +233,7 @@ def test_friction_that_grows_with_the_reaction_has_no_text() -> None:
 
 def test_a_free_rod_slows_down_at_its_rate_and_then_stands() -> None:
     """1 N m on 1/3 kg m^2: from 1 rad/s it takes a third of a second, and a sixth of a radian."""
-    chain = Chain(0, gravity_m_s2=0.0)
+    chain = WindowChain(0, gravity_m_s2=0.0)
     scene = rubbing(chain.scene(), A0=1.0)
     state = ChainMotion(chain).motion(np.zeros(1)).state(0)
     done = run(scene, state, "mujoco", dt_s=2e-3, steps=300, drive="free")

@@ -13,7 +13,7 @@ from analytic.free.release import release
 from models.array import Array
 from models.files.reading import load_scene, parse_scene
 from models.scene.characteristics import Characteristic, Polynomial, Pulse, Sine, Staircase
-from models.scene.hard import Chain
+from models.scene.hard import WindowChain
 from models.scene.loads import Load
 from models.scene.tabulated import Tabulated
 from sim.mujoco.engine import MujocoSession
@@ -31,7 +31,7 @@ FOURBAR = load_scene("fourbar-lecture-1")
 
 def rod(course: Characteristic, integrator: str = "RK4") -> MujocoSession:
     """A rod without weight, under a torque, from 1 rad/s on."""
-    chain = Chain(0, gravity_m_s2=0.0)
+    chain = WindowChain(0, gravity_m_s2=0.0)
     given = {"start": ChainMotion(chain).motion(np.zeros(1)).state(), "dt_s": DT_S, "drive": "free"}
     scene = acted_on(chain.scene(), Load("torque", "rocker0", None, course))
     return opened(scene, "mujoco", {"integrator": integrator}, **given)

@@ -17,7 +17,7 @@ from models.files.reading import load_scene
 from models.scene import GROUND, Driver, Scene
 from models.scene.characteristics import Constant, Polynomial, Sine, Staircase
 from models.scene.driver import Released
-from models.scene.hard import Chain
+from models.scene.hard import WindowChain
 from models.scene.loads import LineSpring, Load, PinSpring, SlideSpring, Spring
 from models.scene.tabulated import Tabulated
 from sim.engine import Run
@@ -37,7 +37,7 @@ INERTIA = 1.0 / 3.0
 
 def rod(*acting: Load | Spring) -> Scene:
     """One rod on a pin, without weight, let go at an angle of 0."""
-    bare = Chain(0, gravity_m_s2=0.0).scene()
+    bare = WindowChain(0, gravity_m_s2=0.0).scene()
     still = replace(bare, driver=Driver("rocker0", Released(0.0, 0.0, 1.0)))
     return acted_on(still, *acting)
 

@@ -10,7 +10,7 @@ import numpy as np
 from reports.compare.beside import Beside
 from reports.compare.error_rows import instants_of, whole_row
 from reports.compare.errors import Error, Errors, MotionFacts
-from reports.compare.whole_errors import Parts, force_rows, whole_errors
+from reports.compare.whole_errors import ComparedParts, force_rows, whole_errors
 from reports.quantities import named
 from reports.quantities.quantity import Tolerance
 from tests.worlds.bead.limits import LIMITS
@@ -40,7 +40,7 @@ def compared(beside: Beside, errors: Errors | None) -> Errors:
         period_off=2.0 * own_s / swing.period_s - 1.0,
     )
     at = instants_of(beside, time_s, beside.reference)
-    parts = Parts(
+    parts = ComparedParts(
         placed=_placed(beside),
         notes=(),
         borne=force_rows(beside),

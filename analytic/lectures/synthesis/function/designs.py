@@ -18,10 +18,10 @@ from analytic.lectures.synthesis.design import (
     AskedAngle,
     AskedSlide,
     Dot,
+    DrawingStep,
     Element,
     PrecisionPosition,
     Segment,
-    Step,
 )
 from analytic.lectures.synthesis.function.equal_ripple import equal_ripple
 from analytic.lectures.synthesis.function.fourbar import fourbars
@@ -107,7 +107,7 @@ def _places(
 
 def _steps(
     task: FunctionTask, generator: Generator, x: Array, places: list[tuple[complex, complex]]
-) -> tuple[Step, ...]:
+) -> tuple[DrawingStep, ...]:
     """The maps, what the points ask of input and output, and the links that do it."""
     slides = isinstance(generator, SliderCrankGenerator)
     pivot = None if slides else complex(task.ground_m)
@@ -119,13 +119,13 @@ def _steps(
     links += [] if pivot is None else [Segment(pivot, first_out, "result")]
     unit = f"{abs(task.output_range):.6g} m" if slides else _degrees(task.output_range)
     return (
-        Step(
+        DrawingStep(
             f"x from {task.x_low:g} to {task.x_high:g} turns the input by "
             f"{_degrees(task.input_range_rad)}, y moves the output by {unit}; precision points at "
             f"x = {', '.join(f'{each:.6g}' for each in x)}",
             (*frame, *_asked_lines(places, pivot)),
         ),
-        Step(
+        DrawingStep(
             f"Freudenstein's equation in these points gives k1 = {k1:.6g}, k2 = {k2:.6g}, "
             f"k3 = {k3:.6g}, and with them the lengths",
             (*links, Dot(first_in, PINS[0], "result"), Dot(first_out, PINS[1], "result")),

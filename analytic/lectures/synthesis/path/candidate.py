@@ -17,12 +17,12 @@ from analytic.lectures.synthesis.design import (
     PINS,
     PIVOTS,
     AskedPlace,
-    Curve,
     Dot,
+    DrawingStep,
+    DrawnCurve,
     PrecisionPosition,
     Proposal,
     Segment,
-    Step,
 )
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve, cognates, real_size
 from analytic.lectures.synthesis.path.fit import TOO_LARGE, Fitted
@@ -41,7 +41,7 @@ EQUAL = 6
 
 
 @dataclass(frozen=True)
-class Candidate:
+class FourBarCandidate:
     """A four-bar, its crank's angles in the points [rad], and their distances from them [m]."""
 
     four_bar: CouplerCurve
@@ -68,7 +68,7 @@ class Candidate:
             low, high = 0.0, math.pi  # a turn is the same on both sides of the ground
         return least_sine(four_bar.shape, low, high)
 
-    def same_as(self, other: Candidate) -> bool:
+    def same_as(self, other: FourBarCandidate) -> bool:
         """Whether two are one mechanism, driven at the same pivot."""
         one, two = _numbers(self.four_bar), _numbers(other.four_bar)
         near = bool(np.max(np.abs(one - two)) < APART * max(np.max(np.abs(one[2:])), 1e-300))
@@ -92,7 +92,7 @@ def _numbers(one: CouplerCurve) -> Array:
     )
 
 
-def candidates(fits: Iterable[Fitted], task: PathTask) -> list[Candidate]:
+def candidates(fits: Iterable[Fitted], task: PathTask) -> list[FourBarCandidate]:
     """The distinct four-bars of fits whose crank leads through the points in their order, and those
     of their cognates that do; the nearest to the points first, of equal ones that of the better
     transmission angle."""
@@ -101,11 +101,11 @@ def candidates(fits: Iterable[Fitted], task: PathTask) -> list[Candidate]:
     return distinct(every, task)
 
 
-def distinct(every: Sequence[Candidate], task: PathTask) -> list[Candidate]:
+def distinct(every: Sequence[FourBarCandidate], task: PathTask) -> list[FourBarCandidate]:
     """Each mechanism once, in order."""
-    kept: list[Candidate] = []
+    kept: list[FourBarCandidate] = []
 
-    def order(one: Candidate) -> tuple[float, float]:
+    def order(one: FourBarCandidate) -> tuple[float, float]:
         return round(one.rms_m / task.radius_m, EQUAL), -one.least_sine
 
     for one in sorted(every, key=order):
@@ -114,14 +114,14 @@ def distinct(every: Sequence[Candidate], task: PathTask) -> list[Candidate]:
     return kept
 
 
-def _of_fit(fit: Fitted, task: PathTask) -> Iterator[Candidate]:
+def _of_fit(fit: Fitted, task: PathTask) -> Iterator[FourBarCandidate]:
     """The four-bar of a fit, if its crank leads through the points."""
     four_bar, angles = real_size(fit)
     own = four_bar.moved(complex(task.radius_m), task.middle)
     yield from _leading(own, angles if task.is_timed else in_order(angles), task)
 
 
-def _cognates(one: Candidate, task: PathTask) -> Iterator[Candidate]:
+def _cognates(one: FourBarCandidate, task: PathTask) -> Iterator[FourBarCandidate]:
     """Its cognates, driven at either pivot, whose crank leads through the points; with timing, by
     the same angles."""
     at = [cognates(one.four_bar, angle) for angle in one.crank_rad.tolist()]
@@ -132,14 +132,14 @@ def _cognates(one: Candidate, task: PathTask) -> Iterator[Candidate]:
         yield from _leading(way[0][0], angles, task)
 
 
-def _leading(four_bar: CouplerCurve, angles: Array, task: PathTask) -> Iterator[Candidate]:
+def _leading(four_bar: CouplerCurve, angles: Array, task: PathTask) -> Iterator[FourBarCandidate]:
     """A four-bar, unless its crank does not lead through its angles, or it is far too large."""
     small = math.isfinite(four_bar.size) and four_bar.size <= TOO_LARGE * task.radius_m
     if not small or not four_bar.leads_through(angles):
         return
     if task.closed and four_bar.family == "limited":
         return
-    yield Candidate(four_bar, angles, np.abs(four_bar.at(angles) - task.array))
+    yield FourBarCandidate(four_bar, angles, np.abs(four_bar.at(angles) - task.array))
 
 
 def in_order(angles: Array) -> Array:
@@ -175,7 +175,7 @@ def drafted(name: str, source: str, four_bar: CouplerCurve, note: str = "") -> D
     )
 
 
-def proposed(name: str, source: str, candidate: Candidate, task: PathTask) -> Proposal:
+def proposed(name: str, source: str, candidate: FourBarCandidate, task: PathTask) -> Proposal:
     """A candidate as a proposal: its crank's angles are those that fit the points best."""
     four_bar = candidate.four_bar
     draft = drafted(name, source, four_bar)
@@ -193,7 +193,7 @@ def proposed(name: str, source: str, candidate: Candidate, task: PathTask) -> Pr
     return Proposal(draft, INPUT, positions, chosen, _steps(candidate, task), allowed=allowed)
 
 
-def _steps(candidate: Candidate, task: PathTask) -> tuple[Step, ...]:
+def _steps(candidate: FourBarCandidate, task: PathTask) -> tuple[DrawingStep, ...]:
     """The points, the curve that goes through them, and the links that draw it."""
     four_bar = candidate.four_bar
     angles = candidate.crank_rad
@@ -210,15 +210,15 @@ def _steps(candidate: Candidate, task: PathTask) -> tuple[Step, ...]:
         Dot(four_bar.o4, PIVOTS[1], "result", fixed=True),
     )
     return (
-        Step("the points of the path, in their order", dots),
-        Step("the coupler curve of least squares", (_curve(four_bar, angles),)),
-        Step("the four-bar that draws it, in the first point", links),
+        DrawingStep("the points of the path, in their order", dots),
+        DrawingStep("the coupler curve of least squares", (_curve(four_bar, angles),)),
+        DrawingStep("the four-bar that draws it, in the first point", links),
     )
 
 
-def _curve(four_bar: CouplerCurve, angles: Array) -> Curve:
+def _curve(four_bar: CouplerCurve, angles: Array) -> DrawnCurve:
     """The coupler curve: over a turn, or between the outermost angles."""
     low, high = float(np.min(angles)), float(np.max(angles))
     if four_bar.family != "limited":
         high = low + math.tau
-    return Curve((tuple(four_bar.at(np.linspace(low, high, LOOKS + 1)).tolist()),))
+    return DrawnCurve((tuple(four_bar.at(np.linspace(low, high, LOOKS + 1)).tolist()),))

@@ -228,7 +228,7 @@ ROUNDS = (Round(1.0, 14, 60), Round(0.4, MOST, 120), Round(0.17, MOST, 1500))
 
 
 @dataclass
-class Clock:
+class SearchClock:
     """How far a search is: ``until`` is when no further fit is begun [s of the monotonic clock],
     ``unit_m`` the path's radius."""
 
@@ -260,7 +260,7 @@ class Clock:
 
 
 def fitted(
-    starts: Sequence[Fitted], path: UnitPath, clock: Clock, transmission_rad: float = 0.0
+    starts: Sequence[Fitted], path: UnitPath, clock: SearchClock, transmission_rad: float = 0.0
 ) -> list[Fitted]:
     """The fits of the last round that was begun, the best first; with those of the round before for
     which the time did not last. One fit is made in any case."""

@@ -22,9 +22,16 @@ import numpy as np
 from analytic.lectures.synthesis.design import Proposal
 from analytic.lectures.synthesis.examine import Examined, examine
 from analytic.lectures.synthesis.path.atlas import between, closed_starts, spread
-from analytic.lectures.synthesis.path.candidate import Candidate, candidates, proposed
+from analytic.lectures.synthesis.path.candidate import FourBarCandidate, candidates, proposed
 from analytic.lectures.synthesis.path.coupler_curve import CouplerCurve
-from analytic.lectures.synthesis.path.fit import LARGEST, Clock, Fitted, Progress, fitted, placed
+from analytic.lectures.synthesis.path.fit import (
+    LARGEST,
+    Fitted,
+    Progress,
+    SearchClock,
+    fitted,
+    placed,
+)
 from analytic.lectures.synthesis.path.pieces import open_starts
 from analytic.lectures.synthesis.path.task import PathTask, UnitPath
 from analytic.lectures.synthesis.path.unit_four_bar import (
@@ -206,7 +213,7 @@ def generate(
             f"asked for; ask for 0 to {math.degrees(MOST_TRANSMISSION):g} deg"
         )
     strict = least_transmission_rad + MARGIN * (least_transmission_rad > 0.0)
-    clock = Clock(starts, time.monotonic() + time_s, task.radius_m, progress)
+    clock = SearchClock(starts, time.monotonic() + time_s, task.radius_m, progress)
     fits = fitted(list(_starts(task, starts, seed)), task.unit, clock, strict)
     sound: list[PathFit] = []
     refused: list[str] = []
@@ -254,7 +261,7 @@ def _strayed(entry: Fitted, path: UnitPath, rng: np.random.Generator) -> Fitted:
     return replace(entry, x=x, placing=placed(lengths(entry.family, x), entry.phi, own.points))
 
 
-def _examined(name: str, candidate: Candidate, task: PathTask) -> PathFit | str:
+def _examined(name: str, candidate: FourBarCandidate, task: PathTask) -> PathFit | str:
     """A candidate that the reference finds no defect in, or why it is none."""
     try:
         examined = examine(proposed(name, SOURCE, candidate, task))

@@ -4,7 +4,7 @@ allow."""
 import numpy as np
 import pytest
 
-from reports.results.fits.floor_fit import ALIGNMENTS, Allowed, Curve, added, opposed, within
+from reports.results.fits.floor_fit import ALIGNMENTS, Allowed, ErrorCurve, added, opposed, within
 
 DTS = 1e-2 / 2.0 ** np.arange(6)[::-1]
 FLOOR = 1e-3
@@ -48,7 +48,9 @@ def test_a_larger_misfit_allows_more_orders_and_floors() -> None:
     assert wide.order[0] < narrow.order[0] <= 1.0 <= narrow.order[1] < wide.order[1]
 
 
-def aligned(errors: np.ndarray, *more: float, unit: float = 1.0) -> tuple[Curve, list[Allowed]]:
+def aligned(
+    errors: np.ndarray, *more: float, unit: float = 1.0
+) -> tuple[ErrorCurve, list[Allowed]]:
     """The curve of errors, and what is allowed where its misfit may be so much larger."""
     curve = added(unit * DTS, unit * errors)
     return curve, within(unit * DTS, unit * errors, curve, [each**2 for each in more], ALIGNMENTS)

@@ -11,25 +11,25 @@ from analytic.lectures.synthesis.burmester import four_positions
 from analytic.lectures.synthesis.design import (
     AskedAngle,
     CarriedBody,
-    Circle,
-    Curve,
     Dot,
+    DrawingStep,
+    DrawnCircle,
+    DrawnCurve,
     Element,
     PrecisionPosition,
     Proposal,
     Segment,
-    Step,
 )
-from analytic.lectures.synthesis.pose import Dyad, Pose, bisector, circle_through, pole
+from analytic.lectures.synthesis.pose import PlanePose, PoseDyad, bisector, circle_through, pole
 from models.lectures.draft import Draft, bar
 
 LECTURE = 'Lecture "Tong hop co cau" (synthesis)'
-THREE = (Pose(0.0 + 0.0j, 0.9), Pose(0.09 + 0.05j, 0.55), Pose(0.2 + 0.045j, 0.1))
+THREE = (PlanePose(0.0 + 0.0j, 0.9), PlanePose(0.09 + 0.05j, 0.55), PlanePose(0.2 + 0.045j, 0.1))
 C, D = 0.0 + 0.0j, 0.12 + 0.0j
 """Points of the body that is carried [m], in its own frame."""
 
 
-def _centre_step(name: str, pivot: str, places: Sequence[complex]) -> tuple[Step, complex]:
+def _centre_step(name: str, pivot: str, places: Sequence[complex]) -> tuple[DrawingStep, complex]:
     """The centre of the circle through three places of a point, by two bisectors."""
     centre = circle_through(*places)
     assert centre is not None
@@ -37,16 +37,21 @@ def _centre_step(name: str, pivot: str, places: Sequence[complex]) -> tuple[Step
     for one, other in ((0, 1), (1, 2)):
         foot = bisector(places[one], places[other]).middle
         lines += [Segment(places[one], places[other]), Segment(foot, centre, beyond=0.15)]
-    lines += [Circle(centre, abs(places[0] - centre)), Dot(centre, pivot, "result", fixed=True)]
+    lines += [
+        DrawnCircle(centre, abs(places[0] - centre)),
+        Dot(centre, pivot, "result", fixed=True),
+    ]
     words = (
         f"The bisectors of {name}1 {name}2 and of {name}2 {name}3 cross in {pivot}, the centre of "
         f"the circle through all places of {name}."
     )
-    return Step(words, tuple(lines)), centre
+    return DrawingStep(words, tuple(lines)), centre
 
 
 @lru_cache
-def three_positions(poses: tuple[Pose, ...] = THREE, name: str = "three-positions") -> Proposal:
+def three_positions(
+    poses: tuple[PlanePose, ...] = THREE, name: str = "three-positions"
+) -> Proposal:
     """A coupler C D in three positions, by circumcentres (the lecture, example 6)."""
     cs, ds = ([pose.at(place) for pose in poses] for place in (C, D))
     given: list[Element] = []
@@ -55,10 +60,10 @@ def three_positions(poses: tuple[Pose, ...] = THREE, name: str = "three-position
     first, o2 = _centre_step("C", "O2", cs)
     second, o4 = _centre_step("D", "O4", ds)
     links = tuple(Segment(a, b, "result") for a, b in ((o2, cs[0]), (cs[0], ds[0]), (o4, ds[0])))
-    begin = Step("The coupler C D in its three positions.", tuple(given))
-    end = Step("The links are O2 C1, C1 D1 and O4 D1, the ground is O2 O4.", links)
+    begin = DrawingStep("The coupler C D in its three positions.", tuple(given))
+    end = DrawingStep("The links are O2 C1, C1 D1 and O4 D1, the ground is O2 O4.", links)
     body = CarriedBody(name, LECTURE + ", example 6", tuple(poses), {"C": C, "D": D})
-    return body.four_bar((Dyad(o2, C), Dyad(o4, D)), steps=(begin, first, second, end))
+    return body.four_bar((PoseDyad(o2, C), PoseDyad(o4, D)), steps=(begin, first, second, end))
 
 
 @lru_cache
@@ -78,14 +83,14 @@ def rocker_by_angle() -> Proposal:
     links = (Segment(o2, a1, "result"), Segment(a1, b1, "result"), Segment(o4, b1, "result"))
     # drawn with B in B1 where the crank lies over the coupler, away from O4's end
     steps = (
-        Step("The rocker O4 B in its end positions, 70° apart.", ends),
-        Step("The line B1 B2, and its extension.", (Segment(b1, a2, beyond=0.1),)),
-        Step("O2 is chosen on the extension.", (Dot(o2, "O2", "result", fixed=True),)),
-        Step(
+        DrawingStep("The rocker O4 B in its end positions, 70° apart.", ends),
+        DrawingStep("The line B1 B2, and its extension.", (Segment(b1, a2, beyond=0.1),)),
+        DrawingStep("O2 is chosen on the extension.", (Dot(o2, "O2", "result", fixed=True),)),
+        DrawingStep(
             "Half of B1 B2 is the radius of a circle about O2, which meets the line in A1 and A2.",
-            (Circle(o2, radius), Dot(a1, "A1"), Dot(a2, "A2")),
+            (DrawnCircle(o2, radius), Dot(a1, "A1"), Dot(a2, "A2")),
         ),
-        Step("The crank is O2 A1, the coupler A1 B1.", links),
+        DrawingStep("The crank is O2 A1, the coupler A1 B1.", links),
     )
     bars = {
         "crank": bar("O2", "A", radius),
@@ -102,7 +107,12 @@ def rocker_by_angle() -> Proposal:
     return Proposal(draft, "crank", positions, chosen, steps)
 
 
-FOUR = (Pose(0j, 0.0), Pose(0.1 + 0.05j, 0.35), Pose(0.18 + 0.14j, 0.9), Pose(0.2 + 0.26j, 1.6))
+FOUR = (
+    PlanePose(0j, 0.0),
+    PlanePose(0.1 + 0.05j, 0.35),
+    PlanePose(0.18 + 0.14j, 0.9),
+    PlanePose(0.2 + 0.26j, 1.6),
+)
 
 
 @lru_cache
@@ -130,11 +140,13 @@ def burmester_curves() -> Proposal:
         assert place is not None
         poles.append(Dot(place, f"P{i + 1}{j + 1}"))
     steps = (
-        Step("The body in its four positions.", tuple(bodies)),
-        Step("The poles of its positions.", tuple(poles)),
-        Step("The centre-point curve: all places of fixed pivots.", (Curve(centres),)),
-        Step("The circle-point curve: all moving pivots, in position 1.", (Curve(circles),)),
-        Step("Two of their pairs are taken: O2 A1 and O4 B1.", tuple(links)),
+        DrawingStep("The body in its four positions.", tuple(bodies)),
+        DrawingStep("The poles of its positions.", tuple(poles)),
+        DrawingStep("The centre-point curve: all places of fixed pivots.", (DrawnCurve(centres),)),
+        DrawingStep(
+            "The circle-point curve: all moving pivots, in position 1.", (DrawnCurve(circles),)
+        ),
+        DrawingStep("Two of their pairs are taken: O2 A1 and O4 B1.", tuple(links)),
     )
     body = CarriedBody("burmester", LECTURE, tuple(FOUR), {"P": 0j})
     return body.four_bar((first, second), steps=steps)
@@ -144,10 +156,10 @@ def burmester_curves() -> Proposal:
 def far_pole() -> Proposal:
     """Three positions, the first two of which are nearly a translation: their pole is far off."""
     proposal = three_positions()
-    first, second = Pose(0j, 0.9), Pose(0.1 + 0.02j, 0.9 + 0.004)
+    first, second = PlanePose(0j, 0.9), PlanePose(0.1 + 0.02j, 0.9 + 0.004)
     place = pole(first, second)
     assert place is not None
-    circles = (Circle(place, abs(place - first.point)), Circle(place, 0.3))
+    circles = (DrawnCircle(place, abs(place - first.point)), DrawnCircle(place, 0.3))
     words = "The pole of a turn that is nearly none, and the circle of a point about it."
-    extra = Step(words, (Dot(place, "P12"), Segment(first.point, place), *circles))
+    extra = DrawingStep(words, (Dot(place, "P12"), Segment(first.point, place), *circles))
     return replace(proposal, chosen={}, steps=(*proposal.steps, extra))

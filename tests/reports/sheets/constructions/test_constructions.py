@@ -13,7 +13,14 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.lectures.synthesis.design import Circle, Curve, Dot, Proposal, Segment, Step
+from analytic.lectures.synthesis.design import (
+    Dot,
+    DrawingStep,
+    DrawnCircle,
+    DrawnCurve,
+    Proposal,
+    Segment,
+)
 from analytic.lectures.synthesis.examine import examine
 from models.array import Array
 from models.errors import CrankcheckError
@@ -160,13 +167,13 @@ def test_no_letter_is_on_a_line_and_all_stays_in_its_box(case: tuple[str, Paper]
 def test_an_arc_goes_from_its_one_angle_to_the_other() -> None:
     low, high = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
     for start, end in ((0.2, 1.4), (5.0, 0.5), (-1.0, 2.0), (7.0, 7.5)):
-        (line,) = strokes(Circle(0.1j, 0.5, arc=(start, end)), low, high)
+        (line,) = strokes(DrawnCircle(0.1j, 0.5, arc=(start, end)), low, high)
         for place, angle in ((line[0], start), (line[-1], end)):
             exact = xy(0.1j + 0.5 * np.exp(1j * angle))
             assert place == pytest.approx(exact, abs=1e-12)
     # of a large one, as much as is in the box, wherever its angles begin
     for turn in (-math.tau, 0.0, math.tau):
-        (line,) = strokes(Circle(-50.0 + 0j, 50.0, arc=(turn, turn + 0.01)), low, high)
+        (line,) = strokes(DrawnCircle(-50.0 + 0j, 50.0, arc=(turn, turn + 0.01)), low, high)
         assert line[0] == pytest.approx((0.0, 0.0), abs=1e-9)
         assert line[-1] == pytest.approx(xy(-50.0 + 50.0 * np.exp(0.01j)), abs=1e-9)
 
@@ -188,7 +195,7 @@ def test_what_is_far_off_is_told_and_does_not_shrink_the_figure() -> None:
 def test_curves_that_run_to_infinity_do_not_shrink_the_figure_or_jump_across_it() -> None:
     proposal = made.burmester_curves()
     steps = [
-        replace(step, elements=tuple(e for e in step.elements if not isinstance(e, Curve)))
+        replace(step, elements=tuple(e for e in step.elements if not isinstance(e, DrawnCurve)))
         for step in proposal.steps
     ]
     plain = replace(proposal, steps=tuple(steps))
@@ -202,7 +209,7 @@ def test_curves_that_run_to_infinity_do_not_shrink_the_figure_or_jump_across_it(
 
 def test_words_that_do_not_fit_are_refused_with_a_paper_that_would_do() -> None:
     proposal = made.three_positions()
-    long = replace(proposal, steps=(*proposal.steps, Step("many words " * 300, ())))
+    long = replace(proposal, steps=(*proposal.steps, DrawingStep("many words " * 300, ())))
     with pytest.raises(CrankcheckError, match=r"210x148: the words of 5 steps .* such as A3"):
         laid_out(long, A5)
     assert laid_out(long, Paper.of("A3")).scale > 0.0
@@ -238,11 +245,11 @@ def test_the_page_holds_every_step_and_its_words(make: Callable[[], Proposal]) -
                 (ends,) = own["lines"]
                 length = math.dist(ends[:2], ends[2:])
                 assert length == pytest.approx(abs(element.end - element.start), rel=1e-5)
-            if isinstance(element, Circle):
+            if isinstance(element, DrawnCircle):
                 places = np.concatenate(own["lines"]).reshape(-1, 2)
                 away = np.hypot(*(places - xy(element.centre)).T)
                 assert away == pytest.approx(element.radius, rel=1e-5)
-            if isinstance(element, Curve):
+            if isinstance(element, DrawnCurve):
                 assert own["look"].startswith("curve-")
                 assert own["lines"]
 
@@ -281,7 +288,7 @@ def test_the_asked_link_stands_in_each_pose() -> None:
 def test_hostile_words_are_text() -> None:
     proposal = made.three_positions()
     evil = "</script><script>window.hacked=1</script><img src=x>"
-    steps = (*proposal.steps, Step(evil, (Dot(0j, evil),)))
+    steps = (*proposal.steps, DrawingStep(evil, (Dot(0j, evil),)))
     page = construction_page(replace(proposal, steps=steps, doubt=evil, chosen={evil: evil}))
     assert "<img" not in page
     assert "<script>window" not in page
