@@ -29,7 +29,7 @@ from models.files.reading import load_scene, names_of_scenes
 from models.scene import Scene
 from models.scene.cut_scenes import SegmentedScene
 from models.scene.elastic import Shape
-from reports.output.provenance import processor
+from reports.output.write import processor
 from sim.run import run
 
 INSTANTS, ROUNDS, COUNT, STEPS = 361, 2, 16, 5000

@@ -27,7 +27,7 @@ from models.files.reading import load_scene
 from models.scene import Scene
 from models.scene.laws import ConstantSpeed
 from reports.judge.cell import Cell, examined
-from reports.plan.elastic import SPRINGS, held_steps
+from reports.plan.requirements import SPRINGS, held_steps
 from reports.way.length import Springs
 from sim.registry import applying_beams, usual
 

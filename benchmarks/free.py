@@ -29,7 +29,7 @@ from models.array import Array
 from models.errors import EngineError
 from models.files.reading import load_scene
 from models.scene import Scene
-from reports.output.provenance import processor
+from reports.output.write import processor
 from sim.registry import engine
 from sim.run import run, time_run
 from tests.second_opinions.baumgarte_table import baumgarte_table

@@ -24,7 +24,7 @@ if __name__ == "__main__":  # run as a file: the packages are beside this folder
 import crankcheck
 from models.scene import Scene
 from models.scene.hard import fourbar
-from reports.output.provenance import processor
+from reports.output.write import processor
 from sim.engine import SettingValue
 from sim.registry import engine
 

@@ -22,7 +22,7 @@ if __name__ == "__main__":  # run as a file: the packages are beside this folder
 
 from analytic.kinematics import solve
 from models.files.reading import load_scene
-from reports.output.provenance import processor
+from reports.output.write import processor
 from sim.engine import Engine, Session
 from sim.engine.settings import resolved
 from sim.registry import engine

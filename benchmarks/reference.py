@@ -24,7 +24,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.files.reading import load_scene
-from reports.output.provenance import processor
+from reports.output.write import processor
 
 POSITIONS = 100_000
 ROUNDS, CALLS = 8, 5

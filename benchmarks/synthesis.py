@@ -25,7 +25,7 @@ from analytic.lectures.synthesis.path.search import generate
 from analytic.lectures.synthesis.path.task import PathTask
 from analytic.lectures.synthesis.solutions import solutions_of
 from models.lectures.tasks.positions import CouplerTask
-from reports.output.provenance import provenance
+from reports.output.write import provenance
 
 TASKS, SEED = 100, 19
 POINTS, BLUR = 50, 1e-3

@@ -29,7 +29,7 @@ from analytic.free.release import release
 from analytic.mechanism.fourbar import FourBar
 from models.errors import CrankcheckError
 from models.scene.hard import fourbar
-from reports.compare.free.hard_runs import toggle_passage
+from reports.compare.hard_runs import toggle_passage
 from sim.registry import engine
 from sim.run import run
 

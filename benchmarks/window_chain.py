@@ -30,8 +30,8 @@ from concurrent.futures import ProcessPoolExecutor
 from analytic.free.exact_motions import ChainMotion
 from models.errors import EngineError
 from models.scene.hard import WindowChain
-from reports.compare.free.hard_runs import ChainErrors, hold
-from reports.output.provenance import processor
+from reports.compare.hard_runs import ChainErrors, hold
+from reports.output.write import processor
 from sim.engine import SettingValue
 from sim.registry import engine
 from sim.run import time_run

@@ -175,7 +175,7 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
             case "Run":
                 from sim import engine as home
             case "__version__":
-                from reports.output.provenance import crankcheck_version
+                from reports.output.write import crankcheck_version
 
                 return crankcheck_version()
             case _:

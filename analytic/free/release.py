@@ -8,13 +8,12 @@ from functools import lru_cache
 import numpy as np
 
 from analytic.change_points.sign import AT_START
-from analytic.free.bodies_motion import BodiesMotion
 from analytic.free.chart import Chart, LimitedScene
 from analytic.free.coordinate_history import CoordinateHistory, Doubt, Window
 from analytic.free.free_motion import FreeMotion, LimitPassage
 from analytic.free.integration import Integration
 from analytic.free.machine import Machine
-from analytic.free.machine_motion import MachineMotion
+from analytic.free.solved_motion import BodiesMotion, MachineMotion
 from analytic.free.window import gauss, sums
 from analytic.kinematics import solve_driven
 from analytic.multibody.release_multibody import release_multibody

@@ -14,7 +14,7 @@ from models.scene.laws import ConstantSpeed
 from models.scene.loads import ConstantFriction
 from reports.advise.demand import Choice, Demand, key_of
 from reports.plan.grid import shape_digest
-from reports.results.fits.floor_fit import interpolate
+from reports.results.floor_fit import interpolate
 from reports.results.lines import Line
 from reports.store.reader import Stored
 from sim.engine.settings import profile_of, resolved

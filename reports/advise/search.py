@@ -12,7 +12,7 @@ from reports.advise.demand import Choice, Demand
 from reports.advise.evidence import MeasuredStudy
 from reports.compare.beside import Truth
 from reports.judge.cell import Cell
-from reports.plan.coarsest import coarsest
+from reports.plan.steps import coarsest
 from reports.stability.error_series import ErrorSeries, error_series
 from reports.workers.isolated import Isolated, Limits, Lost, as_they_end
 from sim.run import run

@@ -211,7 +211,7 @@ def _end(code: int, text: str) -> NoReturn:
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from reports.output.provenance import crankcheck_version
+        from reports.output.write import crankcheck_version
 
         typer.echo(f"crankcheck {crankcheck_version()}")
         raise typer.Exit

@@ -46,10 +46,10 @@ List the shipped scenes with their structure, driver and source."""),
 Open MuJoCo's viewer, or, without a screen or with -o, draw the motion into a file."""),
     "judge": ("requests.judge:JudgeRequest", """
 Hold a log of your own to the closed form; exit 1 when out of tolerance."""),
-    "centres": ("lectures.drawing.centres:CentresRequest", """
+    "centres": ("lectures.drawing.sheet_requests:CentresRequest", """
 Show the instant centres of a position by the theorem of Aronhold and Kennedy, with the
 inflection circle, Bresse's circles and the centrodes of a link."""),
-    "positions": ("lectures.drawing.positions:PositionsRequest", """
+    "positions": ("lectures.drawing.sheet_requests:PositionsRequest", """
 Draw the positions of a mechanism over a turn, with arcs and loci, to scale."""),
     "polygon": ("lectures.drawing.polygon:PolygonRequest", """
 Draw the velocity and the acceleration polygon of a position, group by group, to scale.
@@ -70,7 +70,7 @@ loads alone."""),
     "flywheel": ("lectures.machine.regulation:FlywheelRequest", """
 Work out the flywheel on the driver for a coefficient of fluctuation, exact and as the
 textbooks approximate it, and the speed over the cycle with it and without."""),
-    "chains": ("lectures.drawing.chains:ChainsRequest", """
+    "chains": ("lectures.drawing.sheet_requests:ChainsRequest", """
 List and draw the distinct kinematic chains of so many links: number synthesis, their
 inversions with the class of each, and their types with sliders."""),
     "structure": ("lectures.drawing.structure:StructureRequest", """

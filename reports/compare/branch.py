@@ -13,8 +13,8 @@ from models.errors import CrankcheckError
 from models.motion import LinkMotion, Motion
 from reports.compare.beside import Beside
 from reports.compare.errors import Departure
-from reports.compare.free.free_truth import FreeBeside
-from reports.quantities.free import GEOMETRY
+from reports.compare.free_truth import FreeBeside
+from reports.quantities.by_kind import GEOMETRY
 
 AWAY_RAD = 0.5
 """A link that is off by so much, in a loop that is closed, may stand in the other assembly."""

@@ -18,7 +18,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.compare.beside import Truth, each_at
-from reports.compare.free.free_truth import FreeBeside
+from reports.compare.free_truth import FreeBeside
 from reports.compare.tracks import Track
 from reports.quantities import named
 from sim.engine import Run

@@ -22,9 +22,9 @@ from reports.diff.words import (
     verdict,
 )
 from reports.output.console import hanging, plain_table, say
-from reports.output.for_ci import case_of, counted, folded, plain, remark, suite_of, table
-from reports.results.changes.changes import CellPair, Diff
-from reports.results.changes.runs import CellName, StoredCell
+from reports.output.formats import case_of, counted, folded, plain, remark, suite_of, table
+from reports.results.changes import CellPair, Diff
+from reports.results.runs import CellName, StoredCell
 
 MOST = {"worse": 200, "better": 10}
 """Rows of a table; all that is worse is named, unless that is more than anyone reads."""

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from reports.output.numbers import count
-from reports.results.changes.changes import CellPair, Diff, ErrorChange, Word, other_settings
-from reports.results.changes.runs import CellName, StoredCell, StoredRun, each_once, steps_told
+from reports.results.changes import CellPair, Diff, ErrorChange, Word, other_settings
 from reports.results.cost import equal, noise_of
+from reports.results.runs import CellName, StoredCell, StoredRun, each_once, steps_told
 
 REASON = 120
 """Characters of the reason that an engine gave for how it ended."""

@@ -21,9 +21,18 @@ from models.scene.laws import ConstantSpeed
 from reports.describe.elastic_course import Apart, ElasticCourse
 from reports.drawing.moving import Magnified, magnification
 from reports.drawing.shape import MARGIN, box_of, colours_of, guide_direction, size_of_motion
-from reports.figures.figure_set import FigureSet, note
 from reports.figures.sheet import ONE, SIDES, Panels, sheet
-from reports.figures.style import COLUMN_IN, INK, PAGE_IN, QUIET, SMALL, Look, shorten
+from reports.figures.style import (
+    COLUMN_IN,
+    INK,
+    PAGE_IN,
+    QUIET,
+    SMALL,
+    FigureSet,
+    Look,
+    note,
+    shorten,
+)
 from reports.output.numbers import readable
 from reports.way.length import SECONDS, TURNS
 from reports.way.way import way_of

@@ -16,10 +16,9 @@ from reports.describe.force_tables import cycle_of, cycle_words, flow_of
 from reports.describe.motion_tables import acted_on
 from reports.drawing.shape import colours_of
 from reports.figures.drawing import DASHES
-from reports.figures.figure_set import FigureSet
 from reports.figures.force_turn import ForceTurn, hodographs, loaded
 from reports.figures.sheet import ONE, SIDES, Panels, sheet
-from reports.figures.style import COLUMN_IN, FRONT, INK, QUIET, Look
+from reports.figures.style import COLUMN_IN, FRONT, INK, QUIET, FigureSet, Look
 from reports.output.numbers import readable
 
 TORQUE: Look = {"color": "#1f5f9e", "linewidth": 1.4}

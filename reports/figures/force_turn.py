@@ -24,10 +24,21 @@ from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_
 from reports.drawing.force_arrows import force_arrows
 from reports.drawing.moving import goes_round
 from reports.drawing.shape import PATH_SAMPLES, Label, clear_of_locking, colours_of, place, turn_of
-from reports.figures.figure_set import loads_told, note
 from reports.figures.mechanism import mechanism_at
 from reports.figures.sheet import Panels, sheet
-from reports.figures.style import INK, PAGE_IN, POINTS, QUIET, SMALL, TINY, cut, shorten, width_in
+from reports.figures.style import (
+    INK,
+    PAGE_IN,
+    POINTS,
+    QUIET,
+    SMALL,
+    TINY,
+    cut,
+    loads_told,
+    note,
+    shorten,
+    width_in,
+)
 from reports.output.numbers import readable
 
 

@@ -13,9 +13,18 @@ from analytic.free.free_motion import FreeMotion
 from models.array import Array
 from models.motion import LinkMotion
 from models.scene import Scene
-from reports.figures.figure_set import FigureSet, loads_told, note
 from reports.figures.sheet import ONE, SIDES, Panels, sheet
-from reports.figures.style import COLUMN_IN, INK, QUIET, Look, mark_zero, shorten
+from reports.figures.style import (
+    COLUMN_IN,
+    INK,
+    QUIET,
+    FigureSet,
+    Look,
+    loads_told,
+    mark_zero,
+    note,
+    shorten,
+)
 from reports.output.numbers import error_text
 
 LEAST, MOST, IN_A_TURN = 2401, 7201, 180

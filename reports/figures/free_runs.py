@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from models.array import Array
 from models.scene import Scene
-from reports.compare.free.free_facts import window_means
+from reports.compare.free_facts import window_means
 from reports.compare.last_turn import Trace
 from reports.describe.facts import describe_law
 from reports.drawing.shape import true_motion

@@ -18,9 +18,9 @@ from reports.history.version_changes import (
     times,
 )
 from reports.output.console import hanging, plain_table
-from reports.output.for_ci import plain, table
+from reports.output.formats import plain, table
 from reports.quantities import QUANTITIES, named
-from reports.results.changes.runs import CellName, StoredCell
+from reports.results.runs import CellName, StoredCell
 
 COLUMNS: Mapping[str, tuple[str, ...]] = {
     "angle\nrad": ("angle",),

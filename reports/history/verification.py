@@ -23,11 +23,10 @@ from reports.history.environments import (
     held_numpy,
     shortened,
 )
-from reports.output.provenance import crankcheck_version, processor
-from reports.output.write import check_folder
+from reports.output.write import check_folder, crankcheck_version, processor
 from reports.quantities import QUANTITIES, named
-from reports.results.changes.reading import read_run
-from reports.results.changes.runs import StoredCell, StoredRun
+from reports.results.runs import StoredCell, StoredRun
+from reports.results.stored_runs import read_run
 from reports.workers.signals import Ended, Runner, leave_to_parent, run_child
 from sim.registry import declaration
 

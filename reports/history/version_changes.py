@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from reports.history.verification import FOLLOWED, FollowedError, VersionResult, errors_of
 from reports.output.numbers import count
-from reports.results.changes.changes import (
+from reports.results.changes import (
     CellPair,
     Diff,
     ErrorChange,
@@ -16,7 +16,7 @@ from reports.results.changes.changes import (
     floor,
     other_settings,
 )
-from reports.results.changes.runs import CellName
+from reports.results.runs import CellName
 
 STANDS_OUT = 2.0
 """The factor from which on an error that changed is told of in words."""

@@ -1,4 +1,5 @@
-"""The one place that writes files: checked before the work, whole or not at all after it.
+"""The one place that writes files: checked before the work, whole or not at all after it; and the
+provenance of a result: versions, processor, system, time.
 
 A symbolic link is never followed to what it leads to. One that a user names as a file is refused;
 one that stands where a file of ours goes is replaced, as a file would be. A folder that he names
@@ -8,11 +9,14 @@ may be a link, those of ours in it may not.
 import contextlib
 import errno
 import os
+import platform
 import re
 import sys
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from models.errors import CrankcheckError
@@ -254,3 +258,37 @@ def write(path: Path, content: bytes | str) -> None:
 def clean(text: str) -> str:
     """The text with the characters replaced that neither XML nor a workbook can hold."""
     return NOT_XML.sub("\ufffd", text)
+
+
+def crankcheck_version() -> str:
+    """The installed version of crankcheck."""
+    try:
+        return version("crankcheck")
+    except PackageNotFoundError:  # run from a source tree that was not installed
+        return "not installed"
+
+
+def provenance(engines: Mapping[str, str]) -> dict[str, str]:
+    """What a result needs to be repeated; ``engines`` maps name to version."""
+    return {
+        "crankcheck": crankcheck_version(),
+        **engines,
+        "numpy": version("numpy"),
+        "python": platform.python_version(),
+        "processor": processor(),
+        "processors": str(os.cpu_count() or 1),
+        "system": f"{platform.system()} {platform.machine()}",
+        "made": datetime.now(UTC).isoformat(timespec="seconds"),
+    }
+
+
+def processor() -> str:
+    """The processor by its own name where the system tells it."""
+    if sys.platform == "linux":
+        try:
+            for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+                if line.startswith("model name"):
+                    return line.partition(":")[2].strip()
+        except OSError:
+            pass
+    return platform.processor() or platform.machine()

@@ -14,7 +14,7 @@ from reports.causes.cause import Cause
 from reports.judge.rules import RULES
 from reports.judge.rules.rule import share
 from reports.output.console import hanging, plain_table
-from reports.output.for_ci import case_of, folded, plain, remark, suite_of, table
+from reports.output.formats import case_of, folded, plain, remark, suite_of, table
 from reports.output.numbers import count, error_text, short
 from reports.own_log.judged import JudgedLog, LogRow, column_text, log_rows
 from reports.own_log.log_limits import log_kind

@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterator
 
 from reports.judge.rules import RULES
-from reports.output.for_ci import code, fitted, folded, plain, table
+from reports.output.formats import code, fitted, folded, plain, table
 from reports.output.numbers import count, listed, short
 from reports.page.sections.verdict import level, verdict
 from reports.results.cost import MEANS, Costs

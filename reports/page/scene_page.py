@@ -35,7 +35,7 @@ from reports.drawing.force_arrows import force_arrows
 from reports.drawing.moving import INSTANTS, drawing, magnification, moving_points, packed
 from reports.drawing.shape import size_of_motion, turn_of
 from reports.output.numbers import count
-from reports.output.provenance import crankcheck_version
+from reports.output.write import crankcheck_version
 from reports.page.build import Head, assembled
 from reports.page.sections.motion import scene_words
 from reports.page.sections.section import Section

@@ -14,8 +14,7 @@ from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.output.numbers import count as told
 from reports.plan.chosen import chosen_engines
-from reports.plan.elastic import refuse_rigid
-from reports.plan.free import scenes_of
+from reports.plan.requirements import refuse_rigid, scenes_of
 from reports.plan.singular import gives_forces
 from reports.plan.study import UNITS, Study, Variant
 from reports.way.length import GivenAs, Planned

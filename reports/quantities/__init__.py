@@ -5,9 +5,16 @@ A new quantity is an entry here. Its columns, rows, limit, rule and diagrams fol
 
 from collections.abc import Collection, Mapping
 
-from reports.quantities.elastic import DEFLECTION, EXTENSION, SEGMENTS
+from reports.quantities.by_kind import (
+    DEFLECTION,
+    ENERGY,
+    EXTENSION,
+    GEOMETRY,
+    MOMENTUM,
+    PHASE,
+    SEGMENTS,
+)
 from reports.quantities.forces import MOMENT, NORMAL, REACTION, TORQUE
-from reports.quantities.free import ENERGY, GEOMETRY, MOMENTUM, PHASE
 from reports.quantities.places import (
     ACCELERATION,
     ANGLE,

@@ -16,10 +16,9 @@ from reports.advise.evidence import MeasuredStudy, evidence, stored_choices, sto
 from reports.advise.search import SearchResult, search_all
 from reports.advise.table import document, show
 from reports.output.console import say_whole, tell
-from reports.output.provenance import provenance
-from reports.output.write import Outputs
+from reports.output.write import Outputs, provenance
 from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
-from reports.plan.elastic import rigid_alone
+from reports.plan.requirements import rigid_alone
 from reports.requests.diff import stored_files
 from reports.requests.options import Engines, Jobs, argument, option, seconds
 from reports.results.lines import lines

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, cast
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check_run
 from reports.judge.tolerance import check_names
-from reports.output.provenance import provenance
+from reports.output.write import provenance
 from reports.plan.chosen import refuse_unfollowed
-from reports.plan.elastic import given_of
-from reports.plan.free import refuse_giving_way
+from reports.plan.requirements import given_of, refuse_giving_way
 from reports.requests.arguments import (
     SceneLike,
     engine_of,

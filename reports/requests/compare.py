@@ -18,7 +18,7 @@ from reports.compare.errors import Error, ErrorKind, Errors, largest
 from reports.judge.tolerance import check_names
 from reports.output.console import plain_table, say
 from reports.output.numbers import short
-from reports.plan.elastic import given_of
+from reports.plan.requirements import given_of
 from reports.plan.steps import positive
 from reports.quantities import QUANTITIES
 from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run

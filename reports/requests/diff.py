@@ -9,11 +9,11 @@ from rich.console import Console
 from models.errors import CrankcheckError
 from reports.diff.document import markdown, show, suite
 from reports.output.console import tell
-from reports.output.for_ci import junit
+from reports.output.formats import junit
 from reports.output.write import Outputs
 from reports.requests.options import argument, option, output_option
-from reports.results.changes.changes import compare
-from reports.results.changes.reading import CELLS, FACTS, read_run
+from reports.results.changes import compare
+from reports.results.stored_runs import CELLS, FACTS, read_run
 from reports.store.folder import paths_of
 from reports.store.manifest import MANIFEST, TABLES
 

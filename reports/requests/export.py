@@ -21,7 +21,7 @@ from models.scene import Scene
 from reports.describe.facts import describe_law
 from reports.output.console import plain_table, put, say
 from reports.output.write import check_file, write
-from reports.plan.free import under_control
+from reports.plan.requirements import under_control
 from reports.plan.steps import MOST_STEPS
 from reports.requests.options import SceneName, option, output_option
 from reports.way.way import way_of

@@ -14,8 +14,7 @@ from rich.progress import track
 from models.errors import CrankcheckError, suggestion
 from models.files.schema import NAME
 from reports.figures.drawing import Drawing
-from reports.figures.figure_set import FORMATS, saved
-from reports.figures.style import styled
+from reports.figures.style import FORMATS, saved, styled
 from reports.output.console import say_whole, tell
 from reports.output.numbers import count
 from reports.output.write import check_folder, write

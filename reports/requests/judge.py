@@ -21,13 +21,12 @@ from reports.judge.tolerance import (
 )
 from reports.logs.map_file import Map, read_map
 from reports.output.console import say_whole
-from reports.output.provenance import provenance
-from reports.output.write import Outputs, check_file
+from reports.output.write import Outputs, check_file, provenance
 from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, judge_log, row_table
 from reports.own_log.log_limits import EVERY, LogRequest
 from reports.own_log.table import markdown, show
-from reports.plan.elastic import given_of
+from reports.plan.requirements import given_of
 from reports.plan.steps import positive
 from reports.requests.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
 from reports.requests.arguments import (

@@ -7,7 +7,7 @@ from pathlib import Path
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.logs.map_file import Map, map_text
-from reports.output.for_ci import junit
+from reports.output.formats import junit
 from reports.output.numbers import finite
 from reports.output.write import write
 from reports.own_log.judged import JudgedLog, row_table

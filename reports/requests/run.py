@@ -13,12 +13,11 @@ from rich.console import Console
 from models.errors import CrankcheckError
 from models.files.reading import find_scene
 from models.scene import Scene
-from reports.compare.free.free_truth import released_state
+from reports.compare.free_truth import released_state
 from reports.output.console import say, say_whole
-from reports.output.frame_file import ENDINGS, write_frame
+from reports.output.formats import ENDINGS, write_frame
 from reports.output.write import check_file
-from reports.plan.elastic import given_of
-from reports.plan.free import under_control
+from reports.plan.requirements import given_of, under_control
 from reports.requests.arguments import (
     SceneLike,
     engine_of,

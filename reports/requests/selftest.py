@@ -12,9 +12,8 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from reports.judge.cell import Checked
-from reports.output.frame_file import csv
-from reports.output.provenance import provenance
-from reports.output.write import Outputs
+from reports.output.formats import csv
+from reports.output.write import Outputs, provenance
 from reports.plan.chosen import chosen_engines
 from reports.requests.options import Jobs, option, output_option
 from reports.selftest.fault import PROFILE, RunKind

@@ -21,7 +21,7 @@ from models.scene import Scene
 from models.scene.laws import MOST_TURNS
 from reports.describe.facts import MOST_DEG, driver_at
 from reports.describe.with_forces import with_forces
-from reports.output.frame_file import ENDINGS
+from reports.output.formats import ENDINGS
 from reports.output.write import check_file
 from reports.requests.arguments import SceneLike, is_true, scene_of, told_at_the_call
 from reports.requests.options import FAMILY, LIVE_SHEET, SolveOptions, given, named

@@ -20,7 +20,7 @@ from models.scene.driver import Controlled
 from models.scene.elastic import Shape
 from models.scene.laws import ConstantSpeed, Oscillating
 from reports.output.console import say_whole
-from reports.output.frame_file import SHEET_ROWS, write_frame
+from reports.output.formats import SHEET_ROWS, write_frame
 from reports.output.write import check_folder, write
 from reports.requests.arguments import is_true, one_of, whole_of
 from reports.requests.options import SolveOptions, given

@@ -12,10 +12,9 @@ from rich.console import Console
 
 from models.errors import CrankcheckError, suggestion
 from reports.output.console import say, say_whole
-from reports.output.frame_file import csv
+from reports.output.formats import csv
 from reports.output.numbers import count
-from reports.output.provenance import provenance
-from reports.output.write import Outputs
+from reports.output.write import Outputs, provenance
 from reports.plan.chosen import PROFILES, chosen_engines, chosen_profiles
 from reports.plan.singular import silent_note
 from reports.requests.options import Engines, Forces, Jobs, argument, option, output_option

@@ -22,7 +22,7 @@ from reports.plan.chosen_study import (
     refuse_other_engine,
     study_engines,
 )
-from reports.plan.elastic import chosen_segments, chosen_springs
+from reports.plan.requirements import chosen_segments, chosen_springs
 from reports.plan.singular import silent_note
 from reports.plan.steps import positive
 from reports.plan.study import Study, StudyValue, load_study

@@ -17,10 +17,10 @@ from models.errors import CrankcheckError
 from models.files.reading import find_scenes, read_text
 from reports.judge.three_steps import AT_ROUNDING
 from reports.output.console import say_whole
-from reports.output.provenance import crankcheck_version, provenance
+from reports.output.write import crankcheck_version, provenance
 from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
-from reports.plan.elastic import rigid_alone
 from reports.plan.grid import MEASURE, digest
+from reports.plan.requirements import rigid_alone
 from reports.plan.singular import refuse_short_tables, refuse_singular
 from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
 from reports.requests.options import argument, output_option

@@ -24,11 +24,9 @@ from reports.judge.tolerance import (
     refuse_of_other_kinds,
 )
 from reports.output.console import say_whole, tell
-from reports.output.for_ci import junit
-from reports.output.frame_file import csv, parquet
+from reports.output.formats import csv, junit, parquet
 from reports.output.numbers import finite
-from reports.output.provenance import provenance
-from reports.output.write import Outputs, check_outputs
+from reports.output.write import Outputs, check_outputs, provenance
 from reports.plan.chosen import (
     chosen_engines,
     chosen_profiles,
@@ -36,9 +34,9 @@ from reports.plan.chosen import (
     left_out_note,
     refuse_unfollowed,
 )
-from reports.plan.elastic import given_of
-from reports.plan.free import (
+from reports.plan.requirements import (
     free_names,
+    given_of,
     refuse_other_options,
     scenes_of,
     under_control,
@@ -53,8 +51,8 @@ from sim.engine import Drive
 from sim.registry import engine
 
 if TYPE_CHECKING:
-    from reports.results.changes.changes import Diff
-    from reports.results.changes.runs import StoredRun
+    from reports.results.changes import Diff
+    from reports.results.runs import StoredRun
 
 
 @dataclass(frozen=True)
@@ -197,9 +195,9 @@ def _baseline(
     Raises CrankcheckError for no stored run, and for nothing to compare with."""
     if request.baseline is None:
         return None
-    from reports.results.changes.changes import compare
-    from reports.results.changes.reading import read_run
-    from reports.results.changes.runs import planned_run
+    from reports.results.changes import compare
+    from reports.results.runs import planned_run
+    from reports.results.stored_runs import read_run
 
     base = read_run(request.baseline)
     tell(base.notice)
@@ -220,7 +218,7 @@ def _digests(request: VerifyRequest) -> dict[str, str]:
     """The digests of the texts of the scenes, where they are kept or compared."""
     if not (request.baseline or request.folder or request.json):
         return {}
-    from reports.results.changes.reading import scene_digests
+    from reports.results.stored_runs import scene_digests
 
     return scene_digests(request.names)
 
@@ -233,8 +231,8 @@ def _changes(
     factor: float,
 ) -> Diff:
     """What changed since the baseline."""
-    from reports.results.changes.changes import compare
-    from reports.results.changes.runs import run_of
+    from reports.results.changes import compare
+    from reports.results.runs import run_of
 
     return compare(base, run_of(checked, facts, digests), factor)
 

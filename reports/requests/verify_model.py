@@ -16,10 +16,8 @@ from models.errors import CrankcheckError
 from models.files.assemble import scene_text
 from reports.judge.rows import cell_frame, error_frame
 from reports.judge.tolerance import parse
-from reports.output.for_ci import junit
-from reports.output.frame_file import csv, parquet
-from reports.output.provenance import provenance
-from reports.output.write import Outputs, check_file
+from reports.output.formats import csv, junit, parquet
+from reports.output.write import Outputs, check_file, provenance
 from reports.own_model.account import read
 from reports.own_model.assembly import ModelRequest
 from reports.own_model.judged import JudgedModel, run_lines

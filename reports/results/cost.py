@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from reports.results.fits.floor_fit import interpolate
+from reports.results.floor_fit import interpolate
 from reports.results.lines import Line, comparable
 from reports.store.reader import Stored
 from sim.engine import Drive

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from models.array import Array
 from reports.compare.last_turn import Trace
-from reports.results.fits.line import LineFit
+from reports.results.line_fit import LineFit
 from reports.results.lines import Line
 
 SHARED = 12

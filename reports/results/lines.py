@@ -15,7 +15,7 @@ from reports.judge.halving import BEHIND_DRIVE, EXACT_DRIVE
 from reports.judge.three_steps import AT_ROUNDING
 from reports.plan.study import Study
 from reports.quantities import QUANTITIES
-from reports.results.fits.line import LineFit, fit_line, words
+from reports.results.line_fit import LineFit, fit_line, words
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
 from reports.way.length import SECONDS, clock_of, common_clock

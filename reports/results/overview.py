@@ -13,7 +13,7 @@ from models.errors import CrankcheckError
 from models.files.reading import parse_scene
 from models.scene import Scene
 from reports.output.numbers import count, duration, listed
-from reports.plan.free import under_control
+from reports.plan.requirements import under_control
 from reports.results.candidates import Candidate, candidates
 from reports.results.cost import Costs, costs_of, noise
 from reports.results.lines import (

@@ -18,7 +18,7 @@ from models.scene import Scene
 from models.scene.cut_links import CutScene
 from models.scene.cut_scenes import BeamedScene
 from models.scene.elastic import Beam, Shape
-from reports.compare.elastic.elastic_truth import ChainTruth, ElasticTruth
+from reports.compare.elastic_truth import ChainTruth, ElasticTruth
 from reports.judge.cell import Cell, CellRunner
 from reports.selftest.fault import PROFILE, Items, Plant
 from reports.selftest.logs import WHEN, moved

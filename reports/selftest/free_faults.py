@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.kinematics import solve_driven
 from models.scene import Scene
-from reports.compare.free.free_truth import free_truth
+from reports.compare.free_truth import free_truth
 from reports.selftest.engines import (
     TIMES,
     after_a_third,

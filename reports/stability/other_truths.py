@@ -7,7 +7,7 @@ from analytic.kinematics import solve_driven
 from models.array import Array
 from models.motion import Motion, State
 from reports.compare.errors import Departure
-from reports.compare.free.hard_runs import OVER, ChainErrors, compared, toggle_passage
+from reports.compare.hard_runs import OVER, ChainErrors, compared, toggle_passage
 from reports.stability.case import Throw, Trial
 from reports.stability.error_series import ErrorSeries, lacking, widest, worst_of
 from sim.engine import Run

@@ -18,7 +18,7 @@ import pyarrow.compute as pc  # type: ignore[import-untyped]  # as above
 from models.errors import CrankcheckError, harmless
 from models.files.inputs import UnreadableError, regular_bytes
 from reports.output.numbers import count
-from reports.output.provenance import crankcheck_version
+from reports.output.write import crankcheck_version
 from reports.plan.grid import digest
 
 FORMAT = 2

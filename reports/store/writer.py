@@ -12,7 +12,7 @@ from types import TracebackType
 from models.errors import CrankcheckError
 from models.files.inputs import UnreadableError
 from reports.describe.motion_tables import run_frame
-from reports.output.frame_file import parquet
+from reports.output.formats import parquet
 from reports.output.write import check_folder, refuse_link, write
 from reports.store.folder import has_parts, locked, open_part, paths_of, write_part
 from reports.store.manifest import (

@@ -15,11 +15,11 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import State
-from reports.compare.free.free_truth import released_state
+from reports.compare.free_truth import released_state
 from reports.compare.last_turn import trace
 from reports.judge.cell import Cell, examined
 from reports.judge.rows import cell_row, error_rows
-from reports.output.provenance import crankcheck_version
+from reports.output.write import crankcheck_version
 from reports.workers.isolated import Isolated, Limits, Lost
 from sim.engine import Run
 from sim.own_engine.known import spellings, told

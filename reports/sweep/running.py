@@ -18,7 +18,7 @@ from reports.judge.cell import Cell, unfinished
 from reports.judge.rows import cell_row
 from reports.output.console import say, tell
 from reports.output.numbers import count
-from reports.output.provenance import provenance
+from reports.output.write import provenance
 from reports.plan.grid import Grid, Task, grid
 from reports.plan.study import Study
 from reports.results.lines import lines

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.plan.coarsest import coarsest
-from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, counted
+from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, coarsest, counted
 from reports.sweep.measured import MeasuredCell, Repeats, measured, timed_in_turns
 from reports.way.length import LEAST_STEPS
 from reports.workers.isolated import Isolated, Limits, Lost

@@ -29,7 +29,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from models.errors import CrankcheckError, cut
 from reports.output.write import check_file
-from reports.plan.coarsest import RESOLUTION
+from reports.plan.steps import RESOLUTION
 from reports.tune.attempt import Attempt
 from sim.engine import Settings, SettingValue
 from sim.registry.offers import Knob, SearchSpace, Values

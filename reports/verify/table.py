@@ -19,7 +19,7 @@ from reports.judge.rules import FORCES, RULES
 from reports.judge.rules.rule import Finding
 from reports.judge.three_steps import Convergence
 from reports.output.console import hanging, plain_table
-from reports.output.for_ci import case_of, remark, suite_of
+from reports.output.formats import case_of, remark, suite_of
 from reports.output.numbers import count
 from reports.quantities import QUANTITIES, named
 from reports.way.way import WAYS

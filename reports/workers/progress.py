@@ -20,7 +20,7 @@ LINE_S = 10.0
 """Between two lines where there is no terminal."""
 
 
-class _Pace(ProgressColumn):
+class _StepRate(ProgressColumn):
     """Cells in a second."""
 
     def render(self, task: Bar) -> Text:
@@ -38,7 +38,7 @@ def progress_bar(console: Console, what: str, total: int) -> Iterator[Callable[[
             TextColumn(f"{what:8}"),
             BarColumn(),
             MofNCompleteColumn(),
-            _Pace(),
+            _StepRate(),
             TextColumn("left"),
             TimeRemainingColumn(),
         )

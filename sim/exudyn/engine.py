@@ -13,10 +13,9 @@ from models.motion import State
 from models.scene import Point, Scene
 from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings
 from sim.engine.measure import across, arms
-from sim.exudyn.crank_drive import CrankCourse, CrankDrive, refuse_undriven
+from sim.exudyn.crank_drive import CrankCourse, CrankDrive, reactions, refuse_undriven
 from sim.exudyn.loads import Applied, Present, apply_loads, follows_rates
 from sim.exudyn.passive import Springs, apply_friction
-from sim.exudyn.reactions import reactions
 from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, of_rigid, placing
 from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_drive, simulation
 from sim.exudyn.system import (

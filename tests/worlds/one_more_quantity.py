@@ -63,7 +63,7 @@ def main() -> None:
     from reports.judge.cell import Cell, check
     from reports.judge.rows import cell_frame, error_frame
     from reports.page.sections.errors import DIAGRAMS
-    from reports.results.changes.runs import COMPARED
+    from reports.results.runs import COMPARED
     from reports.store.manifest import table
     from reports.tune.table import OTHERS
     from reports.verify.table import show

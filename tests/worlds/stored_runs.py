@@ -11,9 +11,9 @@ from models.files.reading import shipped
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.judge.rows import cell_frame, error_frame
-from reports.output.provenance import provenance
+from reports.output.write import provenance
 from reports.plan.grid import digest
-from reports.results.changes.runs import CellName, StoredCell, StoredRun
+from reports.results.runs import CellName, StoredCell, StoredRun
 from reports.store.manifest import Manifest
 from reports.store.writer import Writer
 from reports.sweep.measured import measured

@@ -28,10 +28,10 @@ from analytic.lectures.drawings.placed_mechanism import (
 )
 from analytic.lectures.drawings.polygon import (
     FLAT,
-    DrawingStep,
     EquationSide,
     ParallelError,
     Polygon,
+    PolygonStep,
     Quantity,
     Term,
     Vector,
@@ -106,7 +106,7 @@ class _Table:
 
     placement: PlacedMechanism
     rates: dict[str, BodyRates] = field(default_factory=lambda: {GROUND: STILL})
-    steps: dict[Quantity, list[DrawingStep]] = field(
+    steps: dict[Quantity, list[PolygonStep]] = field(
         default_factory=lambda: {q: [] for q in QUANTITIES}
     )
     flat: list[str] = field(default_factory=list)
@@ -159,9 +159,9 @@ class _Table:
         if abs(sine := sine_between(*ways)) < FLAT:
             told = f"{math.degrees(math.asin(abs(sine))):.2g} deg"
             self.flat.append(f"{title}: its directions cross at {told}, near a limit position")
-        self.steps["velocity"].append(DrawingStep(title, drawn_v[0], drawn_v[1] | node))
+        self.steps["velocity"].append(PolygonStep(title, drawn_v[0], drawn_v[1] | node))
         node = {dyad.node: acceleration}
-        self.steps["acceleration"].append(DrawingStep(title, drawn_a[0], drawn_a[1] | node))
+        self.steps["acceleration"].append(PolygonStep(title, drawn_a[0], drawn_a[1] | node))
         self.rates |= dyad.rates(self.placement, NodeMotion(velocity, acceleration))
 
     def _crossed(
@@ -217,7 +217,7 @@ class _Table:
     ) -> None:
         body = self.rates[self.placement.scene.driver.link]
         nodes = {name: end_of(body, at, quantity) for name, at in places.items()}
-        self.steps[quantity].append(DrawingStep(title, tuple(vectors), nodes))
+        self.steps[quantity].append(PolygonStep(title, tuple(vectors), nodes))
 
 
 def _laid(quantity: Quantity, start: Array, terms: Iterable[Term]) -> list[Vector]:

@@ -126,7 +126,7 @@ class Vector:
 
 
 @dataclass(frozen=True)
-class DrawingStep:
+class PolygonStep:
     """What is drawn at once: the driver, or a group; ``nodes`` are the images that it gives."""
 
     title: str
@@ -143,7 +143,7 @@ class Polygon:
     """
 
     quantity: Quantity
-    steps: tuple[DrawingStep, ...]
+    steps: tuple[PolygonStep, ...]
     images: Mapping[str, Mapping[str, Array]]
     undetermined: tuple[str, ...] = ()
 

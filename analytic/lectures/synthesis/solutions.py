@@ -11,7 +11,7 @@ from analytic.lectures.synthesis.coupler import coupler_proposals
 from analytic.lectures.synthesis.design import AskedAngle, AskedSlide, PrecisionPosition, Proposal
 from analytic.lectures.synthesis.examine import Examined, examine, ranked
 from analytic.lectures.synthesis.function.designs import function_designs
-from analytic.lectures.synthesis.function.structural_error import FunctionProposal, structural_error
+from analytic.lectures.synthesis.function.generator import FunctionProposal, structural_error
 from analytic.lectures.synthesis.function.task import FunctionTask, GivenFunction
 from analytic.lectures.synthesis.line_draft import peaucellier
 from analytic.lectures.synthesis.path.fit import Progress
@@ -23,9 +23,9 @@ from analytic.lectures.synthesis.straight_line import hoeken, straight_line
 from analytic.lectures.synthesis.strokes import stroke_proposals
 from analytic.mechanism.travel import Travel, travel
 from models.errors import CrankcheckError, ReachError
+from models.lectures.shipped_tables import TaskTable
 from models.lectures.tasks.curves import FunctionTable, PathTable, StraightLineTable
 from models.lectures.tasks.positions import CouplerTask, QuickReturnTask, RockerTask, StrokeTask
-from models.lectures.tasks.task import TaskTable
 
 
 def function_task(table: FunctionTable) -> FunctionTask:

@@ -4,10 +4,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from models.errors import CrankcheckError, suggestion
-from models.lectures.shipped_tables import find_table, read_table, shipped_in
+from models.lectures.shipped_tables import TaskTable, find_table, read_table, shipped_in
 from models.lectures.tasks.curves import FunctionTable, PathTable, StraightLineTable
 from models.lectures.tasks.positions import CouplerTask, QuickReturnTask, RockerTask, StrokeTask
-from models.lectures.tasks.task import TaskTable
 
 TASKS = Path(__file__).parents[2] / "task_files"
 KINDS: Mapping[str, type[TaskTable]] = {

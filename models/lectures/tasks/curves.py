@@ -8,7 +8,7 @@ from pydantic import Field, StrictInt, StringConstraints, model_validator
 
 from models.files.schema import Coordinates, Degrees, Number, Positive
 from models.lectures.formula import LONGEST_TEXT
-from models.lectures.tasks.task import TaskTable
+from models.lectures.shipped_tables import TaskTable
 
 MOST_ROWS = 10_000
 Rows = Annotated[list[Number], Field(min_length=2, max_length=MOST_ROWS)]

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from models.files.schema import Coordinates, Degrees, Name, NonNegative, Positive, Table
-from models.lectures.tasks.task import TaskTable
+from models.lectures.shipped_tables import TaskTable
 
 RIGID = 1e-3
 """By what share of it the distance of two points may differ between positions: exercises round."""

@@ -13,9 +13,8 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.laws import ConstantSpeed
-from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, later, number
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, fitted, later, number
 from reports.causes.cause import BROUGHT_WITHIN, Rows, picked
-from reports.causes.fit import fitted
 from reports.causes.inquiry import WELL, Inquiry
 from reports.causes.world import World
 from reports.logs.kinds import UNITS

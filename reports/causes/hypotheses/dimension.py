@@ -9,8 +9,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.scene import GROUND, Link, Scene, Slider
-from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, number
-from reports.causes.fit import fitted
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, fitted, number
 from reports.causes.inquiry import Inquiry
 
 MOST = 60

@@ -11,9 +11,8 @@ import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError
-from reports.causes.account import CAUSE, NUMBER, Account, later
+from reports.causes.account import CAUSE, NUMBER, Account, fitted, later
 from reports.causes.cause import CauseSize, Excerpt
-from reports.causes.fit import fitted
 from reports.causes.inquiry import Inquiry
 from reports.output.numbers import duration
 

@@ -9,9 +9,8 @@ import numpy as np
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.scene.laws import ConstantSpeed
-from reports.causes.account import CAUSE, NUMBER, Account, later
+from reports.causes.account import CAUSE, NUMBER, Account, fitted, later
 from reports.causes.cause import EXPLAINED, CauseSize, Excerpt
-from reports.causes.fit import fitted
 from reports.causes.hypotheses.samples import resolution
 from reports.causes.inquiry import MOVED, Inquiry
 

@@ -13,8 +13,7 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.laws import ConstantSpeed, Law
-from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, number
-from reports.causes.fit import fitted
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, fitted, number
 from reports.causes.inquiry import Inquiry
 from reports.causes.world import LogFrame, World
 from reports.logs.channel import Channel

@@ -10,7 +10,7 @@ from analytic.kinematics import solve
 from analytic.lectures.synthesis.design import Asked, AskedAngle, AskedPlace
 from analytic.lectures.synthesis.examine import Examined, passing_times
 from models.array import Array
-from models.lectures.tasks.task import TaskTable
+from models.lectures.shipped_tables import TaskTable
 from models.motion import Motion
 from models.scene import Scene
 from sim.run import run

@@ -18,9 +18,8 @@ from analytic.lectures.synthesis.examine import Examined
 from analytic.lectures.synthesis.sensitivity import monte_carlo, sensitivity
 from analytic.lectures.synthesis.solutions import Solutions, solutions_of
 from models.errors import CrankcheckError, shown
-from models.lectures.shipped_tables import table_of
+from models.lectures.shipped_tables import TaskTable, table_of
 from models.lectures.tasks import KINDS, load_task, refuse_unknown, shipped_tasks
-from models.lectures.tasks.task import TaskTable
 from models.scene import Scene
 from reports.lectures.design.design_tables import (
     clearance_in_words,
@@ -34,10 +33,9 @@ from reports.lectures.design.design_tables import (
 from reports.lectures.design.proof import Met, by_reference, limit_of, proven
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.output.console import plain_table
-from reports.output.frame_file import csv
+from reports.output.formats import csv
 from reports.output.numbers import count
-from reports.output.provenance import provenance
-from reports.output.write import check_folder, write
+from reports.output.write import check_folder, provenance, write
 from reports.plan.chosen import chosen_engines, chosen_profiles
 from reports.requests.arguments import told_at_the_call
 from reports.requests.options import Engines, PaperSize
@@ -222,10 +220,10 @@ def _write(
     console: Console,
 ) -> None:
     """The scenes, the tables, the constructions and the page that leads to them."""
-    from reports.lectures.design.construction_page import construction_page
     from reports.lectures.design.construction_sheet import construction_sheet
-    from reports.lectures.design.solutions_page import (
+    from reports.lectures.design.pages import (
         construction_name,
+        construction_page,
         scene_name,
         solutions_page,
         solutions_sheet,

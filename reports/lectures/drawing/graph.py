@@ -11,22 +11,22 @@ from rich.console import Console
 from analytic.lectures.drawings.graphical import METHODS, Method
 from models.errors import CrankcheckError, shown
 from models.files.reading import find_scene, load_scene
-from reports.lectures.drawing.positions import ENDINGS, save_sheet
-from reports.lectures.drawing.sheets.graphs.graph_drawing import (
+from reports.lectures.drawing.sheet_requests import ENDINGS, save_sheet
+from reports.lectures.drawing.sheets.graph_drawing import (
     DrawnGraphs,
     drawn_graphs,
     graph_log,
 )
-from reports.lectures.drawing.sheets.graphs.graph_orders import (
+from reports.lectures.drawing.sheets.graph_orders import (
     GraphErrors,
     draw_errors,
     graph_errors,
     show_errors,
     told_floor,
 )
-from reports.lectures.drawing.sheets.graphs.graph_page import draw_graphs, laid_out
-from reports.lectures.drawing.sheets.graphs.graph_span import OVERS, Over, over_period
-from reports.lectures.drawing.sheets.graphs.graph_words import (
+from reports.lectures.drawing.sheets.graph_page import draw_graphs, laid_out
+from reports.lectures.drawing.sheets.graph_span import OVERS, Over, over_period
+from reports.lectures.drawing.sheets.graph_words import (
     show_graphs,
     tell,
     told_errors,

@@ -9,8 +9,7 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
-from analytic.lectures.schemes.joint_chains import replaced
-from analytic.lectures.schemes.joint_class import JointAnalysis, analyse_joint
+from analytic.lectures.schemes.joint_chains import JointAnalysis, analyse_joint, replaced
 from analytic.lectures.schemes.scheme_mobility import SchemeMobility, scheme_mobility
 from models.errors import CrankcheckError, harmless
 from models.lectures.scheme import HIGHER, Scheme

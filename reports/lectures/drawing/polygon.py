@@ -24,15 +24,15 @@ from models.errors import CrankcheckError, harmless
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.lectures.drawing.sheets.paper import Paper, of_elastic
-from reports.lectures.drawing.sheets.polygons.polygon_instant import (
+from reports.lectures.drawing.sheets.polygon_instant import (
     AT_DEG,
     LoggedInstant,
     LogInstants,
     placed_at_angle,
     placed_at_time,
 )
-from reports.lectures.drawing.sheets.polygons.polygon_on_paper import DrawnPolygon
-from reports.lectures.drawing.sheets.polygons.polygon_page import (
+from reports.lectures.drawing.sheets.polygon_on_paper import DrawnPolygon
+from reports.lectures.drawing.sheets.polygon_page import (
     ANIMATED,
     ENDINGS,
     PAGE,
@@ -40,8 +40,8 @@ from reports.lectures.drawing.sheets.polygons.polygon_page import (
     polygon_file,
     turning_file,
 )
-from reports.lectures.drawing.sheets.polygons.polygon_sheet import PolygonSheet, laid_out
-from reports.lectures.drawing.sheets.polygons.polygon_table import (
+from reports.lectures.drawing.sheets.polygon_sheet import PolygonSheet, laid_out
+from reports.lectures.drawing.sheets.polygon_table import (
     at_rest,
     doubts,
     drawn_links,
@@ -210,7 +210,7 @@ class PolygonRequest:
         ending = self.output.suffix.lower()
         steady = self.omega is not None
         if ending == PAGE:
-            from reports.lectures.drawing.sheets.polygons.polygon_page import (
+            from reports.lectures.drawing.sheets.polygon_page import (
                 polygon_page,  # the page's machinery, for it alone
             )
 

@@ -22,7 +22,7 @@ from models.scene import Scene
 from models.scene.cut_links import with_rigid_links
 from models.scene.laws import ConstantSpeed
 from reports.describe.facts import place_at
-from reports.lectures.drawing.positions import ENDINGS, save_sheet
+from reports.lectures.drawing.sheet_requests import ENDINGS, save_sheet
 from reports.lectures.drawing.sheets.field_sheets import draw_assemblies
 from reports.lectures.drawing.sheets.paper import Paper, sheet_note
 from reports.output.console import plain_table

@@ -17,7 +17,7 @@ from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from models.array import Array
 from reports.output.console import plain_table
 from reports.output.numbers import NONE, error_text, finite, readable
-from reports.output.provenance import crankcheck_version
+from reports.output.write import crankcheck_version
 
 if TYPE_CHECKING:
     import pandas as pd

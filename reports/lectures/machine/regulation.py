@@ -25,7 +25,7 @@ from reports.lectures.machine.cycle_rows import (
     show_cycle,
     show_flywheel,
 )
-from reports.output.frame_file import ENDINGS, write_frame
+from reports.output.formats import ENDINGS, write_frame
 from reports.output.write import check_file, check_folder, check_outputs, write
 from reports.requests.arguments import SceneLike, kind_of, scene_of, told_at_the_call
 from reports.requests.options import SceneName

@@ -17,13 +17,11 @@ from matplotlib.ticker import MultipleLocator
 from analytic.lectures.regulation.flywheel import EnergyMass, WantedFlywheel, energy_mass
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from models.array import Array
-from reports.figures.figure_set import FORMATS, saved
 from reports.figures.sheet import Panels, sheet
-from reports.figures.style import COLUMN_IN, INK, QUIET, SMALL, TINY, styled
+from reports.figures.style import COLUMN_IN, FORMATS, INK, QUIET, SMALL, TINY, saved, styled
 from reports.lectures.machine.cycle_rows import CycleSeries, cycle_series
 from reports.output.numbers import count, readable
-from reports.output.provenance import crankcheck_version
-from reports.output.write import write
+from reports.output.write import crankcheck_version, write
 
 SIDES = (0.58, 0.1)
 """Room on the left and on the right of a panel over the angle [inch]."""

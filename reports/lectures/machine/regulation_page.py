@@ -5,11 +5,11 @@ from collections.abc import Mapping
 
 from analytic.lectures.regulation.flywheel import WantedFlywheel
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
-from reports.figures.figure_set import saved
+from reports.figures.style import saved
 from reports.lectures.machine import cycle_rows
 from reports.lectures.machine.regulation_figures import Regulated, drawn_figures
 from reports.output.numbers import count
-from reports.output.provenance import crankcheck_version
+from reports.output.write import crankcheck_version
 from reports.page.build import Head, assembled
 from reports.page.sections.section import Section
 

@@ -33,7 +33,7 @@ from models.files.reading import find_scene, load_scene
 from models.scene import Scene
 from reports.lectures.machine import vibration_tables as files
 from reports.lectures.machine.vibration_tables import show_map, show_speeds, show_vibration
-from reports.output.frame_file import csv
+from reports.output.formats import csv
 from reports.output.write import check_folder, write
 from reports.requests.options import SceneName
 

@@ -18,12 +18,10 @@ from analytic.lectures.vibration.over_speeds import InertiaMap, OverSpeeds, spec
 from analytic.lectures.vibration.steady_vibration import SteadyVibration
 from models.array import Array
 from models.scene import Scene
-from reports.figures.figure_set import FORMATS, saved
 from reports.figures.sheet import Panels, sheet
-from reports.figures.style import COLUMN_IN, PAGE_IN, SMALL, logarithmic, styled
+from reports.figures.style import COLUMN_IN, FORMATS, PAGE_IN, SMALL, logarithmic, saved, styled
 from reports.lectures.machine.vibration_rows import unstable_speeds
-from reports.output.provenance import crankcheck_version
-from reports.output.write import write
+from reports.output.write import crankcheck_version, write
 
 COLOURS = ("#1f5f9e", "#c04a1d", "#2f7d4c", "#7a4d9e")
 """Of the links, one after the other."""

@@ -18,7 +18,7 @@ from models.scene import Scene
 from reports.lectures.machine import vibration_rows
 from reports.output.console import plain_table
 from reports.output.numbers import NONE, count, finite, readable
-from reports.output.provenance import crankcheck_version
+from reports.output.write import crankcheck_version
 
 if TYPE_CHECKING:
     import pandas as pd

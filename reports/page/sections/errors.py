@@ -12,7 +12,7 @@ from reports.quantities import QUANTITIES
 from reports.quantities.quantity import tolerance_name
 from reports.results.candidates import Candidate, front, front_over_all
 from reports.results.cost import MEANS, Costs
-from reports.results.fits.line import LineFit
+from reports.results.line_fit import LineFit
 from reports.results.lines import Line, lines
 from reports.results.overview import Report
 from reports.way.way import TARGETS

@@ -10,7 +10,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.free.free_facts import window_means
+from reports.compare.free_facts import window_means
 from reports.drawing.moving import (
     displacements,
     drawing,

@@ -6,7 +6,7 @@ import math
 import shlex
 from collections.abc import Mapping, Sequence
 
-from reports.output.provenance import crankcheck_version
+from reports.output.write import crankcheck_version
 from reports.page.sections.section import Section
 from reports.results.lines import Line, Look, left_out, usual, value_text
 from reports.results.overview import Report

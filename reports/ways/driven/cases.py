@@ -7,8 +7,7 @@ from reports.stability.catalogue.change_points import (
     REDUNDANCY,
     SLIDER_CRANKS,
 )
-from reports.stability.catalogue.driving import DRIVING, DURATION, STEPPING
-from reports.stability.catalogue.limits import AT_LIMITS, NEAR_LIMITS
+from reports.stability.catalogue.driving import AT_LIMITS, DRIVING, DURATION, NEAR_LIMITS, STEPPING
 
 CASES = {
     "change points": CHANGE_POINTS,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from models.motion import State
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.plan.elastic import (
+from reports.plan.requirements import (
     SPRINGS,
     cut_scene,
     given_as,
@@ -24,7 +24,7 @@ from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
 if TYPE_CHECKING:
-    from reports.compare.elastic.elastic_truth import ElasticTruth
+    from reports.compare.elastic_truth import ElasticTruth
 
 
 class Bending:
@@ -108,7 +108,7 @@ class ElasticWay(Bending, DrivenWay):
         return truth.given, truth.start
 
     def _start_truth(self, scene: Scene, given: GivenAs) -> ElasticTruth:
-        from reports.compare.elastic.elastic_truth import elastic_truth  # slow to import
+        from reports.compare.elastic_truth import elastic_truth  # slow to import
 
         return elastic_truth(scene, given.segments, given.springs, self.turn_s(scene))
 
@@ -116,7 +116,7 @@ class ElasticWay(Bending, DrivenWay):
         return logged_every(steps_per_turn)
 
     def truth(self, run: Planned) -> Truth:
-        from reports.compare.elastic.elastic_truth import elastic_truth  # slow to import
+        from reports.compare.elastic_truth import elastic_truth  # slow to import
 
         bent = run.given_as.segments, run.given_as.springs
         return elastic_truth(run.scene, *bent, run.dt_s * (run.steps + 1))

@@ -1,7 +1,7 @@
 """The columns of cells whose links bend: what engines were given, and the parts of the deflection's
 error, as shares of the largest."""
 
-from reports.compare.elastic.elastic_errors import ElasticFacts
+from reports.compare.elastic_errors import ElasticFacts
 from reports.judge.cell import Checked
 
 

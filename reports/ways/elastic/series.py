@@ -4,7 +4,7 @@ import numpy as np
 
 from models.array import Array
 from models.motion import Motion, State
-from reports.compare.elastic.elastic_truth import ChainTruth, chain_truth
+from reports.compare.elastic_truth import ChainTruth, chain_truth
 from reports.compare.tracks import length
 from reports.stability.case import Trial, Yardstick
 from reports.stability.error_series import ErrorSeries, lacking, nearest, widest

@@ -13,9 +13,9 @@ from models.motion import Forces, Motion, State
 from models.scene import Scene
 from models.scene.driver import LONGEST_S
 from reports.compare.beside import Truth
-from reports.compare.free.free_facts import FreeFacts
-from reports.compare.free.free_truth import kept_motion, released_state
-from reports.plan.free import refuse_unreleased, under_control
+from reports.compare.free_facts import FreeFacts
+from reports.compare.free_truth import kept_motion, released_state
+from reports.plan.requirements import refuse_unreleased, under_control
 from reports.plan.steps import counted_free
 from reports.quantities import FREE, named
 from reports.quantities.quantity import Role, Tolerance
@@ -77,7 +77,7 @@ class FreeWay(DrivenWay):
         return ""
 
     def truth(self, run: Planned) -> Truth:
-        from reports.compare.free.free_truth import free_truth  # slow to import
+        from reports.compare.free_truth import free_truth  # slow to import
 
         return free_truth(run.scene, run.steps, run.dt_s, run.tolerance)
 

@@ -1,7 +1,7 @@
 """The columns of free cells: how far they were followed, and how long each class of precision
 holds."""
 
-from reports.compare.free.free_facts import FreeFacts
+from reports.compare.free_facts import FreeFacts
 from reports.judge.cell import Checked
 
 

@@ -13,7 +13,7 @@ from models.scene import Scene
 from reports.causes.cause import Cause
 from reports.compare.beside import Truth
 from reports.compare.errors import Error, Errors
-from reports.compare.free.free_truth import BEYOND, FreeBeside, FreeTruth, free_truth_until
+from reports.compare.free_truth import BEYOND, FreeBeside, FreeTruth, free_truth_until
 from reports.compare.tracks import Track, tracks
 from reports.logs.channel import Channel, OwnLog, Reading, logged_motion
 from reports.logs.kinds import KINDS
@@ -21,8 +21,8 @@ from reports.logs.log_beside import LogBeside
 from reports.output.numbers import error_text, listed, short
 from reports.own_log.drives import DriveFit
 from reports.own_log.log_limits import EVERY, HeldLog, LogRequest
-from reports.plan.free import refuse_unreleased
-from reports.quantities.free import GEOMETRY
+from reports.plan.requirements import refuse_unreleased
+from reports.quantities.by_kind import GEOMETRY
 from sim.engine import Run
 
 LEAST_ROWS = 2

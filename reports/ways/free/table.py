@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from reports.compare.free.free_facts import FreeFacts
+from reports.compare.free_facts import FreeFacts
 from reports.judge.cell import Checked
 from reports.quantities import QUANTITIES, named
 from reports.verify.table import MORE_STEPS, MORE_UNITS, CellTable, span

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 from models.motion import State
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.plan.elastic import (
+from reports.plan.requirements import (
+    LOOK,
     counted_released,
     logged_every,
     refuse_unelastic,
     shortened_note,
 )
-from reports.plan.free import LOOK
 from reports.quantities import FREE_ELASTIC
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
@@ -23,7 +23,7 @@ from reports.ways.free import FreeWay
 from sim.engine import Drive
 
 if TYPE_CHECKING:
-    from reports.compare.elastic.elastic_truth import ElasticTruth
+    from reports.compare.elastic_truth import ElasticTruth
 
 
 class FreeElasticWay(Bending, FreeWay):
@@ -66,7 +66,7 @@ class FreeElasticWay(Bending, FreeWay):
         return None
 
     def _start_truth(self, scene: Scene, given: GivenAs) -> ElasticTruth:
-        from reports.compare.elastic.released_truth import released_elastic_truth  # slow to import
+        from reports.compare.released_truth import released_elastic_truth  # slow to import
 
         look_s = LOOK * scene.driver.law.period_s
         return released_elastic_truth(scene, given.segments, given.springs, 1, look_s)
@@ -81,7 +81,7 @@ class FreeElasticWay(Bending, FreeWay):
         return logged_every(min(steps_per_turn, float(steps)))
 
     def truth(self, run: Planned) -> Truth:
-        from reports.compare.elastic.released_truth import released_elastic_truth  # slow to import
+        from reports.compare.released_truth import released_elastic_truth  # slow to import
 
         bent = run.given_as.segments, run.given_as.springs
         return released_elastic_truth(run.scene, *bent, run.steps, run.dt_s, run.tolerance)

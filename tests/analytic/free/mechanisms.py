@@ -11,8 +11,8 @@ from scipy.integrate import solve_ivp
 from analytic.free.chart import Chart
 from analytic.free.free_motion import FreeMotion
 from analytic.free.machine import Machine
-from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
+from analytic.free.solved_motion import MachineMotion
 from models.array import Array
 from models.scene import Scene, as_bytes
 from models.scene.joints import centre_of, mass_of

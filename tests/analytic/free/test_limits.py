@@ -11,8 +11,8 @@ from scipy.integrate import solve_ivp
 from analytic.free.coordinate_history import _moved
 from analytic.free.exact_motions import ToggleBarrier
 from analytic.free.limit_position import REACH
-from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
+from analytic.free.solved_motion import MachineMotion
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene

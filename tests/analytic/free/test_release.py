@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analytic.free.bodies_motion import BodiesMotion
 from analytic.free.free_motion import FreeMotion
 from analytic.free.kinks import FormulaChange, WindowKinks
 from analytic.free.machine import Machine
-from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
+from analytic.free.solved_motion import BodiesMotion, MachineMotion
 from analytic.free.window import WindowSolution
 from analytic.kinematics import reach
 from analytic.multibody.multibody_motion import Projection

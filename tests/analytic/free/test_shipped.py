@@ -15,8 +15,8 @@ from analytic.dyads.chunk import Chunk
 from analytic.free.exact_motions import Amplitude, ChainMotion
 from analytic.free.free_motion import FreeMotion
 from analytic.free.integration import Integration
-from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
+from analytic.free.solved_motion import MachineMotion
 from analytic.kinematics import solve_driven
 from analytic.prepared import Prepared
 from analytic.structure.mobility import analyse

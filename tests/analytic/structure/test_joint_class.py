@@ -8,8 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from analytic.lectures.schemes import screws
-from analytic.lectures.schemes.joint_chains import chain_of
-from analytic.lectures.schemes.joint_class import analyse_joint
+from analytic.lectures.schemes.joint_chains import analyse_joint, chain_of
 from analytic.lectures.schemes.screws import (
     axis_in_words,
     carried,

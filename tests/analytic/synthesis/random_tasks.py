@@ -9,8 +9,8 @@ import pytest
 
 from analytic.lectures.synthesis import coupler
 from analytic.lectures.synthesis.solutions import Solutions, solutions_of
+from models.lectures.shipped_tables import TaskTable
 from models.lectures.tasks.positions import CouplerTask, QuickReturnTask, RockerTask, StrokeTask
-from models.lectures.tasks.task import TaskTable
 
 Draw = np.random.Generator
 HEAD = {"name": "random", "source": "a test"}

@@ -13,7 +13,7 @@ from analytic.kinematics import solve_driven
 from analytic.lectures.synthesis.design import Dot, Segment
 from analytic.lectures.synthesis.examine import Examined, examine, ranked
 from analytic.lectures.synthesis.function.designs import function_designs, starts_of
-from analytic.lectures.synthesis.function.structural_error import FunctionProposal, structural_error
+from analytic.lectures.synthesis.function.generator import FunctionProposal, structural_error
 from analytic.lectures.synthesis.function.task import FunctionTask, GivenFunction, MechanismKind
 from models.errors import CrankcheckError, ReachError
 from models.lectures.draft import Draft

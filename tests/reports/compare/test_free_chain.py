@@ -13,7 +13,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
 from models.scene.hard import WindowChain
-from reports.compare.free.hard_runs import ChainErrors, compared, hold
+from reports.compare.hard_runs import ChainErrors, compared, hold
 from sim.engine import BodyPose, Poses
 from sim.run import run
 from tests.worlds.fake.engine import FakeEngine, turned_link

@@ -13,10 +13,10 @@ from rich.console import Console
 from models.errors import CrankcheckError
 from reports.diff.document import markdown, show, suite
 from reports.diff.words import cost_text, left_out, lines
-from reports.output.for_ci import junit
+from reports.output.formats import junit
 from reports.requests.diff import DiffRequest
-from reports.results.changes.changes import Diff, compare
-from reports.results.changes.runs import CellCost, StoredCell, StoredRun
+from reports.results.changes import Diff, compare
+from reports.results.runs import CellCost, StoredCell, StoredRun
 from tests.worlds.tiers import few
 
 Copy = Callable[..., Path]

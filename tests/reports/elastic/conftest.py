@@ -6,8 +6,8 @@ from functools import cache
 import pytest
 
 from models.scene import as_bytes
-from reports.compare.elastic import elastic_truth, released_truth
-from reports.compare.elastic.beam_theory import BeamTheory, ExactChain
+from reports.compare import elastic_truth, released_truth
+from reports.compare.beam_theory import BeamTheory, ExactChain
 from tests.worlds.kept_elastic import kept_motions
 
 THEORY = cache(elastic_truth.kept_theory.__wrapped__)

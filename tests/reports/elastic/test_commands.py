@@ -12,9 +12,8 @@ import crankcheck as face
 from models.errors import CrankcheckError
 from models.files.reading import find_scene, load_scene
 from reports.plan.chosen_study import StudyChoice, chosen_study
-from reports.plan.elastic import counted_released
-from reports.plan.free import scenes_of, under_control
 from reports.plan.grid import grid
+from reports.plan.requirements import counted_released, scenes_of, under_control
 from reports.plan.study import load_study
 from reports.store.reader import read_store
 from tests.worlds.command_line import crank_alone

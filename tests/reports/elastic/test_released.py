@@ -7,13 +7,12 @@ import pytest
 
 from models.files.reading import load_scene
 from models.scene import Scene
-from reports.compare.elastic.released_truth import ReleasedElasticTruth
 from reports.compare.errors import DRIVEN, RIGID
+from reports.compare.released_truth import ReleasedElasticTruth
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
 from reports.judge.tolerance import limits
-from reports.plan.elastic import counted_released, few_swings_s, shortened_note
-from reports.plan.free import under_control
+from reports.plan.requirements import counted_released, few_swings_s, shortened_note, under_control
 from reports.requests.compare import compare
 from reports.requests.judge import judge
 from reports.requests.run import run as simulated

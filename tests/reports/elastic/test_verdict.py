@@ -13,7 +13,7 @@ from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rows import cell_row
-from reports.plan.elastic import held_steps
+from reports.plan.requirements import held_steps
 from reports.selftest.elastic_changes import in_beam, stiffer_beam
 from reports.selftest.segment_changes import in_chain, springs, stiffer
 from tests.worlds.tiers import few, slow, slowly

@@ -11,9 +11,9 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.figures.figure_set import FORMATS
 from reports.figures.free_figures import _over_one_turn
 from reports.figures.free_runs import free_runs
+from reports.figures.style import FORMATS
 from reports.requests.figures import FiguresRequest
 from reports.results.overview import Report
 from reports.store.reader import read_store

@@ -14,8 +14,8 @@ from reports.history.environments import EngineVersion
 from reports.history.table import page, ranking, show, table_text
 from reports.history.verification import VersionResult, errors_of, read_version
 from reports.history.version_changes import FollowedChange, headlines, steps
-from reports.results.changes.changes import compare
-from reports.results.changes.runs import CellName, StoredCell, StoredRun
+from reports.results.changes import compare
+from reports.results.runs import CellName, StoredCell, StoredRun
 
 
 def named(scene: str, profile: str = "as-shipped") -> CellName:

@@ -14,8 +14,8 @@ from models.files.reading import load_scene, parse_scene
 from models.scene import Scene
 from models.scene.driver import let_go
 from models.scene.loads import ConstantFriction
+from reports.compare import free_facts
 from reports.compare.errors import DRIVEN, Errors
-from reports.compare.free import free_facts
 from reports.judge.cell import Cell, CellRunner, Checked, check, examined
 from reports.judge.rows import ERROR_COLUMNS, cell_row
 from reports.judge.rules import FORCES

@@ -17,8 +17,7 @@ import pandas as pd
 import pytest
 
 from models.errors import CrankcheckError
-from reports.output.for_ci import code, counted, folded, plain, table
-from reports.output.frame_file import workbook, write_frame
+from reports.output.formats import code, counted, folded, plain, table, workbook, write_frame
 from reports.output.write import check_file, check_folder, check_outputs, write
 
 NOT_ROOT = pytest.mark.skipif(

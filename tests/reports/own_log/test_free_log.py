@@ -12,7 +12,7 @@ from models.errors import CrankcheckError
 from models.files.reading import load_scene
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.free.free_truth import kept_motion
+from reports.compare.free_truth import kept_motion
 from reports.judge.cell import Cell, check
 from reports.own_log.table import footer, no_cause_text
 from reports.page.log_page import log_page

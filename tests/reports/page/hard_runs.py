@@ -10,7 +10,7 @@ from models.array import Array
 from models.files.reading import load_scene
 from models.scene import Scene
 from reports.drawing.moving import INSTANTS, displacements, drawing, moving_points
-from reports.output.provenance import provenance
+from reports.output.write import provenance
 from reports.stability.matrix import CaseFacts, Critical, Graded, Matrix, Outcome, Picture
 from sim.engine import Run
 from sim.run import run

@@ -18,9 +18,9 @@ from reports.figures.elastic_figures import ELASTIC_FIGURES
 from reports.figures.force_figures import FORCE_FIGURES
 from reports.figures.force_turn import force_turn
 from reports.figures.free_figures import FREE_FIGURES, free_course
-from reports.lectures.design.construction_page import construction_page
-from reports.lectures.drawing.sheets.polygons.polygon_instant import placed_at_time
-from reports.lectures.drawing.sheets.polygons.polygon_page import polygon_page
+from reports.lectures.design.pages import construction_page
+from reports.lectures.drawing.sheets.polygon_instant import placed_at_time
+from reports.lectures.drawing.sheets.polygon_page import polygon_page
 from reports.page.scene_page import elastic_page, factors, free_page, scene_page
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.reports.page.conftest import Write

@@ -16,7 +16,7 @@ from models.array import Array
 from models.files.reading import load_scene
 from models.scene.joints import line_ends, mass_of
 from models.scene.loads import PinSpring
-from reports.compare.free.free_truth import free_truth
+from reports.compare.free_truth import free_truth
 from reports.judge.cell import CellRunner, check, examined
 from reports.selftest.elastic_changes import (
     BEAM_RUNS,

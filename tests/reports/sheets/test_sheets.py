@@ -18,7 +18,7 @@ from models.scene.laws import ConstantSpeed
 from reports.lectures.drawing.sheets.centre_sheet import centres_of, draw_centres
 from reports.lectures.drawing.sheets.letters import Letter, write_letters
 from reports.lectures.drawing.sheets.paper import Box, Canvas, Paper, line, text
-from reports.lectures.drawing.sheets.polygons.polygon_sheet import draw_sheet, laid_out
+from reports.lectures.drawing.sheets.polygon_sheet import draw_sheet, laid_out
 from reports.lectures.drawing.sheets.position_sheet import PositionSheet, draw_positions, positions
 from reports.lectures.drawing.sheets.scheme import assembled
 from tests.reports.sheets.measured import drawn_lines, overlaps

@@ -14,7 +14,7 @@ from benchmarks.toggle import LINES, RandomThrow, Thrown, right_from, threw, thr
 from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
-from reports.compare.free.hard_runs import toggle_passage
+from reports.compare.hard_runs import toggle_passage
 from reports.requests.stability import _cases
 from reports.stability.case import Trial
 from reports.stability.catalogue.free_motion import from_rest

@@ -14,7 +14,7 @@ from rich.console import Console
 from analytic.kinematics import solve
 from models.files.reading import load_scene
 from models.scene import Scene
-from reports.compare.free.free_truth import released_state
+from reports.compare.free_truth import released_state
 from reports.judge.cell import Cell
 from reports.requests.sweep import SweepRequest
 from reports.store.reader import read_store

@@ -14,9 +14,9 @@ from analytic.lectures.synthesis.design import Asked
 from analytic.lectures.synthesis.examine import Examined, passing_times
 from analytic.lectures.synthesis.solutions import solutions_of
 from models.errors import CrankcheckError
+from models.lectures.shipped_tables import TaskTable
 from models.lectures.tasks import load_task, shipped_tasks
 from models.lectures.tasks.positions import CouplerTask
-from models.lectures.tasks.task import TaskTable
 from models.scene import span
 from models.scene.laws import ConstantSpeed, Oscillating
 from reports.lectures.design.proof import by_reference, proven

@@ -9,7 +9,7 @@ import pytest
 from models.files.reading import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, unfinished
-from reports.output.for_ci import junit
+from reports.output.formats import junit
 from reports.verify import advised as advice
 from reports.verify.advised import advised
 from reports.verify.table import suite

@@ -17,7 +17,12 @@ from models.errors import CrankcheckError
 from models.files.reading import load_scene, shipped
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
 from models.scene.laws import ConstantSpeed
-from reports.lectures.drawing.workbook.family import family
+from reports.lectures.drawing.workbook.family import (
+    family,
+    scene_curves,
+    scene_family,
+    varied_scene,
+)
 from reports.lectures.drawing.workbook.formula_table import Input, evaluated
 from reports.lectures.drawing.workbook.live_workbook import (
     formulas_of,
@@ -25,7 +30,6 @@ from reports.lectures.drawing.workbook.live_workbook import (
     live_workbook,
     scene_family_workbook,
 )
-from reports.lectures.drawing.workbook.scene_family import scene_curves, scene_family, varied_scene
 from tests.worlds.live_tables import KINDS, held_to_the_reference, inputs_of, live, scene_of
 
 PARALLELOGRAM = {"AB": 0.1, "BC": 0.3, "CD": 0.1, "AD": 0.3, "start_deg": 0.0}

@@ -25,9 +25,8 @@ from analytic.lectures.synthesis.design import (
 )
 from analytic.lectures.synthesis.function.equal_ripple import equal_ripple
 from analytic.lectures.synthesis.function.fourbar import fourbars
-from analytic.lectures.synthesis.function.generator import STARTS, Generator
+from analytic.lectures.synthesis.function.generator import STARTS, FunctionProposal, Generator
 from analytic.lectures.synthesis.function.slider_crank import SliderCrankGenerator, slider_cranks
-from analytic.lectures.synthesis.function.structural_error import FunctionProposal
 from analytic.lectures.synthesis.function.task import FunctionTask
 from models.array import Array
 from models.errors import CrankcheckError

@@ -22,9 +22,8 @@ from matplotlib.patches import Polygon as Patch
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.figures.figure_set import saved
-from reports.figures.style import FRONT, INK, LARGE, QUIET, SMALL, TINY, cut
-from reports.output.provenance import crankcheck_version
+from reports.figures.style import FRONT, INK, LARGE, QUIET, SMALL, TINY, cut, saved
+from reports.output.write import crankcheck_version
 
 STEPS = (1.0, 2.0, 5.0)
 ROUNDING = 1e-9
@@ -213,7 +212,7 @@ class Canvas:
         return next(axes for axes in self.layers if axes.get_gid() == f"layer-{name}")
 
     def saved(self, kind: str, title: str) -> bytes:
-        """The file of the sheet, of a kind in `reports.figures.figure_set.FORMATS`."""
+        """The file of the sheet, of a kind in `reports.figures.style.FORMATS`."""
         raw = saved(self.figure, kind, title)
         return _layered(raw.decode()).encode() if kind == "svg" else raw
 

@@ -28,6 +28,7 @@ from models.errors import StructureError
 from models.scene import GROUND, Scene
 from models.scene.laws import ConstantSpeed
 from reports.describe.motion_tables import motion_frame
+from reports.lectures.drawing.workbook.family import SceneFamily
 from reports.lectures.drawing.workbook.formula_cells import TABLE, write_columns, write_inputs
 from reports.lectures.drawing.workbook.formula_table import FormulaTable
 from reports.lectures.drawing.workbook.formulas import (
@@ -35,10 +36,8 @@ from reports.lectures.drawing.workbook.formulas import (
     slider_crank_table,
     slotted_lever_table,
 )
-from reports.lectures.drawing.workbook.scene_family import SceneFamily
-from reports.output.frame_file import workbook
-from reports.output.provenance import crankcheck_version
-from reports.output.write import clean
+from reports.output.formats import workbook
+from reports.output.write import clean, crankcheck_version
 
 CHART_SHEET = "charts"
 WIDE_CM, HIGH_CM, ROWS_EACH = 24.0, 9.0, 19

@@ -17,15 +17,16 @@ from models.errors import CrankcheckError, harmless
 from models.scene import Scene
 from reports.describe.facts import describe_law
 from reports.figures.drawing import COLOURS, DASHES
-from reports.figures.figure_set import saved
 from reports.figures.sheet import Panels, sheet
-from reports.figures.style import COLUMN_IN, PAGE_IN, mark_zero, shorten, styled
+from reports.figures.style import COLUMN_IN, PAGE_IN, mark_zero, saved, shorten, styled
 from reports.lectures.drawing.workbook.family import (
     KINDS,
     FamilyCurves,
     extremes,
     family,
     family_curves,
+    scene_curves,
+    scene_family,
 )
 from reports.lectures.drawing.workbook.live_workbook import (
     MOST_LIVE,
@@ -33,10 +34,8 @@ from reports.lectures.drawing.workbook.live_workbook import (
     live_workbook,
     scene_family_workbook,
 )
-from reports.lectures.drawing.workbook.scene_family import scene_curves, scene_family
 from reports.output.numbers import count
-from reports.output.provenance import crankcheck_version
-from reports.output.write import write
+from reports.output.write import crankcheck_version, write
 from reports.page.build import Head, assembled
 from reports.page.sections.section import Section
 from reports.requests.options import SolveOptions, given

@@ -17,8 +17,8 @@ from models.scene.loads import Load
 from models.scene.tabulated import Tabulated
 from reports.compare.compare import compare, places
 from reports.compare.errors import Errors
-from reports.compare.free.free_facts import drift, kept_about, momentum, window_means, window_s
-from reports.compare.free.free_truth import FreeTruth, free_truth, kept_motion
+from reports.compare.free_facts import drift, kept_about, momentum, window_means, window_s
+from reports.compare.free_truth import FreeTruth, free_truth, kept_motion
 from reports.drawing.shape import true_motion
 from reports.store.reader import read_store
 from sim.engine import Run

@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 
 from models.errors import CrankcheckError
 from models.files.reading import shipped
-from reports.results.changes.changes import ErrorChange, compare, floor, other_settings
-from reports.results.changes.reading import read_run, scene_digests
-from reports.results.changes.runs import COMPARED, CellName, StoredCell, StoredRun, steps_told
+from reports.results.changes import ErrorChange, compare, floor, other_settings
+from reports.results.runs import COMPARED, CellName, StoredCell, StoredRun, steps_told
+from reports.results.stored_runs import read_run, scene_digests
 from reports.store.reader import read_store
 from sim.registry import engine
 from tests.worlds.tiers import slowly

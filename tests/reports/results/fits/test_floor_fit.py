@@ -4,7 +4,7 @@ allow."""
 import numpy as np
 import pytest
 
-from reports.results.fits.floor_fit import ALIGNMENTS, Allowed, ErrorCurve, added, opposed, within
+from reports.results.floor_fit import ALIGNMENTS, Allowed, ErrorCurve, added, opposed, within
 
 DTS = 1e-2 / 2.0 ** np.arange(6)[::-1]
 FLOOR = 1e-3

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from reports.judge.three_steps import AT_ROUNDING
-from reports.results.fits.floor_fit import interpolate, reach
-from reports.results.fits.line import FitKind, LineFit, fit_line
+from reports.results.floor_fit import interpolate, reach
+from reports.results.line_fit import FitKind, LineFit, fit_line
 from tests.worlds.strategies import examples
 from tests.worlds.tiers import few, slow, slowly
 

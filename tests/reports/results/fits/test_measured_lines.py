@@ -14,8 +14,8 @@ import pytest
 from models.files.reading import load_scene
 from reports.judge.cell import Cell, check
 from reports.output.numbers import short
-from reports.results.fits.floor_fit import opposed
-from reports.results.fits.line import LineFit, fit_line, words
+from reports.results.floor_fit import opposed
+from reports.results.line_fit import LineFit, fit_line, words
 
 PERIOD = 2.0 * math.pi / 10.0
 STEPS = (90, 180, 360, 720, 1440, 2880)

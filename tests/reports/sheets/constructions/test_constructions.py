@@ -26,17 +26,17 @@ from models.array import Array
 from models.errors import CrankcheckError
 from reports.drawing.shape import turn_of
 from reports.figures.style import width_in
-from reports.lectures.design.construction_page import (
-    INSTANTS,
-    MOVES,
-    construction_page,
-)
 from reports.lectures.design.construction_sheet import construction_sheet, laid_out
 from reports.lectures.design.construction_view import (
     ConstructionView,
     positions_on_way,
     strokes,
     xy,
+)
+from reports.lectures.design.pages import (
+    INSTANTS,
+    MOVES,
+    construction_page,
 )
 from reports.lectures.drawing.sheets.paper import (
     MM_PER_IN,

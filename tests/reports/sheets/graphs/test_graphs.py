@@ -16,16 +16,16 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
 from reports.figures.style import SMALL, styled
-from reports.lectures.drawing.sheets.graphs.graph_drawing import (
+from reports.lectures.drawing.sheets.graph_drawing import (
     DrawnGraphs,
     drawn_graphs,
     graph_log,
 )
-from reports.lectures.drawing.sheets.graphs.graph_orders import ErrorLine, draw_errors, graph_errors
-from reports.lectures.drawing.sheets.graphs.graph_page import caption, draw_graphs, laid_out
-from reports.lectures.drawing.sheets.graphs.graph_sheet import POLES_MM, GraphSheet, graph_scales
-from reports.lectures.drawing.sheets.graphs.graph_span import Over, over_period
-from reports.lectures.drawing.sheets.graphs.graph_words import table_cells, told_log
+from reports.lectures.drawing.sheets.graph_orders import ErrorLine, draw_errors, graph_errors
+from reports.lectures.drawing.sheets.graph_page import caption, draw_graphs, laid_out
+from reports.lectures.drawing.sheets.graph_sheet import POLES_MM, GraphSheet, graph_scales
+from reports.lectures.drawing.sheets.graph_span import Over, over_period
+from reports.lectures.drawing.sheets.graph_words import table_cells, told_log
 from reports.lectures.drawing.sheets.paper import Paper
 from tests.reports.sheets.measured import drawn_lines
 

@@ -25,7 +25,7 @@ from models.files.reading import load_scene
 from models.motion import Motion
 from reports.drawing.shape import true_motion
 from reports.lectures.drawing.sheets.paper import Paper
-from reports.lectures.drawing.sheets.polygons.polygon_instant import (
+from reports.lectures.drawing.sheets.polygon_instant import (
     DIFFERENCED,
     REPORTED,
     LoggedInstant,
@@ -33,13 +33,13 @@ from reports.lectures.drawing.sheets.polygons.polygon_instant import (
     placed_at_angle,
     placed_at_time,
 )
-from reports.lectures.drawing.sheets.polygons.polygon_page import (
+from reports.lectures.drawing.sheets.polygon_page import (
     INSTANTS,
     polygon_file,
     polygon_page,
     turning_file,
 )
-from reports.lectures.drawing.sheets.polygons.polygon_sheet import (
+from reports.lectures.drawing.sheets.polygon_sheet import (
     PolygonSheet,
     draw_lines,
     draw_sheet,

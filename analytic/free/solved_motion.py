@@ -1,0 +1,328 @@
+"""The free motion of a mechanism: of one freedom in its driver's angle or the coordinate in its place,
+of several or without a closed form by the equations of motion of all bodies.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.dyads.plane import EPS
+from analytic.forces.kinetostatics import forces
+from analytic.free.coordinate_history import MOST, CoordinateHistory, Doubt, growth
+from analytic.free.free_motion import IntegratedLaw, LimitPassage
+from analytic.free.machine import Machine
+from analytic.free.motion_along import motion_along, places_beside
+from analytic.free.window import gauss, sums
+from analytic.kinematics import solve_driven
+from analytic.multibody.as_motion import as_motion, logged_places
+from analytic.multibody.bodies import EnergyBalance
+from analytic.multibody.multibody_motion import MultibodyMotion, Projection
+from models.array import Array, from_end, samples
+from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
+from models.scene import Scene
+from models.scene.driver import check_within
+
+COARSER = Projection(1e-12)
+"""The integration that this one is held to: it is off by more, so that their difference is what it
+is off by itself."""
+SAFETY = 4.0
+"""How much more than the largest difference so far the error may be."""
+LOOKS = 801
+"""Instants at which both are compared."""
+
+BodyMotion = TypeVar("BodyMotion", LinkMotion, PointMotion, SliderMotion)
+
+
+@dataclass(frozen=True, eq=False)
+class BodiesMotion:
+    """What all bodies of a scene do (`FreeMotion`), integrated at once as ``bodies``.
+
+    No coordinate of it is special: `sensitivity` is that of all coordinates, what it may be off by
+    that of the worst link. Bounds are estimates, of a second integration.
+    """
+
+    bodies: MultibodyMotion
+
+    @property
+    def scene(self) -> Scene:
+        return self.bodies.scene
+
+    @property
+    def until_s(self) -> float:
+        return self.bodies.until_s
+
+    @property
+    def passages(self) -> tuple[LimitPassage, ...]:
+        """None: where a link turns back, no other coordinate has to take its place."""
+        return ()
+
+    @property
+    def edges_s(self) -> tuple[float, ...]:
+        """Those of loads over time."""
+        return self.bodies.edges_s
+
+    @property
+    def freedoms(self) -> int:
+        return self.bodies.dynamics.assembly.size - self.bodies.dynamics.rank
+
+    @property
+    def by_dyads(self) -> bool:
+        return False
+
+    @property
+    def driver_tells(self) -> bool:
+        return False
+
+    @property
+    def peak_speed_rad_s(self) -> float:
+        return max(float(np.abs(one.omega).max()) for one in self._looks[1].links.values())
+
+    @property
+    def range_rad(self) -> float:
+        return float(np.ptp(self._looks[1].links[self.scene.driver.link].theta))
+
+    @cached_property
+    def law(self) -> IntegratedLaw:
+        return IntegratedLaw(self._driver, 0.0, self.until_s, self.peak_speed_rad_s)
+
+    def at(self, time_s: Array, *, bound: bool = True) -> Motion:
+        motion = replace(self.bodies.at(time_s), forces=None)
+        return replace(motion, bound=self._bound(time_s)) if bound else motion
+
+    def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
+        motion = self.bodies.outside(time_s)
+        return replace(motion, bound=self._bound(time_s)) if bound else motion
+
+    def with_forces(self, motion: Motion, *, bound: bool = True) -> Motion:
+        """With reactions without bounds of their own."""
+        del bound
+        return replace(motion, forces=self.bodies.at(motion.time_s).forces)
+
+    def beside(self, logged: Motion) -> Motion:
+        assembly = self.bodies.dynamics.assembly
+        q = logged_places(assembly, logged, self.freedoms)
+        return as_motion(assembly, logged.time_s, assembly.at_rest(q), np.zeros_like(q))
+
+    def energy(self, time_s: Array) -> EnergyBalance:
+        return self.bodies.energy(time_s)
+
+    def sensitivity(self, time_s: Array) -> Array:
+        return self.bodies.sensitivity(time_s)
+
+    def error_rad(self, time_s: Array) -> Array:
+        links = self._bound(samples(time_s, "time_s")).links.values()
+        return np.asarray(np.max([one.theta for one in links], axis=0))
+
+    def _driver(self, time_s: Array) -> tuple[Array, Array, Array]:
+        one = self.bodies.at(time_s).links[self.scene.driver.link]
+        return one.theta, one.omega, one.alpha
+
+    @cached_property
+    def _looks(self) -> tuple[Array, Motion]:
+        """Instants, and the motion then."""
+        time_s = np.linspace(0.0, self.until_s, LOOKS)
+        return time_s, self.bodies.at(time_s)
+
+    @cached_property
+    def _doubt(self) -> Bound:
+        """What all bodies may be off by until each of these instants."""
+        time_s, motion = self._looks
+        other = replace(self.bodies, method=COARSER).at(time_s)
+        return Bound(
+            _apart(motion.links, other.links),
+            _apart(motion.points, other.points),
+            _apart(motion.sliders, other.sliders),
+        )
+
+    def _bound(self, time_s: Array) -> Bound:
+        # That of the next look: the differences before a time hold up to there.
+        k = np.clip(np.searchsorted(self._looks[0], time_s), 0, LOOKS - 1)
+        doubt = self._doubt
+        return Bound(_some(doubt.links, k), _some(doubt.points, k), _some(doubt.sliders, k))
+
+
+def _apart(
+    own: Mapping[str, BodyMotion], others: Mapping[str, BodyMotion]
+) -> dict[str, BodyMotion]:
+    """How far bodies of two motions have been apart until each instant at most, with room."""
+    return {
+        name: type(body)(*map(_room, vars(body).values(), vars(others[name]).values()))
+        for name, body in own.items()
+    }
+
+
+def _room(own: Array, other: Array) -> Array:
+    apart, size = np.abs(own - other), np.abs(own)
+    if own.ndim == 2:
+        apart, size = np.linalg.norm(apart, axis=1), np.linalg.norm(size, axis=1)
+    return np.asarray(SAFETY * np.maximum.accumulate(apart) + 4.0 * EPS * (size + size.max()))
+
+
+def _some(bodies: Mapping[str, BodyMotion], index: NDArray[np.intp]) -> dict[str, BodyMotion]:
+    return {
+        name: type(body)(*(series[index] for series in vars(body).values()))
+        for name, body in bodies.items()
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class MachineMotion:
+    """What a scene of one freedom does (`FreeMotion`): ``history`` is the integration, and
+    ``doubt`` what it may be off by."""
+
+    scene: Scene
+    until_s: float
+    history: CoordinateHistory
+    doubt: Doubt
+    passages: tuple[LimitPassage, ...] = ()
+    edges_s: tuple[float, ...] = ()
+
+    @property
+    def freedoms(self) -> int:
+        return 1
+
+    @property
+    def by_dyads(self) -> bool:
+        return True
+
+    @property
+    def driver_tells(self) -> bool:
+        return self.history.windows[0].chart.limit is None
+
+    @property
+    def peak_speed_rad_s(self) -> float:
+        """The largest angular velocity of the driver."""
+        return float(np.abs(self._looks[1]).max())
+
+    @property
+    def range_rad(self) -> float:
+        """How far the driver goes, from its smallest angle to its largest."""
+        return float(np.ptp(self._looks[0]))
+
+    @cached_property
+    def law(self) -> IntegratedLaw:
+        """The driver's motion as a law."""
+        return IntegratedLaw(self._driver, 0.0, self.until_s, self.peak_speed_rad_s)
+
+    def at(self, time_s: Array, *, bound: bool = True) -> Motion:
+        """The motion at times [s], (T,), from 0 to ``until_s``; bounds hold what the integration
+        may be off by as well. Raises CrankcheckError for times beyond."""
+        instants = samples(time_s, "time_s")
+        check_within(self.scene, instants, self.until_s)
+        return motion_along(self.scene, self.history, self.doubt if bound else None, instants)
+
+    def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
+        """As `FreeMotion.outside`; the third rate of the driver is taken as constant."""
+        end_s, t, h = from_end(time_s, self.until_s)
+        theta, omega, alpha = self._driver(end_s + np.array([0.0, h, 2.0 * h]))
+        jerk = (4.0 * alpha[1] - 3.0 * alpha[0] - alpha[2]) / (2.0 * h)
+        return solve_driven(
+            self.scene,
+            theta[0] + t * (omega[0] + t * (alpha[0] / 2.0 + t * jerk / 6.0)),
+            omega[0] + t * (alpha[0] + t * jerk / 2.0),
+            alpha[0] + t * jerk,
+            time_s,
+            bound=bound,
+        )
+
+    def with_forces(self, motion: Motion, *, bound: bool = True) -> Motion:
+        load = forces(self.scene, motion, bound=bound, skip_dead_points=True)
+        return replace(motion, forces=load)
+
+    def beside(self, logged: Motion) -> Motion:
+        """The reference, without rates and bounds, in the position that a run of this scene has at
+        each of its instants, in the assembly that it is in: at the driver's angle that it logged,
+        and near a limit of that at the angle or the displacement of what goes on through it."""
+        return places_beside(self.scene, self.history, logged)
+
+    def energy(self, time_s: Array) -> EnergyBalance:
+        """The energies at times [s], (T,). Raises CrankcheckError for times beyond."""
+        instants = samples(time_s, "time_s")
+        check_within(self.scene, instants, self.until_s)
+        return history_energy(self.scene, self.history, instants)
+
+    def sensitivity(self, time_s: Array) -> Array:
+        """G (T,): by how much a small change of the start has grown by then at most, at least 1.
+
+        In the driver's angle: for a start that is off by an angle, per rad; or in its speed, per
+        peak speed over the range that the driver goes through (a turn at most): changes that are
+        the same part of the motion.
+        """
+        return np.interp(time_s, *self._growth)
+
+    def error_rad(self, time_s: Array) -> Array:
+        """What the driver's angle may be off by [rad], (T,)."""
+        instants = samples(time_s, "time_s")
+        u, off = self.history.state(instants)[0], self.doubt.at(instants)[0]
+        error, window = np.zeros_like(u), self.history.windows_at(instants)
+        for chart, first, last in self.history.legs():
+            at = (window >= first) & (window < last)
+            _, slope, bend = chart.driver(u[at])
+            error[at] = (np.abs(slope) + 0.5 * np.abs(bend) * off[at]) * off[at]
+        return error
+
+    def _driver(self, time_s: Array) -> tuple[Array, Array, Array]:
+        """Angle, rate and acceleration of the driver."""
+        u, v, a = self.history.state(time_s)
+        theta, omega, alpha = np.empty_like(u), np.empty_like(u), np.empty_like(u)
+        window = self.history.windows_at(time_s)
+        for chart, first, last in self.history.legs():
+            at = (window >= first) & (window < last)
+            phi, slope, bend = chart.driver(u[at])
+            theta[at], omega[at] = phi, slope * v[at]
+            alpha[at] = bend * v[at] ** 2 + slope * a[at]
+        return theta, omega, alpha
+
+    @cached_property
+    def _looks(self) -> tuple[Array, Array, Array]:
+        """The driver at instants that are close."""
+        ends = np.append(self.history.starts_s, self.history.end_s)
+        share = np.linspace(0.0, 1.0, 17)
+        return self._driver((ends[:-1, None] + np.diff(ends)[:, None] * share).ravel())
+
+    @cached_property
+    def _growth(self) -> tuple[Array, Array]:
+        reach = min(2.0 * np.pi, self.range_rad)
+        return growth(self.history, self.peak_speed_rad_s / reach if reach > 0.0 else 0.0)
+
+
+def history_energy(scene: Scene, history: CoordinateHistory, time_s: Array) -> EnergyBalance:
+    """The energies of an integrated motion at times [s], (T,)."""
+    u, v, _ = history.state(time_s)
+    window = history.windows_at(time_s)
+    series, before = _work(scene, history)
+    share = (time_s - history.starts_s[window]) / np.array([w.long_s for w in history.windows])[
+        window
+    ]
+    work = before[window] + sums(series[window], np.clip(share, 0.0, MOST))
+    kinetic, potential = np.empty_like(u), np.empty_like(u)
+    for chart, first, last in history.legs():
+        at = (window >= first) & (window < last)
+        if at.any():
+            machine = Machine(scene, chart)
+            wound = history.wound_at(window[at])
+            kinetic[at] = machine.kinetic(u[at], v[at])
+            potential[at] = machine.potential(u[at], wound)
+    return EnergyBalance(kinetic, potential, np.asarray(work))
+
+
+def _work(scene: Scene, history: CoordinateHistory) -> tuple[Array, Array]:
+    """The series of the work in each window, and the work before it [J]."""
+    n = history.windows[0].swing.shape[1]
+    rule = gauss(n)
+    long_s = np.array([window.long_s for window in history.windows])
+    power = np.empty((len(long_s), n))
+    for chart, first, last in history.legs():
+        times = history.starts_s[first:last, None] + long_s[first:last, None] * rule.places
+        numbers = np.repeat(np.arange(first, last), n)
+        share = np.tile(rule.places, last - first)
+        u, v, _ = history.at(numbers, share)
+        power[first:last] = Machine(scene, chart).power(times.ravel(), u, v).reshape(-1, n)
+    series = power @ rule.series.T @ rule.lift_once.T * long_s[:, None]
+    lasts_s = np.array([window.end_s for window in history.windows]) - history.starts_s
+    gained = sums(series, lasts_s / long_s)
+    return series, np.concatenate([[0.0], np.cumsum(gained)[:-1]])

@@ -1,1 +1,0 @@
-"""A run of segmented links beside the beam, and beside the exact chain of as many segments."""

@@ -1,0 +1,171 @@
+"""The errors of elastic links: beside the beam, beside the exact chain, and of that itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import ClassVar
+
+import numpy as np
+
+from models.motion import Motion
+from reports.compare.beside import Beside
+from reports.compare.elastic_truth import ElasticBeside
+from reports.compare.error_rows import instants_of, whole_row
+from reports.compare.errors import Error, Errors, LinkFacts, MotionFacts
+from reports.compare.tracks import length
+from reports.quantities import BENDING, QUANTITIES, named
+from reports.quantities.quantity import Tolerance
+
+BENT = (
+    "Elastic links: largest errors against the solved motion of the beam with foreshortening at "
+    "the same time"
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticFacts(LinkFacts):
+    """``segments`` were given for each link, with springs of a kind, or as many elements where that
+    is "beam"; ``ratio`` is their lowest frequency over the driver's speed, and ``cycles`` how often
+    they swing at it over the run, 0 where the motion is periodic. ``slender`` is the longest link
+    over the largest deflection.
+
+    ``straight`` says that they start so, and ring with all that they have; ``pushed`` is the
+    acceleration that elements start off by, over the square of the driver's speed.
+
+    As shares of the largest deflection: ``doubt`` is what the beam may be off by, and ``linear``
+    what the linear theory, without foreshortening, is off it by. ``apart`` is how far the exact
+    chain is from the beam, as a pure number by quantity, of what is let go with what the beam may
+    be off by; of a driven motion that is not periodic it is ``estimated`` from the chain of a few
+    segments, and of elements from what they lock by.
+    """
+
+    limits: ClassVar[Mapping[str, Tolerance]] = BENDING
+    shut: ClassVar[Sequence[str]] = named("closure")
+    followed: ClassVar[Sequence[Sequence[str]]] = (("segments",), ("deflection",))
+    springs: str
+    ratio: float
+    cycles: float
+    doubt: float
+    linear: float
+    apart: Mapping[str, float] = field(default_factory=dict)
+    estimated: bool = False
+    straight: bool = False
+
+    @staticmethod
+    def of(errors: Errors | None) -> ElasticFacts | None:
+        """Those of elastic links, None of rigid ones."""
+        facts = errors.of_links if errors else None
+        return facts if isinstance(facts, ElasticFacts) else None
+
+    @property
+    def of_beam(self) -> bool:
+        """Whether they are elements of a beam."""
+        return self.springs == "beam"
+
+    @property
+    def pieces(self) -> str:
+        """How many there are of what, in words."""
+        return f"{self.segments} {'elements' if self.of_beam else 'segments'}"
+
+    @property
+    def chain(self) -> float:
+        """What so many segments leave of the deflection, as a share of the largest."""
+        return self.apart.get("deflection", 0.0)
+
+    @property
+    def locked(self) -> float:
+        return 2.0 * self.chain if self.of_beam else 0.0
+
+    def beyond(self, name: str) -> float:
+        """Model error of the segments (or beam elements), and of the beam theory."""
+        if name == "segments":
+            return 0.0
+        own = self.apart.get(name.removesuffix("-differenced"), 0.0)
+        own *= 2.0 if self.estimated else 1.0
+        return own + (self.doubt if name == "deflection" else 0.0)
+
+    def deflecting(self, budget: float, step: float) -> float:
+        return budget * (1.0 if self.of_beam else self.slender) + self._swung(step)
+
+    def _swung(self, step: float) -> float:
+        """What the swings of springs are off by, of which a step makes (r step)^2/24 of the phase.
+
+        What starts straight rings as under an even load: k half-waves, k odd, with 1/k^5 of the
+        deflection, k^2 times as fast, and so with k^6 of the phase, up to their whole swing. Of
+        that the sum falls as the step to the power 4/3.
+        """
+        phase = (self.ratio * step) ** 2 * (1.0 + math.tau * self.cycles) / 12.0
+        if not self.straight:
+            return phase
+        return sum(min(2.0, k**6 * phase) / k**5 for k in range(1, self.segments, 2))
+
+    def compared_with(self, motion: MotionFacts, moved: str) -> str:
+        parts = [BENT + ", segments against the exact chain of as many" * (not self.of_beam)]
+        parts += [*motion.over_g, "D largest deflection, L longest link, w driver's peak speed."]
+        return "; ".join(parts)
+
+
+BEAM, CHAIN = ("deflection", "extension"), ("segments",)
+"""What is held to the beam, and to the exact chain."""
+
+
+def compared(beside: Beside, errors: Errors | None) -> Errors:
+    """The errors of a run as of one with rigid links, with those of its elastic links."""
+    assert isinstance(beside, ElasticBeside)
+    assert errors is not None
+    return replace(errors, rows=(*errors.rows, *places(beside)), of_links=elastic_facts(beside))
+
+
+def places(beside: Beside) -> list[Error]:
+    """Deflections and extensions, of kind "total" those of the run; of kind "chain" those of the
+    exact chain, beside the beam."""
+    assert isinstance(beside, ElasticBeside)
+    at = instants_of(beside, beside.motion.time_s, beside.reference)
+    rows = [whole_row(track, at) for track in beside.tracks(BEAM, beside.reference)]
+    exact = beside.exact
+    if exact is not None:
+        rows += [whole_row(track, at) for track in beside.tracks(CHAIN, exact)]
+        theirs = replace(beside, run=replace(beside.run, motion=exact), motion=exact, _own={})
+        chain = theirs.tracks(BEAM, beside.reference)
+        rows += [whole_row(track, at, kind="chain") for track in chain]
+    return rows
+
+
+def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
+    """What is known beside the errors."""
+    truth, theory, time_s = beside.elastic, beside.elastic.theory, beside.motion.time_s
+    apart = truth.apart(partial(_apart_by_name, beside))
+    for other, looked in theory.doubted:
+        off = _apart_by_name(beside, other, looked)
+        apart |= {name: apart[name] + size for name, size in off.items() if name not in BEAM}
+    return ElasticFacts(
+        segments=truth.cut.count,
+        springs=truth.springs,
+        ratio=theory.lowest_rad_s / beside.scene.pace_rad_s,
+        cycles=theory.cycles_per_s * float(time_s[-1] - time_s[0]),
+        slender=beside.scene.longest_m / theory.largest_m,
+        doubt=truth.doubt,
+        linear=theory.linear_m / theory.largest_m,
+        apart=apart,
+        estimated=not truth.is_exact,
+        straight=theory.shape == "straight",
+        pushed=truth.pushed,
+    )
+
+
+def _apart_by_name(beside: ElasticBeside, chain: Motion, beam: Motion) -> dict[str, float]:
+    """The largest difference of all that is compared, as pure numbers by quantity."""
+    found: dict[str, float] = {}
+    for name in named("free", "place", "derived", "force", "elastic"):
+        for measure in QUANTITIES[name].measures:
+            ours, theirs = (measure.truth(beside.scene, each) for each in (beam, chain))
+            if name in CHAIN or not ours:
+                continue
+            scale = measure.scale(beside.scene, beam)
+            for body in ours.keys() & theirs.keys():
+                off = float(np.max(length(theirs[body] - ours[body]))) / scale
+                found[name] = max(found.get(name, 0.0), off)
+    return found

@@ -1,0 +1,208 @@
+"""What there is to know of a free run beside its errors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from models.array import Array
+from models.motion import Motion
+from models.scene import GROUND, Scene
+from reports.compare.errors import Error, Errors, MotionFacts
+from reports.compare.free_truth import FreeBeside
+from reports.quantities import FREE, named
+from reports.quantities.by_kind import ENERGY, MOMENTUM
+from reports.quantities.quantity import Quantity, Tolerance
+
+MOST_GROWTH = 1e3
+"""A sensitivity of free motion from which on errors of phase cancel and add up as they like, and
+say nothing of an order."""
+FREE_MOTION = (
+    "Let go: largest errors at the same time over the sensitivity, by how much a small change of "
+    "the start has grown; geometry at the logged angle of the driver; L longest link, w driver's "
+    "peak speed."
+)
+OVER_G = (
+    "let go, angles, places and rates are over G, by how much a small change of the start has grown"
+)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FreeFacts(MotionFacts):
+    """How far a run that was let go was followed, and what its errors were divided by.
+
+    ``sensitivity`` is by how much a small change of the start has grown by ``until_s``, the last
+    instant that is judged; ``left_out`` samples after it are not, as the truth is not known well
+    enough there. ``time_s``, ``raw`` and ``judged`` are the largest error of phase and place up to
+    some instants, as pure numbers: as it is, and over the sensitivity of its time.
+    """
+
+    limits: ClassVar[Mapping[str, Tolerance]] = FREE
+    closing: ClassVar[Sequence[str]] = ("phase", "geometry", *named("place", "closure"))
+    cancels: ClassVar[bool] = True
+    solved: ClassVar[float] = 3e-4
+    """Where joints are nearly dependent an engine's solver leaves as much at any step."""
+    least_order: ClassVar[int] = 4
+    """An engine's loops need not give way, and all of its errors may be those of its steps: of
+    MuJoCo's RK4."""
+    step_option: ClassVar[str] = "--dt"
+    over_g: ClassVar[Sequence[str]] = (OVER_G,)
+    sensitivity: float
+    until_s: float
+    left_out: int
+    time_s: Array
+    raw: Array
+    judged: Array
+    passages: int = 0
+
+    @staticmethod
+    def of(errors: Errors | None) -> FreeFacts | None:
+        """Those of a free run, None of others."""
+        facts = errors.of_motion if errors else None
+        return facts if isinstance(facts, FreeFacts) else None
+
+    @property
+    def has_order(self) -> bool:
+        return not self.sensitivity > MOST_GROWTH
+
+    def rounding(self, explained: float, summed_rad: float, bound: float) -> float:
+        """An integrated truth is off by more than rounding."""
+        return max(explained, summed_rad, bound)
+
+    def compared_with(self, moved: str) -> str:
+        return FREE_MOTION
+
+    # Two runs are never the same for their facts alone, whose course is of arrays.
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
+
+    def horizon_s(self, raw: float) -> float:
+        """The time to which the error as it is stays within a number [s]."""
+        return self._held(self.raw, raw)
+
+    def judged_horizon_s(self, limit: float) -> float:
+        """The time to which the error over the sensitivity stays within a number [s]."""
+        return self._held(self.judged, limit)
+
+    def _held(self, largest: Array, limit: float) -> float:
+        broken = np.flatnonzero(~(largest <= limit))
+        return float(self.time_s[max(broken[0] - 1, 0)] if broken.size else self.time_s[-1])
+
+
+SHARE = 0.1
+"""The least part of a run that a mean is taken over, and half of it the most."""
+WORKED = 1e-9
+"""The least work, over the largest kinetic energy, that is some."""
+
+
+def energy_rows(beside: FreeBeside) -> list[Error]:
+    """The drift of the energy: the mean over the last window less that over the first.
+
+    An engine's energy also comes and goes with its motion, by an offset of second order that is
+    none of its drift. What loads and dampers do is taken off, as the reference has it; it is known
+    at the true place and not at the engine's, so that the drift is over the sensitivity there.
+    """
+    run = beside.run
+    if run.energy is None or run.velocity_time_s is None or run.velocity_time_s.size < 2:
+        return []
+    time_s = run.velocity_time_s
+    known = beside.free.energy(np.clip(time_s, 0.0, beside.free.until_s))
+    largest = float(np.max(known.kinetic))
+    if not largest > 0.0:
+        return []
+    off = run.energy.total_j - known.work
+    change = drift(off, time_s, window_s(beside.scene, float(time_s[-1] - time_s[0])))
+    worked = float(np.ptp(known.work)) > WORKED * largest
+    size = abs(change) / (beside.pure_growth if worked else 1.0)
+    return [drift_row(beside, ENERGY, size, largest)]
+
+
+def drift_row(beside: FreeBeside, quantity: Quantity, size: float, largest: float) -> Error:
+    """The drift of what a whole mechanism keeps, over the largest of it."""
+    return Error(
+        quantity=quantity.name,
+        body_kind="mechanism",
+        body=beside.scene.name,
+        source="reported",
+        kind="total",
+        unit=quantity.of("mechanism").unit,
+        scale=largest,
+        maximum=size,
+        rms=size,
+        final=size,
+        time_of_maximum_s=float(beside.motion.time_s[-1]),
+        driver_at_maximum_rad=float(beside.driver_rad[-1]),
+        bound=0.0,
+        samples=int(beside.motion.time_s.size),
+    )
+
+
+def window_s(scene: Scene, lasts_s: float) -> float:
+    """How long a mean is taken over [s]: a period of a pendulum of the longest link, or a tenth of
+    the run where that is longer; half of the run at most."""
+    weight = math.hypot(*scene.gravity_m_s2)
+    swing = math.tau * math.sqrt(scene.longest_m / weight) if weight else 0.0
+    return min(max(SHARE * lasts_s, swing), 0.5 * lasts_s)
+
+
+def drift(series: Array, time_s: Array, over_s: float) -> float:
+    """The mean of a series over its last while less that over its first."""
+    first = series[time_s <= time_s[0] + over_s]
+    last = series[time_s >= time_s[-1] - over_s]
+    return float(np.mean(last) - np.mean(first))
+
+
+def window_means(scene: Scene, time_s: Array, series: Array) -> Array:
+    """The mean of a series over the window around each instant, (T,); NaN where it does not fit."""
+    over_s = window_s(scene, float(time_s[-1] - time_s[0]))
+    sums = np.concatenate([[0.0], np.cumsum(series)])
+    first = np.searchsorted(time_s, time_s - 0.5 * over_s)
+    after = np.searchsorted(time_s, time_s + 0.5 * over_s, side="right")
+    means = (sums[after] - sums[first]) / (after - first)
+    whole = (time_s - 0.5 * over_s >= time_s[0]) & (time_s + 0.5 * over_s <= time_s[-1])
+    return np.where(whole, means, np.nan)
+
+
+def momentum_rows(beside: FreeBeside) -> list[Error]:
+    """The drift of the angular momentum about the one point that pins a mechanism to the ground,
+    of means over windows as that of the energy; none where something else acts from outside."""
+    run, scene = beside.run, beside.scene
+    pivot = kept_about(scene) if beside.tells_momentum else None
+    if pivot is None or run.velocity_time_s is None or run.velocity_time_s.size < 2:
+        return []
+    time_s = run.velocity_time_s
+    spin = momentum(scene, beside.motion, time_s, pivot)
+    largest = float(np.max(np.abs(spin)))
+    if not largest > 0.0:
+        return []
+    change = drift(spin, time_s, window_s(scene, float(time_s[-1] - time_s[0])))
+    return [drift_row(beside, MOMENTUM, abs(change), largest)]
+
+
+def kept_about(scene: Scene) -> str | None:
+    """The point about which a scene keeps its angular momentum; None where it does not."""
+    pinned = [point for point, bodies in scene.pins.items() if GROUND in bodies and bodies[1:]]
+    acts = any(scene.gravity_m_s2) or scene.loads or scene.friction or scene.springs
+    return None if acts or scene.sliders or len(pinned) != 1 else pinned[0]
+
+
+def momentum(scene: Scene, motion: Motion, time_s: Array, pivot: str) -> Array:
+    """The angular momentum of the links about a point of the ground [kg m^2/s], (T,), at the
+    instants ``time_s`` of their velocities."""
+    total = np.zeros_like(time_s)
+    later = time_s - motion.time_s
+    place = complex(*scene.ground[pivot])
+    for name, link in scene.links.items():
+        point, own = next(iter(link.points.items()))
+        moved, turned = motion.points[point], motion.links[name]
+        theta = turned.theta + later * turned.omega
+        arm = np.exp(1j * theta) * complex(link.centre_m[0] - own[0], link.centre_m[1] - own[1])
+        velocity = moved.velocity @ np.array([1.0, 1j])
+        centre = moved.position @ np.array([1.0, 1j]) + later * velocity + arm - place
+        speed = velocity + 1j * turned.omega * arm
+        total += link.mass_kg * (centre.conj() * speed).imag + link.inertia_kg_m2 * turned.omega
+    return total

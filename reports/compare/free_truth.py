@@ -1,0 +1,237 @@
+"""The truth of a mechanism that was let go: integrated once, and asked for at sets of instants."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, ClassVar, Protocol
+
+import numpy as np
+
+from models.array import Array
+from models.motion import Motion, State
+from models.scene import Driver, Scene, as_bytes
+from models.scene.driver import LONGEST_S, Released
+from reports.compare.beside import Beside, Truth, first_samples, incomplete
+from reports.compare.tracks import Track
+from reports.quantities.by_kind import PHASE
+from sim.engine import Run
+
+if TYPE_CHECKING:
+    from analytic.free.free_motion import FreeMotion, LimitPassage
+    from analytic.multibody.bodies import EnergyBalance
+
+
+LEAST_KNOWN = 0.25
+"""What the truth may be off by, of the limit of the phase: samples beyond are not judged."""
+
+
+def free_truth(
+    scene: Scene, steps: int, dt_s: float, tolerance: Mapping[str, float] | None = None
+) -> FreeTruth:
+    """The truth of a scene that is let go, for so many steps of ``dt_s``. Raises CrankcheckError as
+    `analytic.free.release`."""
+    return free_truth_until(scene, steps * dt_s, dt_s, tolerance)
+
+
+def free_truth_until(
+    scene: Scene, lasts_s: float, dt_s: float, tolerance: Mapping[str, float] | None = None
+) -> FreeTruth:
+    """As `free_truth`, for so long [s]; ``dt_s`` is 0 where no step is known, and the limit of the
+    phase is then the widest that there is, unless one is given."""
+    motion = kept_motion(scene, lasts_s)
+    peak = motion.peak_speed_rad_s or 1.0 / motion.until_s
+    law = Released(
+        float(motion.at(np.zeros(1)).links[scene.driver.link].theta[0]), peak, motion.until_s
+    )
+    given = (tolerance or {}).get("phase", scene.tolerance.get("phase"))
+    numbers = PHASE.criteria[0].tolerance
+    budget = min(numbers.coefficient * (peak * dt_s) ** numbers.order, numbers.cap)
+    budget = budget if dt_s else numbers.cap
+    paced = replace(scene, driver=Driver(scene.driver.link, law))
+    return FreeTruth(paced, free=motion, known_rad=LEAST_KNOWN * (given or budget))
+
+
+@dataclass(frozen=True)
+class FreeTruth(Truth):
+    """The reference of a scene that is let go; ``scene`` has the largest speed of its driver as
+    that of its start, which errors of rates are over. Samples count as long as what the truth may
+    be off by, over the sensitivity, is at most ``known_rad``."""
+
+    free: FreeMotion = field(kw_only=True)
+    known_rad: float = field(kw_only=True)
+
+    @cached_property
+    def start(self) -> State:
+        return released_state(self.free.scene)
+
+    def _solved(self, time_s: Array) -> Motion:
+        if time_s.size and time_s[0] < 0.0:
+            early = self.free.outside(time_s[time_s < 0.0], bound=self.bound)
+            begun = time_s[time_s >= 0.0]
+            return Motion.joined([early, self.at(begun)]) if begun.size else early
+        after = time_s > self.free.until_s
+        if after.any():
+            late = self.free.outside(time_s[after], bound=self.bound)
+            return late if after.all() else Motion.joined([self.at(time_s[~after]), late])
+        return self.free.at(time_s, bound=self.bound)
+
+    def with_forces_at(self, time_s: Array) -> Motion:
+        return self.free.with_forces(self.at(time_s), bound=self.bound)
+
+    def known(self, time_s: Array) -> int:
+        """How many of the first instants (T,) the truth is known well enough at to judge by it;
+        those within a step before the start or after the end are as well known as these."""
+        within = np.clip(time_s, 0.0, self.free.until_s)
+        unsure = self.free.error_rad(within) / self.free.sensitivity(within)
+        lost = np.flatnonzero(~(unsure <= self.known_rad))
+        return int(lost[0]) if lost.size else time_s.size
+
+    def beside(self, run: Run) -> Beside | None:
+        """The run as far as the truth is known, beside it; None where it logged nothing."""
+        motion = run.motion
+        if motion is None or not motion.time_s.size:
+            return None
+        known = first_samples(run, max(self.known(motion.time_s), 1))
+        assert known.motion is not None
+        return FreeBeside(self, known, known.motion, whole_run=run, free=self.free)
+
+
+class FreeReference(Protocol):
+    """What is asked of the motion that a run is held to (`analytic.free.free_motion.FreeMotion`,
+    which is one)."""
+
+    @property
+    def until_s(self) -> float: ...
+
+    @property
+    def passages(self) -> Sequence[LimitPassage]: ...
+
+    @property
+    def by_dyads(self) -> bool: ...
+
+    @property
+    def driver_tells(self) -> bool: ...
+
+    def beside(self, logged: Motion) -> Motion: ...
+
+    def energy(self, time_s: Array) -> EnergyBalance: ...
+
+    def sensitivity(self, time_s: Array) -> Array: ...
+
+
+@dataclass(frozen=True)
+class FreeBeside(Beside):
+    """A run as far as the truth of it is known; ``whole_run`` goes on to its own end.
+
+    Errors at the same time are over the sensitivity of the motion where they are judged: by so
+    much as a small change of the start grows, the truth itself is uncertain to anybody who builds
+    the mechanism.
+    """
+
+    compared_by: ClassVar[tuple[str, ...]] = (".free_errors",)
+    whole_run: Run = field(kw_only=True)
+    free: FreeReference = field(kw_only=True)
+
+    @cached_property
+    def at_crank(self) -> Motion:
+        """The truth in the position that the run's own coordinate has at each instant."""
+        return self.free.beside(self.motion)
+
+    @cached_property
+    def driver_rad(self) -> Array:
+        return self.driver_at(self.motion.time_s, self.reference)
+
+    @cached_property
+    def growth(self) -> Array:
+        """The sensitivity at the logged instants, (T,)."""
+        return self.free.sensitivity(self.motion.time_s)
+
+    @property
+    def driver_speed(self) -> Array:
+        """The true angular velocity of the driver at the logged instants [rad/s], (T,)."""
+        return self.reference.links[self.scene.driver.link].omega
+
+    @property
+    def no_geometry(self) -> str:
+        """Why the run does not say in which position it is, "" where it does."""
+        return (
+            ""
+            if np.all(np.isfinite(self.crank))
+            else ("no geometry: the logged angle of the driver is not finite")
+        )
+
+    @property
+    def tells_momentum(self) -> bool:
+        """Whether places and velocities of all bodies are to be asked for."""
+        return True
+
+    def driver_at(self, time_s: Array, reference: Motion) -> Array:
+        return reference.links[self.scene.driver.link].theta
+
+    def judged(self, track: Track, time_s: Array) -> Track:
+        """The error at the same time over the sensitivity; joints are closed at any time."""
+        if track.quantity == "gap":
+            return track
+        growth = self.free.sensitivity(time_s)
+        over = growth[:, None] if track.error.ndim == 2 else growth
+        return replace(track, error=track.error / over, bound=track.bound / growth)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        return super().missing if self.run.energy else (*super().missing, "energy")
+
+    @property
+    def incomplete(self) -> str:
+        return incomplete(self.whole_run)
+
+    @property
+    def left_out(self) -> int:
+        """How many samples are not judged, as the truth is not known well enough there."""
+        logged = self.whole_run.motion
+        return 0 if logged is None else logged.time_s.size - self.motion.time_s.size
+
+    @property
+    def pure_growth(self) -> float:
+        """The largest sensitivity."""
+        return float(np.max(self.growth))
+
+
+BEYOND = 1.01
+"""How much longer than asked for is integrated, where loads over time say so much: some velocities
+belong to half a step after a run."""
+LOOK = 1e-3
+"""The part of the scene's own duration that is integrated for what is at its start."""
+
+
+def kept_motion(scene: Scene, lasts_s: float) -> FreeMotion:
+    """The motion of a scene that is let go, for so long [s] at least. Raises CrankcheckError as
+    `analytic.free.release`."""
+    return _released(as_bytes(scene), long_enough_s(scene, lasts_s))
+
+
+def released_state(scene: Scene) -> State:
+    """What a scene that is let go starts from: the same to the last bit however long it is left
+    free, with the accelerations that its masses and forces give it. Raises CrankcheckError as
+    `analytic.free.release`."""
+    return kept_motion(scene, LOOK * scene.driver.law.period_s).at(np.zeros(1), bound=False).state()
+
+
+def long_enough_s(scene: Scene, lasts_s: float) -> float:
+    """Until when a motion is integrated that a run of so long is compared with [s]."""
+    until_s = BEYOND * lasts_s
+    ends = [
+        load.characteristic.nearest(until_s) for load in scene.loads.values() if load.over == "time"
+    ]
+    # Without its rounding it is one for all steps of a sweep.
+    return max(lasts_s, min(float(f"{until_s:.9g}"), LONGEST_S, *ends))
+
+
+@lru_cache(maxsize=4)
+def _released(pickled: bytes, until_s: float) -> FreeMotion:
+    """The motion of a scene, which may come from another process: kept by what it holds."""
+    from analytic.free.release import release  # slow to import, and for free motion alone
+
+    return release(pickle.loads(pickled), until_s)

@@ -1,0 +1,207 @@
+"""Hard free runs: a chain of windows held to its closed form (`analytic.free.exact_motions`), and a
+mechanism that is thrown at its toggle.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from analytic.free.exact_motions import ChainMotion, ToggleBarrier
+from models.array import Array
+from models.errors import CrankcheckError
+from models.motion import Motion
+from models.scene.hard import WindowChain
+from reports.compare.branch import AWAY_RAD, CLOSED, HERE_RAD
+from reports.compare.errors import Departure
+from sim.engine import Engine, Run, SettingValue
+from sim.run import run
+
+
+@dataclass(frozen=True)
+class ChainErrors:
+    """How an engine held a chain, at the logged samples, shape (T,).
+
+    ``place_m`` is the distance of B0 from where it should be [m], ``speed_m_s`` that of its
+    velocity, and ``energy_j`` the energy less that of the start in the closed form [J], both at the
+    instants of the velocities; ``lean_rad`` the largest angle between two rockers, or of a coupler
+    to the ground line [rad], all 0 in truth; ``gap_m`` the largest gap of a pin [m].
+    """
+
+    chain: WindowChain
+    run: Run
+    time_s: Array
+    place_m: Array
+    speed_m_s: Array
+    energy_j: Array
+    lean_rad: Array
+    gap_m: Array
+
+    @property
+    def energy_drift(self) -> float:
+        """The largest change of the energy, over the 2 m g l P that rises and falls in a turn.
+
+        Of a chain without weight, over the energy of the start.
+        """
+        turning = ChainMotion(self.chain)
+        scale = turning.exchanged_j or _start_j(turning)
+        return float(np.max(np.abs(self.energy_j))) / scale
+
+    @property
+    def left(self) -> Departure | None:
+        """Where a rod began to leave the others, if one came to stand at an angle to them while
+        the pins were closed; the rod, and the angle of the first rocker there."""
+        closed = self.gap_m < CLOSED * self.chain.length_m
+        away = np.flatnonzero(closed & ~(self.lean_rad < AWAY_RAD))
+        if not away.size or self.run.motion is None:
+            return None
+        here = np.flatnonzero(self.lean_rad[: away[0]] < HERE_RAD)
+        index = int(here[-1]) if here.size else 0
+        angle = self.run.motion.links["rocker0"].theta[index]
+        rod = _leaning(self.chain, self.run.motion, int(away[0]))
+        return Departure(rod, float(self.time_s[index]), float(angle))
+
+    def place_until(self, time_s: float) -> float:
+        """The largest error of B0 up to a time [m]; NaN if the run ended before it."""
+        if self.time_s[-1] < time_s - 1e-9:
+            return float("nan")
+        return float(np.max(self.place_m[self.time_s <= time_s + 1e-9]))
+
+
+def hold(
+    chain: WindowChain,
+    engine: str | Engine,
+    profile: str = "tuned",
+    *,
+    dt_s: float,
+    duration_s: float,
+    every: int = 1,
+    settings: Mapping[str, SettingValue] | None = None,
+) -> ChainErrors:
+    """Run a chain from upright, free, for ``duration_s`` in steps of ``dt_s``, and compare.
+
+    Logged is every ``every``-th step. Raises CrankcheckError, as `sim.run.run` does, and for a run
+    that did not start.
+    """
+    start = ChainMotion(chain).motion(np.array([0.0])).state(0)
+    steps = max(round(duration_s / dt_s / every), 1) * every
+    done = run(
+        chain.scene(),
+        start,
+        engine,
+        profile,
+        dt_s=dt_s,
+        steps=steps,
+        every=every,
+        drive="free",
+        settings=settings,
+    )
+    return compared(chain, done)
+
+
+def compared(chain: WindowChain, done: Run) -> ChainErrors:
+    """The comparison of a free run of the chain. Raises CrankcheckError for one without a log."""
+    if done.motion is None or done.energy is None:
+        why = done.reason or f"it was run under the drive {done.drive}"
+        raise CrankcheckError(f"{done.scene} in {done.engine}: no free motion to compare: {why}")
+    motion, turning = done.motion, ChainMotion(chain)
+    theta, _, _ = turning.at(motion.time_s)
+    arm = chain.length_m * np.stack([np.cos(theta), np.sin(theta)], axis=-1)
+    with np.errstate(all="ignore"):  # what has come apart may overflow
+        return ChainErrors(
+            chain,
+            done,
+            motion.time_s,
+            np.hypot(*(motion.points["B0"].position - arm).T),
+            _velocity_error(turning, done),
+            done.energy.total_j - _start_j(turning),
+            _lean(chain, motion),
+            np.max(list(done.gaps.values()), axis=0),
+        )
+
+
+def _start_j(turning: ChainMotion) -> float:
+    """The energy of the start [J]."""
+    theta, omega, _ = turning.at(np.array([0.0]))
+    return float(turning.energy(theta, omega)[0])
+
+
+def _velocity_error(turning: ChainMotion, done: Run) -> Array:
+    """How far the velocity of B0 is from what it should be [m/s], (T,)."""
+    assert done.motion is not None
+    time_s = done.motion.time_s if done.velocity_time_s is None else done.velocity_time_s
+    theta, omega, _ = turning.at(time_s)
+    speed = turning.chain.length_m * omega[:, None]
+    true = speed * np.stack([-np.sin(theta), np.cos(theta)], axis=-1)
+    return np.asarray(np.hypot(*(done.motion.points["B0"].velocity - true).T))
+
+
+def _leaning(chain: WindowChain, motion: Motion, index: int) -> str:
+    """The rod that stands at the largest angle to those that it is parallel to in truth."""
+    angles = {name: float(motion.links[name].theta[index]) for name in chain.rockers()}
+    middle = float(np.median(list(angles.values())))
+    off = {name: abs(angle - middle) for name, angle in angles.items()}
+    off |= {name: abs(float(motion.links[name].theta[index])) for name in chain.couplers()}
+    return max(off, key=lambda name: off[name])
+
+
+def _lean(chain: WindowChain, motion: Motion) -> Array:
+    """The largest angle between rods that are parallel in truth [rad], (T,)."""
+    rockers = np.stack([motion.links[name].theta for name in chain.rockers()])
+    couplers = [np.abs(motion.links[name].theta) for name in chain.couplers()]
+    spread: Array = np.max([np.ptp(rockers, axis=0), *couplers], axis=0)
+    return spread
+
+
+Passage = Literal["over", "back", "undecided", "broken"]
+OVER = -0.5
+"""The part of its way from the toggle to the start, beyond it, at which a run has got over."""
+NEAR = 0.5
+"""And before it, at which one that turns back has been near it."""
+
+
+@dataclass(frozen=True, eq=False)
+class TogglePassage:
+    """What a run did: ``outcome``, at the sample ``index`` (of the last where it did neither).
+
+    ``open_rad`` (T,) is the angle that coupler and rocker have yet to turn until they are in line:
+    negative in the other assembly. ``nearest_rad`` is the least of it until the outcome.
+    """
+
+    outcome: Passage
+    index: int
+    open_rad: Array
+
+    @property
+    def nearest_rad(self) -> float:
+        return float(np.min(self.open_rad[: self.index + 1]))
+
+
+def toggle_passage(barrier: ToggleBarrier, run: Run) -> TogglePassage:
+    """What a run does that was thrown at a toggle.
+
+    A run is broken where it did not end as it should, or has a pin open by more than
+    `reports.compare.branch.CLOSED` of the longest link before it is decided; undecided where it
+    has come neither over nor back to its start by its end. It has to have logged its motion.
+    """
+    motion = run.motion
+    assert motion is not None
+    one, other = barrier.links
+    with np.errstate(all="ignore"):  # what has come apart may overflow
+        turned = motion.links[other].theta - motion.links[one].theta
+        share = 1.0 + (turned - turned[0]) / barrier.open_rad
+        gap = np.max([np.abs(pin) for pin in run.gaps.values()], axis=0)
+        apart = gap > CLOSED * barrier.scene.longest_m
+    near = np.maximum.accumulate(share < NEAR)
+    ends: dict[Passage, Array] = {
+        "over": share <= OVER,
+        "back": near & (share >= 1.0),
+        "broken": apart | ~np.isfinite(share),
+    }
+    first = {name: int(np.argmax(at)) for name, at in ends.items() if at.any()}
+    outcome: Passage = "undecided" if run.status == "ok" else "broken"
+    if first:
+        outcome = min(first, key=lambda name: first[name])
+        return TogglePassage(outcome, first[outcome], abs(barrier.open_rad) * share)
+    return TogglePassage(outcome, len(share) - 1, abs(barrier.open_rad) * share)

@@ -1,0 +1,207 @@
+"""The truth of elastic links that are let go: the beam, and the exact chain, with all their swings.
+
+Errors at the same time are judged over the sensitivity of the same mechanism with rigid links: by
+so much a small change of the start grows, and what swings beside it adds little to that.
+"""
+
+from __future__ import annotations
+
+import math
+import pickle
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
+from typing import ClassVar
+
+import numpy as np
+
+from analytic.elastic.discretisation import ElasticDoubt
+from analytic.elastic.elastic_motion import energies, sampled
+from analytic.elastic.released import ReleasedElasticMotion
+from analytic.free.free_motion import FreeMotion, LimitPassage
+from analytic.multibody.bodies import EnergyBalance
+from models.array import Array
+from models.errors import EngineError, ReachError
+from models.motion import Motion
+from models.scene import Scene, as_bytes
+from models.scene.cut_links import with_rigid_links
+from models.scene.cut_scenes import SegmentedScene
+from reports.compare.beam_theory import FreeBeamTheory
+from reports.compare.beside import Beside, first_samples
+from reports.compare.elastic_truth import (
+    STEADY,
+    ChainTruth,
+    ElasticBeside,
+    cut_scene,
+    kept_theory,
+)
+from reports.compare.free_truth import (
+    LEAST_KNOWN,
+    FreeBeside,
+    FreeTruth,
+    free_truth,
+    long_enough_s,
+)
+from reports.quantities.by_kind import PHASE
+from sim.engine import Run
+
+MOST_EXACT = 32
+"""Segments whose exact chain is integrated: of 32 a second of the shipped pulse takes some ten."""
+MOST_DOUBT = 0.05
+"""What the deflection of the beam may be off by, of the largest: samples beyond are not judged."""
+
+
+def released_elastic_truth(
+    scene: Scene,
+    count: int,
+    springs: str,
+    steps: int,
+    dt_s: float,
+    tolerance: Mapping[str, float] | None = None,
+) -> ReleasedElasticTruth:
+    """The truth of a scene that is let go for so many steps of ``dt_s`` [s], its elastic links in
+    so many segments. Raises EngineError as `elastic_truth`, and CrankcheckError for a scene that
+    can not be let go."""
+    limit = (tolerance or {}).get("phase", scene.tolerance.get("phase"))
+    known_rad = LEAST_KNOWN * (limit or PHASE.criteria[0].tolerance.cap)
+    return _truth(as_bytes(scene), count, springs, steps, dt_s, known_rad)
+
+
+@lru_cache(maxsize=4)
+def _truth(
+    pickled: bytes, count: int, springs: str, steps: int, dt_s: float, known_rad: float
+) -> ReleasedElasticTruth:
+    scene: Scene = pickle.loads(pickled)
+    theory = kept_theory(pickled, long_enough_s(scene, dt_s * steps), FreeBeamTheory)
+    chain = cut_scene(scene, count, springs)
+    if not isinstance(chain, SegmentedScene):
+        raise EngineError(
+            f"{scene.name}: it is let go, and what engines make of it with beams of their own is "
+            "not held to anything yet; leave --springs beam out"
+        )
+    rigid = free_truth(with_rigid_links(scene), steps, dt_s)
+    paced = replace(scene, driver=rigid.scene.driver)
+    return ReleasedElasticTruth(paced, cut=chain, theory=theory, rigid=rigid, known_rad=known_rad)
+
+
+@dataclass(frozen=True)
+class ReleasedElasticTruth(ChainTruth):
+    """``rigid`` is the truth of the same scene with rigid links, whose sensitivity errors are
+    judged over, and whose ``scene`` has the largest speed of the driver. Samples count as long as
+    what angles of the beam may be off by, over the sensitivity, is at most ``known_rad``, and its
+    deflection known to a part of the largest."""
+
+    rigid: FreeTruth = field(kw_only=True)
+    known_rad: float = field(kw_only=True)
+
+    @property
+    def is_exact(self) -> bool:
+        return self.chain.count <= MOST_EXACT
+
+    @cached_property
+    def beam(self) -> ReleasedElasticMotion:
+        beam = self.theory.beam
+        assert isinstance(beam, ReleasedElasticMotion)
+        return beam
+
+    def _solved(self, time_s: Array) -> Motion:
+        rigid = self.rigid.at(time_s)
+        motion = at_any(self.beam, time_s)
+        return replace(motion, conditioning=rigid.conditioning, crossings=rigid.crossings)
+
+    @property
+    def needed_step(self) -> str:
+        return f"a step of {STEADY / self.fastest_rad_s:.3g} s"
+
+    @cached_property
+    def known_s(self) -> float:
+        """Until when the truth is known well enough to judge by."""
+        theory, time_s = self.theory, self.theory.looks_s
+        doubt = ElasticDoubt.between(theory.looked, theory.looked_other).so_far
+        turned = np.max(list(doubt.theta_rad.values()), axis=0)
+        bent = np.max(list(doubt.middle_m.values()), axis=0)
+        unsure = turned / self.rigid.free.sensitivity(np.minimum(time_s, self.rigid.free.until_s))
+        known = unsure <= self.known_rad
+        known &= bent <= MOST_DOUBT * theory.largest_m
+        return math.inf if known.all() else float(time_s[int(np.argmin(known))])
+
+    @property
+    def _works(self) -> ReleasedElasticMotion:
+        """The motion whose energies an engine's are held to: that of its own chain, if it is
+        known."""
+        motion = self.exact.motion if self.is_exact else self.beam
+        assert isinstance(motion, ReleasedElasticMotion)
+        return motion
+
+    def beside(self, run: Run) -> Beside | None:
+        motion = run.motion
+        if motion is None or not motion.time_s.size:
+            return None
+        known = int(np.searchsorted(motion.time_s, self.known_s))
+        judged = first_samples(run, max(known, 1))
+        assert judged.motion is not None
+        return ReleasedElasticBeside(
+            self,
+            judged,
+            judged.motion,
+            elastic=self,
+            whole_run=run,
+            free=BentReference(self.rigid.free, self._works),
+        )
+
+
+def at_any(motion: ReleasedElasticMotion, time_s: Array) -> Motion:
+    """A motion at times in ascending order [s], (T,), some of which may be within a step of its
+    start or its end."""
+    early, late = time_s < 0.0, time_s > motion.until_s
+    if not (early.any() or late.any()):
+        return sampled(motion, time_s)
+    parts = [motion.outside(time_s[part]) for part in (early, late) if part.any()]
+    within = time_s[~(early | late)]
+    if within.size:
+        parts.insert(int(early.any()), sampled(motion, within))
+    return Motion.joined(parts)
+
+
+@dataclass(frozen=True)
+class BentReference:
+    """What errors of a run whose links bend are judged over (`FreeReference`): the sensitivity of
+    the ``rigid`` mechanism, and the energies of the ``elastic`` one."""
+
+    rigid: FreeMotion
+    elastic: ReleasedElasticMotion
+    by_dyads = False
+    driver_tells = False
+    passages: tuple[LimitPassage, ...] = ()
+
+    @property
+    def until_s(self) -> float:
+        return self.elastic.until_s
+
+    def energy(self, time_s: Array) -> EnergyBalance:
+        return energies(self.elastic, time_s)
+
+    def sensitivity(self, time_s: Array) -> Array:
+        return self.rigid.sensitivity(np.clip(time_s, 0.0, self.rigid.until_s))
+
+    def beside(self, logged: Motion) -> Motion:
+        """Raises ReachError: where links bend the driver's angle does not say where they are."""
+        raise ReachError("where links bend the driver's angle does not say where the others are")
+
+
+@dataclass(frozen=True)
+class ReleasedElasticBeside(ElasticBeside, FreeBeside):
+    """As `FreeBeside`, without a geometry at the driver's own angle."""
+
+    compared_by: ClassVar[tuple[str, ...]] = (
+        *FreeBeside.compared_by,
+        ".elastic_errors",
+    )
+
+    @property
+    def no_geometry(self) -> str:
+        return "no geometry: where links bend the driver's angle does not say where the others are"
+
+    @property
+    def tells_momentum(self) -> bool:
+        return False

@@ -1,0 +1,263 @@
+"""`crankcheck positions`, `centres` and `chains`: sheets drawn to scale."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from analytic.lectures.chains.assur_groups import Mechanism, inversions
+from analytic.lectures.chains.chain import Chain, assortment_in_words, assortments
+from analytic.lectures.chains.chain_synthesis import chain_names, chains, type_in_letters, types
+from analytic.lectures.drawings.drawn_polygons import draw_polygons
+from analytic.lectures.drawings.placed_mechanism import DriverState
+from analytic.structure.mobility import analyse, refuse_other_than_cranked
+from models.array import Array
+from models.errors import CrankcheckError, harmless
+from models.files.reading import find_scene, load_scene
+from models.scene import Scene
+from reports.describe.facts import angle_at, driver_at
+from reports.lectures.drawing.sheets.centre_sheet import (
+    CentreSheet,
+    body_numbers,
+    centre_name,
+    centres_of,
+    draw_centres,
+)
+from reports.lectures.drawing.sheets.field_sheets import DrawnChain, check_room, draw_chains
+from reports.lectures.drawing.sheets.paper import Canvas, Paper, sheet_note
+from reports.lectures.drawing.sheets.position_sheet import draw_positions, positions
+from reports.lectures.drawing.sheets.scheme import sense_of_law
+from reports.output.console import plain_table
+from reports.output.numbers import roman
+from reports.output.write import check_file, crankcheck_version, write
+from reports.requests.options import PaperSize, SceneName
+
+ENDINGS = (".svg", ".pdf")
+
+
+Output = Annotated[Path, typer.Option("-o", "--output", help="Draw it: .svg in layers, or .pdf.")]
+
+
+@dataclass(frozen=True)
+class PositionsRequest:
+    """What `positions` was asked for, as given."""
+
+    scene: SceneName
+    output: Output
+    divisions: Annotated[int, typer.Option(min=2, max=360, help="Parts of the crank circle.")] = 12
+    paper: PaperSize = "A4"
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Draw positions. Raises CrankcheckError for what can not be asked."""
+        paper = _checked(self.scene, self.output, self.paper)
+        scene = load_scene(self.scene)
+        sheet = positions(scene, self.divisions, paper)
+        told = f"{self.divisions} positions of {scene.name}, K_l = {sheet.scale:g} m/mm"
+        save_sheet(console, draw_positions(sheet, sheet_note(scene)), self.output, told)
+        return 0
+
+
+def _checked(scene: str, output: Path, paper: str) -> Paper:
+    """The paper; refuse a file that could not be written."""
+    check_file(output, "-o", ENDINGS, inputs=[find_scene(scene)])
+    return Paper.of(paper)
+
+
+def save_sheet(console: Console, canvas: Canvas, path: Path, told: str) -> None:
+    """Write a sheet, and say so."""
+    write(path, canvas.saved(path.suffix.lower()[1:], told))
+    console.print(harmless(f"{path}: {told}"), highlight=False, markup=False, soft_wrap=True)
+
+
+@dataclass(frozen=True)
+class CentresRequest:
+    """What `centres` was asked for, as given."""
+
+    scene: SceneName
+    at_deg: Annotated[float, typer.Option(metavar="DEG", help="The driver's angle.")] = 60.0
+    link: Annotated[
+        str,
+        typer.Option(metavar="NAME", help="Its poles, circles of curvature and centrodes as well."),
+    ] = ""
+    paper: PaperSize = "A4"
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Draw it: .svg in layers, or .pdf.")
+    ] = None
+
+    def run(self, console: Console, progress: Console) -> int:
+        """Show or draw centres. Raises CrankcheckError for what can not be asked."""
+        paper = Paper.of(self.paper)
+        if self.output is not None:
+            check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
+        scene = load_scene(self.scene)
+        refuse_other_than_cranked(scene, "a sheet of instant centres", analyse(scene))
+        # Centres do not depend on the speed; circles ask for the acceleration at a constant one.
+        drawn = draw_polygons(scene, DriverState(_angle(scene, self.at_deg), sense_of_law(scene)))
+        sheet = centres_of(drawn, self.link, paper)
+        if self.output is not None:
+            told = f"instant centres of {scene.name} at {self.at_deg:g} deg"
+            save_sheet(console, draw_centres(sheet, sheet_note(scene)), self.output, told)
+            return 0
+        _show(console, sheet)
+        return 0
+
+
+def _angle(scene: Scene, at_deg: float) -> float:
+    """The driver's angle [rad]. Raises CrankcheckError for one that its law never comes to."""
+    return angle_at(at_deg) if scene.is_free else driver_at(scene, at_deg)[0]
+
+
+def _show(console: Console, sheet: CentreSheet) -> None:
+    numbers = body_numbers(sheet.drawn)
+    bodies = ", ".join(f"{k} {body}" for body, k in numbers.items())
+    console.print(f"bodies: {bodies}", highlight=False, markup=False)
+    table = plain_table(gap=2)
+    for head in ("centre", "x m", "y m", "found"):
+        table.add_column(head, justify="right" if head.endswith(" m") else "left")
+    ranked = sorted(sheet.centres.items(), key=lambda each: sorted(numbers[b] for b in each[0]))
+    for pair, centre in ranked:
+        crossing = " and ".join(
+            " ".join(centre_name(each, numbers) for each in pairs) for pairs in centre.by
+        )
+        found = f"where {crossing} cross" if crossing else "a joint"
+        table.add_row(centre_name(pair, numbers), *_place(centre.place), found)
+    console.print(table)
+    if sheet.circles is not None:
+        _show_circles(console, sheet)
+
+
+def _place(place: Array | None) -> tuple[str, str]:
+    return ("at infinity", "") if place is None else (f"{place[0]:.8g}", f"{place[1]:.8g}")
+
+
+def _show_circles(console: Console, sheet: CentreSheet) -> None:
+    """The poles and circles of the link that was named."""
+    circles = sheet.circles
+    assert circles is not None
+    table = plain_table(gap=2)
+    for head in (f"of {sheet.link}, driver steady", "x m", "y m", "radius m"):
+        table.add_column(head, justify="right" if head.endswith(" m") else "left")
+    table.add_row("velocity pole P", *_place(circles.pole), "")
+    table.add_row("acceleration pole Q", *_place(circles.acceleration_pole), "")
+    for name, circle in (
+        ("inflection circle, middle", circles.inflection),
+        ("second circle of Bresse, middle", circles.still_speed),
+    ):
+        if circle is None:
+            table.add_row(name, "a straight line, as its alpha is 0", "", "")
+        else:
+            table.add_row(name, *_place(circle.middle), f"{circle.radius:.8g}")
+    console.print("", table, sep="\n")
+
+
+MOST_TYPED = 8
+"""Links of chains whose types are listed."""
+
+
+@dataclass(frozen=True)
+class ChainsRequest:
+    """What `chains` was asked for, as given."""
+
+    links: Annotated[int, typer.Option(metavar="N", help="Links, the ground with them.")] = 6
+    mobility: Annotated[int, typer.Option(metavar="W", help="Their mobility.")] = 1
+    inversions: Annotated[
+        bool, typer.Option("--inversions", help="The mechanisms: each link as the ground.")
+    ] = False
+    sliders: Annotated[
+        int | None,
+        typer.Option(metavar="K", help="Type synthesis: up to so many of the pins are sliders."),
+    ] = None
+    paper: PaperSize = "A4"
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Draw them: .svg in layers, or .pdf.")
+    ] = None
+
+    def run(self, console: Console, progress: Console) -> int:
+        """List or draw chains. Raises CrankcheckError for what can not be asked."""
+        paper = Paper.of(self.paper)
+        if self.output is not None:
+            check_file(self.output, "-o", ENDINGS)
+        named = list(_asked(self))
+        rows = [row for name, chain in named for row in _rows(self, name, chain)]
+        kind = "chains" if self.sliders is None else "types of chains"
+        told = f"{len(named)} {kind} of {self.links} links with mobility {self.mobility}"
+        if self.inversions:
+            told += f", {len(rows)} mechanisms"
+        if self.output is not None:
+            check_room(len(rows), paper)
+            note = f"crankcheck {crankcheck_version()}, W = 3 (n - 1) - 2 p"
+            save_sheet(console, draw_chains(rows, told, note, paper), self.output, told)
+            return 0
+        console.print(told, highlight=False, markup=False)
+        _show_chains(console, self, rows)
+        if self.sliders is None and not self.inversions:
+            _show_assortments(console, self, [chain for _, chain in named])
+        return 0
+
+
+def _asked(request: ChainsRequest) -> Iterator[tuple[str, Chain]]:
+    """The chains of pins with their names; where types are asked for, these."""
+    if request.sliders is not None and request.sliders < 0:
+        raise CrankcheckError(f"--sliders {request.sliders}: take 0 or more")
+    if request.sliders is not None and request.links > MOST_TYPED:
+        raise CrankcheckError(
+            f"--sliders with {request.links} links: types are listed of chains of up to "
+            f"{MOST_TYPED} links"
+        )
+    pinned = chains(request.links, request.mobility)
+    for name, chain in zip(chain_names(pinned), pinned, strict=True):
+        if request.sliders is None:
+            yield name, chain
+            continue
+        for k, one in enumerate(types(chain, request.sliders), 1):
+            number = "" if chain.loops == 1 else f"{name}-{k} "
+            yield f"{number}{type_in_letters(one)}", one
+
+
+def _rows(request: ChainsRequest, name: str, chain: Chain) -> Iterator[DrawnChain]:
+    """What is listed or drawn of a chain: itself, or its mechanisms."""
+    if not request.inversions:
+        many = len(inversions(chain, name))
+        counted = f"{many} mechanism{'s' if many > 1 else ''}"
+        yield DrawnChain(chain, name, f"{assortment_in_words(chain.assortment)}; {counted}")
+        return
+    for mechanism in inversions(chain, name):
+        yield DrawnChain(chain, mechanism.name, _words(mechanism), mechanism.ground)
+
+
+def _words(mechanism: Mechanism) -> str:
+    """The class by each driver, where one driver says where everything is."""
+    if mechanism.chain.mobility != 1:
+        return f"ground link {mechanism.ground + 1}"
+    classes = sorted(set(mechanism.classes().values()))
+    return "class " + " or ".join(map(roman, classes))
+
+
+def _show_chains(console: Console, request: ChainsRequest, rows: list[DrawnChain]) -> None:
+    table = plain_table(gap=2)
+    heads = ["mechanism", "ground"] if request.inversions else ["chain"]
+    told = "links" if not request.inversions else "by its drivers"
+    for head in (*heads, told, "joints of links, sliders with *"):
+        table.add_column(head, overflow="fold")
+    for row in rows:
+        ground = [] if row.ground is None else [f"link {row.ground + 1}"]
+        joints = " ".join(
+            f"{a + 1}-{b + 1}{'*' if (a, b) in row.chain.sliders else ''}"
+            for a, b in row.chain.joints
+        )
+        table.add_row(row.name, *ground, row.words, joints)
+    console.print(table)
+
+
+def _show_assortments(console: Console, request: ChainsRequest, every: list[Chain]) -> None:
+    """All counts of links that the mobility allows, with how many chains each has."""
+    table = plain_table(gap=2)
+    table.add_column("assortment of links")
+    table.add_column("chains", justify="right")
+    for counts in assortments(request.links, request.mobility):
+        many = sum(chain.assortment == counts for chain in every)
+        table.add_row(assortment_in_words(counts), str(many))
+    console.print("", table, sep="\n")

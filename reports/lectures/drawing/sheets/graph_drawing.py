@@ -1,0 +1,234 @@
+"""Three graphs drawn from the reference and, beside them, from a log, and what each is off by."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import CubicSpline  # type: ignore[import-untyped]  # ships no stubs
+
+from analytic.lectures.drawings.graphical import ORDERS, Method, Plotted, ThreeGraphs, three_graphs
+from models.array import Array
+from models.errors import CrankcheckError, cut
+from models.motion import Order
+from reports.compare.beside import Truth
+from reports.lectures.drawing.sheets.graph_span import ON_END, GraphSpan
+from reports.lectures.drawing.sheets.sheet_log import SheetLog
+from reports.logs.channel import OwnLog, Reading
+from reports.logs.map_file import Map, read_map
+
+BESIDE = 4
+"""Rows on both sides of the period that the spline goes through as well."""
+ON_ROW = 1e-6
+"""How near a place is to a row to be on it, in steps between rows."""
+DOUBTED = 0.1
+"""The share of its range that half of all readings are off by where it is told."""
+NAMES: Mapping[Order, str] = {0: "places", 1: "rates", 2: "accelerations"}
+SIZES: Mapping[Order, str] = {0: "their range", 1: "the largest", 2: "the largest"}
+"""What is off is told over this."""
+
+
+@dataclass(frozen=True)
+class LoggedRows:
+    """Rows of a reading in the period: instants [s] and values (T,), angles without turns lost."""
+
+    time_s: Array
+    values: Array
+
+
+@dataclass(frozen=True)
+class GraphLog:
+    """A log's readings of a quantity by their order; ``span`` is the period that is drawn."""
+
+    source: Path
+    span: GraphSpan
+    rows: Mapping[Order, LoggedRows]
+
+    @property
+    def name(self) -> str:
+        """What sheets call it."""
+        return self.source.stem
+
+    def at(self, order: Order, x: Array) -> Array:
+        """A reading at places of the range, by the cubic spline through its rows."""
+        rows = self.rows[order]
+        return np.asarray(CubicSpline(rows.time_s, rows.values)(x))
+
+    def at_divisions(self, order: Order, parts: int) -> Plotted:
+        """Readings of an order at those divisions that its rows reach; none of what it has not."""
+        x = self.span.divisions(parts)
+        if order not in self.rows:
+            return Plotted(x[:0], x[:0])
+        rows = self.rows[order].time_s
+        slack = ON_ROW * float(np.median(np.diff(rows)))
+        x = x[(x >= rows[0] - slack) & (x <= rows[-1] + slack)]
+        return Plotted(x, self.at(order, x))
+
+    def doubt(self, order: Order, x: Array) -> str:
+        """That readings are mostly far from the scene's, in words; empty where they are not."""
+        off = np.abs(self.at(order, x) - self.span.exact(order, x))
+        share = float(np.median(off)) / self.span.sizes()[order]
+        if share <= DOUBTED:
+            return ""
+        what, name = self.span.quantity.name, self.span.scene.name
+        return (
+            f"half of its {NAMES[order]} of {what} are off by {100 * share:.0f} % of "
+            f"{SIZES[order]} or more: where no engine went so far, they are of another speed or "
+            f"unit than {name}; `crankcheck judge` helps to find which"
+        )
+
+    def how(self, order: Order, x: Array) -> str:
+        """How readings at places come of the rows, and what that adds: what the spline through the
+        exact values at the rows is off by."""
+        rows = self.rows[order].time_s
+        step = float(np.median(np.diff(rows)))
+        after = np.clip(np.searchsorted(rows, x), 1, rows.size - 1)
+        nearest = np.minimum(np.abs(rows[after] - x), np.abs(rows[after - 1] - x))
+        if np.all(nearest <= ON_ROW * step):
+            return "at its rows"
+        exact = CubicSpline(rows, self.span.exact(order, rows))(x)
+        off = float(np.abs(exact - self.span.exact(order, x)).max()) / self.span.sizes()[order]
+        return (
+            f"by cubic splines between its rows, {step:.3g} s apart, which add up to "
+            f"{100 * off:.2g} %"
+        )
+
+
+def graph_log(path: Path, map_path: Path | None, whole: GraphSpan) -> GraphLog:
+    """The readings that a log has of the quantity of a range, over a period of it.
+
+    The period is the first whole one that the log covers, or, where it covers none, the one that
+    begins with its first row; what is let go is drawn from its start on.
+
+    Raises
+    ------
+    CrankcheckError
+        As `SheetLog.of_file`; a log that has nothing of the quantity, or is shorter than the
+        period; graphs of analogues.
+    """
+    if whole.truth is None:
+        raise CrankcheckError(
+            f"--log: the driver of {whole.scene.name} has no constant speed, and graphs over its "
+            "angle are analogues, which no log has; use --over time"
+        )
+    map_ = read_map(map_path) if map_path else Map()
+    beside = SheetLog.of_file(whole.scene, path, map_, "graphs")
+    log = beside.log
+    held = {order: each for order in ORDERS if (each := _reading(log, whole, order)) is not None}
+    if not held:
+        names = ", ".join(dict.fromkeys(each.channel.of for each in log.readings))
+        raise CrankcheckError(
+            f"{path}: no column is of {whole.quantity.name}; it has readings of {cut(names, 200)}"
+        )
+    first = held[min(held)]
+    moved = whole.within(*(float(first.instants[at]) for at in (0, -1)))
+    _refuse_short(path, first, moved)
+    rows = {
+        order: some
+        for order, reading in held.items()
+        if (some := _rows(reading, beside.truth, moved)) is not None
+    }
+    return GraphLog(path, moved, rows)
+
+
+def needed(log: GraphLog, order: Order, parts: int) -> None:
+    """Refuse what can not be drawn of a log: readings of an order that it has not, or fewer rows
+    than parts. Raises CrankcheckError."""
+    quantity = log.span.quantity
+    if order not in log.rows:
+        others = {0: "chords or tangents", 2: "integration"}
+        able = [f"draw --by {others[each]}" for each in log.rows if each in others]
+        held = ", ".join(NAMES[each] for each in log.rows) or f"fewer than {BESIDE} rows of it"
+        raise CrankcheckError(
+            f"{log.source}: it has no {NAMES[order]} of {quantity.name} (found {held}); "
+            f"{', or '.join([f'log {NAMES[order]}', *able])}"
+        )
+    rows = log.rows[order].time_s
+    slack = ON_END * (log.span.end - log.span.start)
+    within = (rows >= log.span.start - slack) & (rows <= log.span.end + slack)
+    count = int(np.sum(within))
+    if count < parts:
+        raise CrankcheckError(
+            f"--divisions {parts}: {log.source} has {count} row{'s' * (count != 1)} in the period; "
+            "draw fewer parts, or log more often"
+        )
+
+
+def _reading(log: OwnLog, whole: GraphSpan, order: Order) -> Reading | None:
+    """The reading of an order, rather one that is not relative to another link."""
+    kind, body = whole.quantity.kinds[order], whole.quantity.body
+    of_it = [r for r in log.readings if (r.channel.kind, r.channel.of) == (kind, body)]
+    return min(of_it, key=lambda each: bool(each.channel.relative_to), default=None)
+
+
+def _refuse_short(path: Path, reading: Reading, moved: GraphSpan) -> None:
+    """Refuse a log that begins after the period, or ends before it. Raises CrankcheckError."""
+    start, end = (float(reading.instants[at]) for at in (0, -1))
+    lasts = moved.end - moved.start
+    if start > moved.start + ON_END * lasts or end < moved.end - ON_END * lasts:
+        raise CrankcheckError(
+            f"{path}: readings of {moved.quantity.name} from {start:.6g} s to {end:.6g} s; a "
+            f"graph takes those from {moved.start:.6g} s to {moved.end:.6g} s: log {lasts:.6g} s "
+            "or more"
+        )
+
+
+def _rows(reading: Reading, truth: Truth, moved: GraphSpan) -> LoggedRows | None:
+    """The rows of a reading in the period and next to it; None for too few."""
+    first = max(int(np.searchsorted(reading.instants, moved.start)) - BESIDE, 0)
+    last = int(np.searchsorted(reading.instants, moved.end)) + BESIDE
+    some = replace(
+        reading, instants=reading.instants[first:last], values=reading.values[first:last]
+    )
+    if some.instants.size < BESIDE:
+        return None
+    right = reading.channel.kind.of(truth.at(some.instants), reading.channel.of)
+    return LoggedRows(some.instants, right + some.error(truth))
+
+
+READ: dict[Method, Order] = {"chords": 0, "tangents": 0, "integration": 2}
+"""Of which order readings are drawn from."""
+
+
+@dataclass(frozen=True)
+class DrawnGraphs:
+    """A quantity and its rates over a range in equal parts, drawn ``by`` a method: of the
+    reference, and of a log where there is one. ``sizes`` are what errors are over."""
+
+    span: GraphSpan
+    by: Method
+    parts: int
+    reference: ThreeGraphs
+    log: GraphLog | None
+    logged: ThreeGraphs | None
+    sizes: tuple[float, float, float]
+
+    @property
+    def derived(self) -> tuple[Order, Order]:
+        """The orders that were not read, in the order of drawing."""
+        return (1, 0) if self.by == "integration" else (1, 2)
+
+    def off(self, drawn: ThreeGraphs, order: Order) -> float:
+        """What a graph is off by the exact curve at most, over the size."""
+        graph = drawn.graphs[order]
+        exact = self.span.exact(order, graph.x)
+        return float(np.abs(graph.y - exact).max()) / self.sizes[order]
+
+    def own_part(self, order: Order) -> float:
+        """What the log's graph is off that of the reference, over the size: the method is in
+        both."""
+        assert self.logged is not None
+        one, other = self.logged.graphs[order], self.reference.graphs[order]
+        return float(np.abs(one.y - other.y).max()) / self.sizes[order]
+
+
+def drawn_graphs(of: GraphSpan, by: Method, parts: int, log: GraphLog | None = None) -> DrawnGraphs:
+    """Draw. Raises CrankcheckError for a log that has not what the method reads."""
+    x = of.divisions(parts)
+    start = float(of.exact(0, x[:1])[0]), float(of.exact(1, x[:1])[0])
+    reference = three_graphs(by, x, of.exact, start)
+    logged = None
+    if log is not None:
+        needed(log, READ[by], parts)
+        logged = three_graphs(by, x, log.at, start)
+    return DrawnGraphs(of, by, parts, reference, log, logged, of.sizes())

@@ -1,0 +1,290 @@
+"""The whole sheet of graphs as a drawing: captions, legend, table and a layer for each step."""
+
+import itertools
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Rectangle
+
+from analytic.lectures.drawings.graphical import Plotted, ThreeGraphs
+from reports.figures.style import INK, LARGE, QUIET, SMALL, TINY, cut, width_in
+from reports.lectures.drawing.sheets.graph_drawing import READ, DrawnGraphs
+from reports.lectures.drawing.sheets.graph_sheet import (
+    CAPTION_MM,
+    GraphSheet,
+    Panel,
+    graph_sheet,
+)
+from reports.lectures.drawing.sheets.graph_words import (
+    draw_table,
+    own_rates_off,
+    share,
+    table_width_mm,
+)
+from reports.lectures.drawing.sheets.paper import (
+    MM_PER_IN,
+    Canvas,
+    Paper,
+    line,
+    of_elastic,
+    round_scale,
+    text,
+    write_head,
+)
+from reports.lectures.drawing.sheets.sheet_log import LOGGED
+from reports.output.numbers import readable
+
+EXACT, DRAWN, RAY, FAINT = "#a3adb8", "#2e6f9e", "#b7791f", "#e6e6e6"
+DASHED = (0, (4, 2))
+"""Lines of a log, under which others are seen."""
+VALUES_APART_MM = 6.0
+"""Values beside a graph are so far from one another at least."""
+LABELS_APART_MM = 6.5
+"""As are numbers of divisions, or angles."""
+TANGENT = 0.35
+"""How far a tangent is drawn to either side, in parts."""
+
+
+def draw_axes(axes: Axes, sheet: GraphSheet, panel: Panel, caption: str) -> None:
+    """Both axes of a graph, its divisions with their numbers, values on the right, and the pole."""
+    box, top = panel.box, panel.box.bottom + panel.box.height
+    room = (box.left + box.width - sheet.legend.left) / MM_PER_IN
+    size = SMALL if width_in(caption) <= room else TINY
+    words = cut(caption, room, size)
+    text(axes, sheet.legend.left, top + CAPTION_MM - 3.2, words, size, color=QUIET)
+    along = np.linspace(box.left, box.left + box.width, sheet.drawn.parts + 1)
+    names, every = _names(sheet), _every(sheet)
+    for k, x in enumerate(along):
+        line(axes, np.array([x, box.bottom]), np.array([x, top]), color=FAINT, linewidth=0.3)
+        half = np.array([0.0, 0.7])
+        at = np.array([x, panel.axis_mm])
+        line(axes, at - half, at + half, linewidth=0.4)
+        if k % every == 0:
+            text(axes, x, box.bottom - 2.6, names[k], TINY, ha="center", color=QUIET)
+    end = np.array([box.left + box.width + 2.0, panel.axis_mm])
+    line(axes, panel.origin, end, linewidth=0.6)
+    line(axes, np.array([box.left, box.bottom]), np.array([box.left, top]), linewidth=0.6)
+    _write_values(axes, panel)
+    if not math.isnan(panel.pole_mm):
+        pole = panel.origin - np.array([panel.pole_mm, 0.0])
+        line(axes, pole, panel.origin, color=QUIET, linewidth=0.3)
+        text(axes, pole[0] - 2.6, pole[1] - 1.0, "P", SMALL)
+
+
+def _names(sheet: GraphSheet) -> list[str]:
+    """What stands below the divisions: their numbers, or the angles of the driver."""
+    of, parts = sheet.drawn.span, sheet.drawn.parts
+    if of.over == "time":
+        return [str(k) for k in range(parts + 1)]
+    return [f"{each:.4g}" for each in np.round(of.driver_at(of.divisions(parts)), 2) + 0.0]
+
+
+def _every(sheet: GraphSheet) -> int:
+    """Which divisions have theirs."""
+    return math.ceil(LABELS_APART_MM * sheet.drawn.parts / sheet.panels[0].box.width)
+
+
+def _write_values(axes: Axes, panel: Panel) -> None:
+    """Round values on an axis right of the graph."""
+    right, bottom = panel.box.left + panel.box.width + 2.0, panel.box.bottom
+    line(axes, np.array([right, bottom]), np.array([right, bottom + panel.box.height]),
+         linewidth=0.4, color=QUIET)  # fmt: skip
+    step = round_scale(VALUES_APART_MM * panel.scale, 1.0)
+    lowest = panel.axis + (bottom - panel.axis_mm) * panel.scale
+    first, last = lowest / step, lowest / step + panel.box.height * panel.scale / step
+    for k in range(math.ceil(first), math.floor(last) + 1):
+        y = float(panel.height_mm(np.array(k * step)))
+        line(axes, np.array([right, y]), np.array([right + 0.9, y]), linewidth=0.4, color=QUIET)
+        text(axes, right + 1.4, y, readable(k * step), TINY, va="center", color=QUIET)
+
+
+def draw_exact(axes: Axes, sheet: GraphSheet, panel: Panel) -> None:
+    """The exact curve."""
+    dense = sheet.drawn.span.dense
+    y = panel.height_mm(sheet.drawn.span.exact(panel.order, dense))
+    (curve,) = axes.plot(sheet.along_mm(dense), y, color=EXACT, lw=1.6, solid_capstyle="round")
+    _clip(axes, panel, [curve])
+
+
+def draw_rays(
+    canvas: Canvas, sheet: GraphSheet, panel: Panel, drawn: ThreeGraphs, color: str, layer: str
+) -> None:
+    """A ray from the pole to each ordinate on the axis, and from there across to where it belongs;
+    of a graph that is integrated its mean ordinates as well."""
+    if not panel.order:
+        return
+    axes = canvas.layer(f"rays-{panel.symbol}{layer}")
+    slopes = drawn.slopes[0 if panel.order == 1 else 1]
+    pole = panel.origin - np.array([panel.pole_mm, 0.0])
+    for k, (x, y) in enumerate(zip(sheet.along_mm(slopes.x), panel.height_mm(slopes.y),
+                                   strict=True)):  # fmt: skip
+        cut_off, carried = np.array([panel.box.left, y]), np.array([x, y])
+        gid = f"ray-{panel.symbol}{layer}-{k}"
+        line(axes, pole, cut_off, gid, color=color, linewidth=0.35)
+        line(axes, cut_off, carried, color=color, linewidth=0.2, alpha=0.5)
+        if sheet.drawn.by == "integration":
+            foot = np.array([x, panel.axis_mm])
+            line(axes, foot, carried, color=color, linewidth=0.35)
+    _clip(axes, panel, axes.lines, left=panel.pole_mm)
+
+
+def draw_graph(
+    canvas: Canvas, sheet: GraphSheet, panel: Panel, drawn: ThreeGraphs, color: str, layer: str
+) -> None:
+    """The points of a graph, and the chords or steps between them; its tangents where these are
+    drawn."""
+    axes = canvas.layer(f"graph-{panel.symbol}{layer}")
+    graph = drawn.graphs[panel.order]
+    x, y = sheet.along_mm(graph.x), panel.height_mm(graph.y)
+    by = sheet.drawn.by
+    word = "chord"
+    if by == "integration" and panel.order < READ[by]:
+        word = "step"
+    look = {"color": color, "linewidth": 0.6, "linestyle": DASHED if layer else "-"}
+    for k, (start, end) in enumerate(itertools.pairwise(np.column_stack([x, y]))):
+        line(axes, start, end, f"{word}-{panel.symbol}{layer}-{k}", **look)
+    if by == "tangents" and panel.order != 2:
+        _draw_tangents(axes, sheet, panel, graph, drawn.slopes[panel.order], color)
+    axes.plot(x, y, ls="", marker="o", ms=1.3, color=color if layer else INK, mew=0.0)
+    _clip(axes, panel, axes.lines)
+
+
+def _draw_tangents(
+    axes: Axes, sheet: GraphSheet, panel: Panel, graph: Plotted, slopes: Plotted, color: str
+) -> None:
+    """A piece of the tangent at each point that has one."""
+    reach = TANGENT * (sheet.drawn.span.end - sheet.drawn.span.start) / sheet.drawn.parts
+    for k, (x, y, slope) in enumerate(zip(slopes.x, graph.y[1:-1], slopes.y, strict=True)):
+        ends = np.array([x - reach, x + reach])
+        along, across = sheet.along_mm(ends), panel.height_mm(y + slope * (ends - x))
+        start, end = np.column_stack([along, across])
+        line(axes, start, end, f"tangent-{panel.symbol}-{k}", color=color, linewidth=1.1)
+
+
+def draw_own_rates(canvas: Canvas, sheet: GraphSheet, panel: Panel) -> None:
+    """What the log itself says of a rate at the divisions, as points."""
+    log = sheet.drawn.log
+    if log is None or panel.order == READ[sheet.drawn.by]:
+        return
+    rates = log.at_divisions(panel.order, sheet.drawn.parts)
+    if not rates.x.size:
+        return
+    axes = canvas.layer(f"own-{panel.symbol}")
+    x, y = sheet.along_mm(rates.x), panel.height_mm(rates.y)
+    axes.plot(x, y, ls="", marker="D", ms=2.4, mfc="none", mec=LOGGED, mew=0.5)
+    _clip(axes, panel, axes.lines)
+
+
+def _clip(axes: Axes, panel: Panel, lines: object, left: float = 0.0) -> None:
+    """Nothing beyond the box of a graph, and the pole left of it."""
+    box = panel.box
+    frame = Rectangle(
+        (box.left - left - 1.0, box.bottom - 0.5), box.width + left + 2.0, box.height + 1.0,
+        transform=axes.transData,
+    )  # fmt: skip
+    for each in lines:  # type: ignore[attr-defined]  # matplotlib's own list
+        each.set_clip_path(frame)
+
+
+NAME_IN = 1.3
+"""How long the name of a log is in the title at most [inch]."""
+
+
+def laid_out(drawn: DrawnGraphs, paper: Paper) -> GraphSheet:
+    """Graphs on paper, beside their table. Raises CrankcheckError for parts too narrow."""
+    return graph_sheet(drawn, paper, table_width_mm(drawn))
+
+
+def draw_graphs(sheet: GraphSheet, note: str) -> Canvas:
+    """The sheet, a layer for each graph and for the construction of each from the one before."""
+    canvas, drawn = Canvas(sheet.paper), sheet.drawn
+    frame = canvas.layer("frame")
+    write_head(frame, sheet.paper, _title(drawn), note)
+    _write_legend(frame, sheet)
+    draw_table(frame, drawn, sheet.table)
+    for panel in sheet.panels:
+        draw_axes(frame, sheet, panel, caption(sheet, panel))
+        draw_exact(frame, sheet, panel)
+    for panel in sheet.panels:
+        if drawn.logged is not None:
+            draw_rays(canvas, sheet, panel, drawn.logged, LOGGED, "-log")
+        draw_rays(canvas, sheet, panel, drawn.reference, RAY, "")
+        draw_graph(canvas, sheet, panel, drawn.reference, DRAWN, "")
+        if drawn.logged is not None:
+            draw_graph(canvas, sheet, panel, drawn.logged, LOGGED, "-log")
+        draw_own_rates(canvas, sheet, panel)
+    return canvas
+
+
+def _title(drawn: DrawnGraphs) -> str:
+    of = drawn.span
+    over = f"{of.words}, {drawn.parts} parts, by {drawn.by}"
+    title = f"{of.scene.name}: {of.quantity.name} over {over}"
+    title += of_elastic(of.scene, ", links taken as rigid")
+    return f"{title}; log: {cut(drawn.log.name, NAME_IN, LARGE)}" if drawn.log else title
+
+
+def caption(sheet: GraphSheet, panel: Panel) -> str:
+    """What stands above a graph: scale, axis, pole, and what it is off by."""
+    drawn, order = sheet.drawn, panel.order
+    words = [f"{panel.symbol} [{panel.unit}], {readable(panel.scale)} {panel.unit} per mm"]
+    if panel.axis:
+        words.append(f"axis at {panel.axis:.6g}")
+    if not math.isnan(panel.pole_mm):
+        words.append(f"H = {panel.pole_mm:g} mm")
+    told = ", ".join(words)
+    if order == READ[drawn.by]:
+        if drawn.logged is not None:
+            told += f"; log off by up to {share(drawn.off(drawn.logged, order))}"
+        return told
+    if drawn.by == "integration":
+        start = drawn.reference.graphs[order].y[0]
+        told += f", from {start:.6g} {panel.unit} on (exact)"
+    told += f"; off by up to {share(drawn.off(drawn.reference, order))}"
+    if drawn.logged is not None:
+        told += (
+            f"; log by up to {share(drawn.off(drawn.logged, order))}, its own part "
+            f"{share(drawn.own_part(order))}"
+        )
+        own = own_rates_off(drawn, order)
+        told += f", as logged {share(own)}" if own is not None else ""
+    return told
+
+
+def _write_legend(axes: Axes, sheet: GraphSheet) -> None:
+    """What is along the graphs on the left, what the lines are on the right."""
+    drawn, box = sheet.drawn, sheet.legend
+    base = box.bottom + 1.6
+    text(axes, box.left, base, _along(sheet), TINY, color=QUIET)
+    entries = [("exact", EXACT, 1.6, ""), (f"by {drawn.by}", DRAWN, 0.8, "o")]
+    if drawn.log is not None:
+        entries.append((f"log by {drawn.by}", LOGGED, 0.8, "o"))
+        if any(each in drawn.log.rows for each in drawn.derived):
+            entries.append(("as logged", LOGGED, 0.0, "D"))
+    x = box.left + box.width - 1.0
+    for words, color, width, marker in reversed(entries):
+        x -= width_in(words, TINY) * MM_PER_IN
+        text(axes, x, base, words, TINY, color=QUIET)
+        x -= 10.0
+        if width:
+            start, end = np.array([x, base + 0.6]), np.array([x + 8.0, base + 0.6])
+            style = DASHED if color == LOGGED else "-"
+            line(axes, start, end, color=color, linewidth=width, linestyle=style)
+        if marker:
+            look = {"mfc": "none", "mec": color, "mew": 0.5} if marker == "D" else {"mew": 0.0}
+            axes.plot(x + 4.0, base + 0.6, marker=marker, ms=1.8, color=color, **look)
+        x -= 5.0
+
+
+def _along(sheet: GraphSheet) -> str:
+    of = sheet.drawn.span
+    part = (of.end - of.start) / sheet.drawn.parts
+    name, unit = (
+        ("time", "s") if of.over == "time" else (f"angle of {of.scene.driver.joint}", "deg")
+    )
+    since = f" from {of.start:.6g} s on" if of.start and not of.analogues else ""
+    return (
+        f"along: {name}{since}, {readable(of.shown * sheet.scale_x)} {unit} per mm; a part is "
+        f"{part / sheet.scale_x:g} mm, {readable(of.shown * part, 4)} {unit}"
+    )

@@ -1,0 +1,247 @@
+"""What graphs are drawn over: a period of the driver, in time or in its angle.
+
+Over the angle of a driver of constant speed the graphs are those over time, with another scale
+along: rates are rates. Where the speed is not constant, they are the derivatives by the driver's
+angle, which the problem book calls analogues.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+import numpy as np
+
+from analytic.kinematics import solve_driven
+from models.array import Array
+from models.errors import CrankcheckError, few, suggestion
+from models.motion import Motion, Order
+from models.scene import Scene
+from models.scene.driver import driver_shown
+from models.scene.laws import ConstantSpeed, Oscillating
+from reports.compare.beside import Truth
+from reports.logs.kinds import KINDS, Kind, LoggedKind
+
+AXES = ("x", "y")
+
+
+@dataclass(frozen=True)
+class GraphedQuantity:
+    """A quantity of a ``body`` with both of its rates: how a motion holds them, their symbols, and
+    what their unit is before any s."""
+
+    name: str
+    body: str
+    kinds: tuple[Kind, Kind, Kind]
+    symbols: tuple[str, str, str]
+    unit: str
+
+
+def quantity_of(motion: Motion, name: str) -> GraphedQuantity:
+    """The quantity of that name: a link, a slider, or a coordinate of a point (C.x). Raises
+    CrankcheckError for what the motion has not."""
+    point, _, axis = name.partition(".")
+    if name in motion.links:
+        kinds = _kinds("link", "angle", "angular velocity", "angular acceleration")
+        return GraphedQuantity(name, name, kinds, ("phi", "omega", "epsilon"), "rad")
+    if name in motion.sliders:
+        kinds = _kinds("slider", "displacement", "speed", "acceleration")
+        return GraphedQuantity(name, name, kinds, ("s", "v", "a"), "m")
+    if point in motion.points and axis in AXES:
+        kinds = _kinds("point", axis, f"v{axis}", f"a{axis}")
+        return GraphedQuantity(name, point, kinds, ("s", "v", "a"), "m")
+    known = [*motion.links, *motion.sliders, *(f"{p}.{a}" for p in motion.points for a in AXES)]
+    raise CrankcheckError(f"--of {name}: {suggestion(name, known, 'there are')}")
+
+
+def _kinds(of: LoggedKind, value: str, rate: str, second: str) -> tuple[Kind, Kind, Kind]:
+    return KINDS[of, value], KINDS[of, rate], KINDS[of, second]
+
+
+Over = Literal["time", "angle"]
+OVERS: tuple[Over, ...] = get_args(Over)
+DENSE = 721
+TRIFLE = 1e-3
+"""What is a smaller share of what its integral asks for is none: errors are over sizes above 0."""
+ON_END = 1e-6
+"""How near a row is to an end of the period to be on it, in periods."""
+STILL = 1e-9
+"""What moves by less [rad, longest links] stands still."""
+
+
+@dataclass(frozen=True)
+class GraphSpan:
+    """A quantity from ``start`` to ``end`` of the abscissa x: time [s], or, of analogues, the
+    driver's angle [rad]. ``motion_at`` solves at places; one unit of x is ``shown`` units of what
+    is written along (s or deg)."""
+
+    scene: Scene
+    quantity: GraphedQuantity
+    start: float
+    end: float
+    over: Over
+    shown: float
+    motion_at: Callable[[Array], Motion]
+    truth: Truth | None
+
+    @property
+    def analogues(self) -> bool:
+        """Whether rates are those by the driver's angle; only over time is there a truth."""
+        return self.truth is None
+
+    @property
+    def symbols(self) -> tuple[str, str, str]:
+        symbols = self.quantity.symbols
+        return (symbols[0], f"{symbols[0]}'", f"{symbols[0]}''") if self.analogues else symbols
+
+    @property
+    def units(self) -> tuple[str, str, str]:
+        unit, per = self.quantity.unit, "rad" if self.analogues else "s"
+        return unit, f"{unit}/{per}", f"{unit}/{per}²"
+
+    @property
+    def dense(self) -> Array:
+        """Places close enough for a curve."""
+        return np.linspace(self.start, self.end, DENSE)
+
+    def divisions(self, parts: int) -> Array:
+        """The ends of equal parts (n + 1,)."""
+        return np.linspace(self.start, self.end, parts + 1)
+
+    def exact(self, order: Order, x: Array) -> Array:
+        """The quantity (0) or one of its rates at places, in closed form."""
+        return self.quantity.kinds[order].of(self.motion_at(x), self.quantity.body)
+
+    def sizes(self) -> tuple[float, float, float]:
+        """What errors are over: the range of the quantity, the largest of its rates."""
+        motion, body = self.motion_at(self.dense), self.quantity.body
+        value, rate, second = (kind.of(motion, body) for kind in self.quantity.kinds)
+        least = TRIFLE / (self.end - self.start)
+        size = float(np.ptp(value))
+        size_of_rate = max(float(np.abs(rate).max()), least * size)
+        return size, size_of_rate, max(float(np.abs(second).max()), least * size_of_rate)
+
+    def driver_at(self, x: Array) -> Array:
+        """Where the driver is at places [deg or m]."""
+        if self.analogues:
+            return np.degrees(x)
+        place = self.scene.driver.law.at(x)[0]
+        return place if self.scene.driver.slider is not None else np.degrees(place)
+
+    @property
+    def words(self) -> str:
+        """How long it is."""
+        return f"the angle of {self.scene.driver.joint}" if self.analogues else "a period"
+
+    @property
+    def taken(self) -> str:
+        """Which period of a log it is."""
+        turns = self.start / (self.end - self.start)
+        if abs(turns - round(turns)) <= ON_END:
+            return f"in period {round(turns) + 1} of the driver, the first whole one in it"
+        return "from its first row on, as it has no whole period of the driver"
+
+    def within(self, first: float, last: float) -> GraphSpan:
+        """The first period of those of the driver within the rows of a log, from ``first`` to
+        ``last`` [s], or that from the first row on."""
+        if first <= self.start:
+            return self
+        lasts = self.end - self.start
+        start = math.ceil(first / lasts - ON_END) * lasts
+        start = start if start + lasts <= last + ON_END * lasts else first
+        return replace(self, start=start, end=start + self.end - self.start)
+
+
+class FreeSpan(GraphSpan):
+    """The first seconds of a free motion."""
+
+    taken = "from its release on"
+
+    def driver_at(self, x: Array) -> Array:
+        return driver_shown(self.scene, self.motion_at(x))
+
+    @property
+    def words(self) -> str:
+        return f"{self.end - self.start:g} s"
+
+    def within(self, first: float, last: float) -> GraphSpan:
+        return self
+
+
+def over_period(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
+    """The quantity ``name`` of a scene over a period, or, let go, over a duration.
+
+    Raises CrankcheckError for what the scene has not or what stands still in it, and for a duration
+    or a period that it has not.
+    """
+    of = (_let_go if scene.is_free else _driven)(scene, name, over, duration_s)
+    unit = scene.longest_m if of.quantity.unit == "m" else 1.0
+    if of.sizes()[0] <= STILL * unit:
+        raise CrankcheckError(f"--of {name}: it stands still in {scene.name}, and has no graph")
+    return of
+
+
+def _driven(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
+    """Over a period of the driver."""
+    if duration_s is not None:
+        raise CrankcheckError(
+            f"--duration: {scene.name} is driven, and drawn over its period of "
+            f"{scene.driver.law.period_s:.6g} s; leave it out"
+        )
+    law = scene.driver.law
+    if over == "angle" and scene.driver.slider is not None:
+        raise CrankcheckError(
+            f"--over angle: the driver of {scene.name} is {scene.driver.joint}, which has no "
+            "angle; use --over time"
+        )
+    truth = Truth(scene, bound=False)
+    quantity = quantity_of(truth.at(np.zeros(1)), name)
+    if over == "angle" and not isinstance(law, ConstantSpeed):
+        return _by_angle(scene, quantity)
+    shown = math.degrees(law.peak_speed_rad_s) if over == "angle" else 1.0
+    return GraphSpan(scene, quantity, 0.0, law.period_s, over, shown, truth.at, truth)
+
+
+def _by_angle(scene: Scene, quantity: GraphedQuantity) -> GraphSpan:
+    """Over the driver's angle: a turn of it, or as far as it swings."""
+    law = scene.driver.law
+    if isinstance(law, Oscillating):
+        swing = abs(law.amplitude_rad)
+        start, end = law.centre_rad - swing, law.centre_rad + swing
+    else:
+        start = float(law.at(np.zeros(1))[0][0])
+        end = start + math.tau
+
+    def motion_at(angle: Array) -> Motion:
+        return solve_driven(scene, angle, np.ones(1), np.zeros(1), bound=False)
+
+    return GraphSpan(scene, quantity, start, end, "angle", math.degrees(1.0), motion_at, None)
+
+
+def _let_go(scene: Scene, name: str, over: Over, duration_s: float | None) -> GraphSpan:
+    """Over the first seconds of a free motion."""
+    if scene.elastic:
+        raise CrankcheckError(
+            f"{scene.name}: {few(scene.elastic, 4)} bends or stretches and is let go, and graphs "
+            "are those of rigid links; `crankcheck solve` writes that motion with -o FILE.csv, or "
+            "take [elastic] out of the scene"
+        )
+    if duration_s is None:
+        raise CrankcheckError(
+            f"{scene.name}: it is let go, and has no period to draw; say for how long: --duration "
+            "SECONDS"
+        )
+    if over == "angle":
+        raise CrankcheckError(
+            f"--over angle: {scene.name} is let go, and its driver may turn back; use --over time"
+        )
+    if not (math.isfinite(duration_s) and duration_s > 0.0):
+        raise CrankcheckError(f"--duration {duration_s:g}: give seconds above 0")
+    # What integrates it is not loaded for what is driven.
+    from reports.compare.free_truth import free_truth_until
+
+    truth = free_truth_until(scene, duration_s, 0.0)
+    quantity = quantity_of(truth.at(np.zeros(1)), name)
+    return FreeSpan(scene, quantity, 0.0, duration_s, over, 1.0, truth.at, truth)

@@ -1,1 +1,0 @@
-"""Sheets of graphs: differentiated and integrated with ruler and pole."""

@@ -1,1 +1,0 @@
-"""Sheets of velocity and acceleration polygons."""

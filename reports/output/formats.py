@@ -1,0 +1,203 @@
+"""Formats of results: tables as CSV, Parquet or workbook, JUnit XML, and Markdown that fits into a
+comment."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree as Xml
+
+from reports.output.write import clean, crankcheck_version, write
+
+if TYPE_CHECKING:
+    import pandas as pd  # a third of a second: not for what is only shown
+
+
+def junit(*suites: Xml.Element) -> str:
+    """The text of a file of these suites."""
+    root = Xml.Element("testsuites")
+    root.extend(suites)
+    Xml.indent(root)
+    return f'<?xml version="1.0" encoding="utf-8"?>\n{Xml.tostring(root, "unicode")}\n'
+
+
+def suite_of(
+    name: str,
+    cases: Sequence[Xml.Element],
+    facts: Mapping[str, str],
+    time: str = "0",
+    **attributes: str,
+) -> Xml.Element:
+    """Cases with their counts, and where they come from."""
+    count = Counter(told.tag for case in cases for told in case)
+    heads = {
+        "name": f"crankcheck {name}",
+        "tests": str(len(cases)),
+        "failures": str(count["failure"]),
+        "errors": str(count["error"]),
+        "time": time,
+        "skipped": str(count["skipped"]),
+    }
+    suite = Xml.Element("testsuite", heads | attributes)
+    properties = Xml.SubElement(suite, "properties")
+    for fact, value in facts.items():
+        Xml.SubElement(properties, "property", name=clean(fact), value=clean(value))
+    suite.extend(cases)
+    return suite
+
+
+def case_of(group: str, name: str, time: str = "0") -> Xml.Element:
+    """A cell; what became of it is told by `remark`, and nothing where it is as it should be."""
+    heads = {"classname": f"crankcheck.{group}", "name": name, "time": time}
+    return Xml.Element("testcase", {head: clean(value) for head, value in heads.items()})
+
+
+def remark(case: Xml.Element, tag: str, text: str = "", **attributes: str) -> None:
+    """Add a ``failure``, ``error``, ``skipped`` or ``system-out`` to a case."""
+    cleaned = {name: clean(value) for name, value in attributes.items()}
+    Xml.SubElement(case, tag, cleaned).text = clean(text)
+
+
+SPECIAL = re.compile(r"([\\`*_\[\]<>|~#&$])")
+"""What would start a cell, tag, link, reference, entity, formula or emphasis."""
+JOINER = "\N{WORD JOINER}"
+LONGEST = 600
+"""Characters of a cell: a reason may hold the whole output of an engine."""
+
+
+def plain(text: object) -> str:
+    """A text that means itself, on one line; it notifies nobody either."""
+    words = " ".join(str(text).split())
+    words = words if len(words) <= LONGEST else words[: LONGEST - 1] + "…"
+    return SPECIAL.sub(r"\\\1", words).replace("@", f"@{JOINER}")
+
+
+def table(
+    heads: Sequence[str],
+    rows: Iterable[Sequence[object]],
+    room: float = math.inf,
+    what: str = "",
+) -> str:
+    """A table whose cells mean themselves, in ``room`` bytes; what has none is counted below it.
+
+    A head that ends in a colon is over numbers, and stands on the right. ``what`` the rows are
+    called where they are counted.
+    """
+    rules = ["--:" if head.endswith(":") else "---" for head in heads]
+    lines = [_row(head.removesuffix(":") for head in heads), _row(rules)]
+    body = (_row(plain(cell) for cell in row) for row in rows)
+    return "\n".join([*lines, *counted(body, room - 200, what)])
+
+
+def counted(texts: Iterable[str], room: float, what: str = "") -> list[str]:
+    """The first of the texts that have ``room`` bytes together, then how many others there are."""
+    kept, left = fitted(texts, room)
+    return [*kept, f"\nand {left} more {what}".rstrip()] if left else kept
+
+
+def fitted(texts: Iterable[str], room: float) -> tuple[list[str], int]:
+    """The first of the texts that have ``room`` bytes together, and the number of the others."""
+    kept: list[str] = []
+    left = 0
+    for text in texts:
+        room -= len(text.encode()) + 1
+        if room >= 0 and not left:
+            kept.append(text)
+        else:
+            left += 1
+    return kept, left
+
+
+def folded(title: str, body: str) -> str:
+    """What is shown on a click; the empty lines make it Markdown inside of HTML."""
+    return f"<details><summary>{_inside_html(title)}</summary>\n\n{body}\n\n</details>"
+
+
+def code(text: str, language: str) -> str:
+    """A block of code; its fence is longer than any in it."""
+    runs = [len(run) for run in re.findall("`+", text)]
+    fence = "`" * max(3, 1 + max(runs, default=0))
+    return f"{fence}{language}\n{text.rstrip()}\n{fence}"
+
+
+def _row(cells: Iterable[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _inside_html(text: str) -> str:
+    """A text on one line of HTML."""
+    return escape(" ".join(text.split()), quote=False).replace("@", f"@{JOINER}")
+
+
+ENDINGS = (".csv", ".parquet", ".xlsx")
+SHEET_ROWS = 1_048_575
+"""Rows of a sheet below its head."""
+
+
+def write_frame(
+    path: Path,
+    frame: pd.DataFrame,
+    sheet: str,
+    origin: Mapping[str, str],
+    more: Callable[[Any], None] | None = None,
+) -> None:
+    """Write a table whole, or not at all.
+
+    A workbook has it in ``sheet``, and beside it where it comes from, and what ``more`` puts into
+    the openpyxl workbook; the other kinds have no room for that. Raises CrankcheckError where the
+    system refuses.
+    """
+    ending = path.suffix.lower()
+    if ending == ".csv":
+        write(path, csv(frame))
+    elif ending == ".parquet":
+        write(path, parquet(frame))
+    else:
+        write(path, workbook(frame, sheet, origin, more))
+
+
+def csv(frame: pd.DataFrame) -> str:
+    """The text of a CSV file that holds the frame, without its index."""
+    return frame.to_csv(index=False, lineterminator="\n")
+
+
+def parquet(frame: pd.DataFrame) -> bytes:
+    """The content of a Parquet file that holds the frame, without its index."""
+    buffer = io.BytesIO()
+    frame.to_parquet(buffer, index=False)
+    return buffer.getvalue()
+
+
+def workbook(
+    frame: pd.DataFrame,
+    sheet: str,
+    origin: Mapping[str, str],
+    more: Callable[[Any], None] | None = None,
+) -> bytes:
+    """The content of a workbook: the frame, where it comes from, and what ``more`` puts into it."""
+    facts = {**origin, "crankcheck": crankcheck_version()}
+    buffer = io.BytesIO()
+    import pandas as pd
+
+    with pd.ExcelWriter(buffer, engine="openpyxl") as book:
+        shown = frame.rename(columns=clean)
+        shown.to_excel(book, sheet_name=sheet, index=False, freeze_panes=(1, 1))
+        about = pd.DataFrame({"what": list(facts), "value": [clean(v) for v in facts.values()]})
+        about.to_excel(book, sheet_name="source", index=False)
+        for row in book.sheets[sheet].iter_rows(min_row=2):
+            for cell in row:
+                if isinstance(cell.value, float):
+                    # openpyxl would leave out the 17th digit; the kind stays that of a number.
+                    cell._value = repr(float(cell.value))
+        for row in book.sheets["source"].iter_rows():
+            for cell in row:
+                cell.data_type = "s"  # a text that begins with "=" is no formula
+        if more is not None:
+            more(book.book)
+    return buffer.getvalue()

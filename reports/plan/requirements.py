@@ -1,0 +1,295 @@
+"""Requirements of free motion and of elastic links: segments, springs, and steps that these
+hold."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analytic.free.free_motion import loosened
+from models.errors import CrankcheckError, EngineError, shown
+from models.files.reading import kinds, shipped
+from models.scene import Scene
+from models.scene.cut_links import with_rigid_links
+from models.scene.driver import Controlled
+from reports.judge.tolerance import check_names
+from reports.plan.chosen import chosen_scenes, refuse_unfollowed
+from reports.plan.steps import (
+    FREE_STEP_S,
+    STEPS_PER_TURN,
+    counted_free,
+    positive,
+)
+from reports.way.length import LEAST_STEPS, SEGMENTS, GivenAs, Springs
+from reports.way.way import StudyLinks, way_of
+
+if TYPE_CHECKING:
+    from reports.compare.elastic_truth import ElasticTruth
+
+
+FREE = "free"
+"""The kind of shipped scenes that are let go."""
+LOOK = 1e-3
+"""The part of a run that is integrated to see whether it can be."""
+
+
+def free_names(names: Sequence[str]) -> list[str]:
+    """The names of the scenes that are to be let go; all shipped ones of free motion for none.
+    Raises CrankcheckError where there are none of these."""
+    every = list(names) or list(shipped(FREE))
+    if not every:
+        raise CrankcheckError(f"--free: no scene of kind free; there is {', '.join(kinds())}")
+    return every
+
+
+def scenes_of(names: Sequence[str], *, free: bool) -> list[Scene]:
+    """The scenes of a study, which are all driven, or all let go, with the torque of its controller
+    where that gives way to elastic links. Raises CrankcheckError."""
+    if not free:
+        scenes = chosen_scenes(names)
+        for scene in scenes:
+            refuse_giving_way(scene, "`crankcheck sweep --free` lets it go so, as `verify` does")
+        return scenes
+    scenes = chosen_scenes(free_names(names), check_names)
+    return [loosened(under_control(scene)) for scene in scenes]
+
+
+def gives_way(scene: Scene) -> bool:
+    """Whether its driver is controlled and its links bend, so that it follows its law nearly."""
+    return bool(scene.elastic) and isinstance(scene.driver.law, Controlled)
+
+
+def under_control(scene: Scene) -> Scene:
+    """A scene whose links bend and whose driver is controlled as what engines are given of it: let
+    go, with the torque of the controller as loads; others as they are. Raises CrankcheckError as
+    `analytic.elastic.control.released_under_control`."""
+    if not gives_way(scene):
+        return scene
+    from analytic.elastic.control import released_under_control  # for elastic links alone
+
+    return released_under_control(scene)
+
+
+def refuse_giving_way(scene: Scene, instead: str) -> None:
+    """Refuse a scene whose controlled driver gives way, where turns are asked for; ``instead`` says
+    what takes it. Raises CrankcheckError."""
+    if gives_way(scene):
+        raise CrankcheckError(
+            f"{scene.name}: {', '.join(scene.elastic)} bends, and engines are given it let go, "
+            f"with the torque of its controller: it has no turns; {instead}"
+        )
+
+
+def refuse_unreleased(scene: Scene, duration_s: float) -> None:
+    """Refuse a scene that can not be let go, or not for so long.
+
+    Raises
+    ------
+    CrankcheckError
+        Friction that grows with what a joint bears, a load over time whose table ends before, no
+        mass that moves, a start that can not be assembled or contradicts itself.
+    """
+    from analytic.free.release import release  # slow to import, for free motion alone
+
+    check_names(scene)
+    if scene.coulomb_joints:
+        raise CrankcheckError(
+            f"{scene.name}: friction that grows with what a joint bears "
+            f"({', '.join(scene.coulomb_joints)}) is not taken into free motion; take it out"
+        )
+    for load in scene.loads.values():
+        if load.over == "time":
+            load.magnitude(np.array([0.0, duration_s]))
+    release(with_rigid_links(scene), LOOK * duration_s)
+
+
+def refuse_other_options(scenes: Iterable[Scene], options: Mapping[str, object]) -> None:
+    """Refuse a length that was asked for, by option, where it says nothing of any scene: steps in a
+    turn of what is let go, a duration of what is driven. Raises CrankcheckError."""
+    ways = [way_of(scene) for scene in scenes]
+    for option, value in options.items():
+        if value is not None and not any(option in each.lengths_by for each in ways):
+            ways[0].refuse_length(option)
+
+
+SPRINGS: tuple[Springs, ...] = ("plain", "corrected", "beam")
+MOST_SEGMENTS = 64
+"""Their exact chain takes minutes, and a turn 100 000 steps."""
+SWINGS = 5
+"""Of the slowest elastic link of what is let go, in a run for which no time is asked for."""
+MOST_LOGGED = 720
+"""Samples of a turn of elastic links, whose springs ask for far more steps than anybody looks at;
+or of the whole of what is let go for less than a second."""
+PART = 360
+"""Of which the steps of a turn are a multiple, or those of a whole run that is let go."""
+
+
+def chosen_springs(text: str, option: str = "--springs") -> Springs:
+    """The springs of that name. Raises CrankcheckError for any other."""
+    if text not in SPRINGS:
+        *most, last = SPRINGS
+        words = f"{', '.join(most)} or {last}"
+        raise CrankcheckError(f"{option} {shown(text)}: unknown; use {words}")
+    return text
+
+
+def chosen_segments(count: int | None, option: str = "--segments") -> int:
+    """The number of segments, the usual for None. Raises CrankcheckError for one out of range."""
+    if count is None:
+        return SEGMENTS
+    if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MOST_SEGMENTS:
+        raise CrankcheckError(
+            f"{option}: found {shown(count)}; a link bends with 2 segments or more, and up to "
+            f"{MOST_SEGMENTS} are run"
+        )
+    return count
+
+
+def given_as(study: StudyLinks) -> list[GivenAs]:
+    """All that a study gives elastic links as. Raises CrankcheckError for a number of segments out
+    of range."""
+    counts = [chosen_segments(count, "segments") for count in study.segments or [SEGMENTS]]
+    return [
+        GivenAs(count, springs, _words(count, springs))
+        for springs in dict.fromkeys(study.springs or SPRINGS[:1])
+        for count in dict.fromkeys(counts)
+    ]
+
+
+def _words(count: int, springs: Springs) -> str:
+    if springs == "beam":
+        return f", beam of {count} elements"
+    return f", {count} segments" + f", {springs} springs" * (springs != "plain")
+
+
+def given_of(scenes: Iterable[Scene], segments: int | None, springs: str | None) -> GivenAs:
+    """What the elastic links of scenes are given as. Raises CrankcheckError as `refuse_rigid`,
+    `chosen_segments` and `chosen_springs`."""
+    refuse_rigid(scenes, segments, springs)
+    return GivenAs(chosen_segments(segments), chosen_springs(springs or "plain"))
+
+
+def rigid_alone(what: str) -> Callable[[Scene], None]:
+    """A check of scenes for a command that has no elastic links; it raises CrankcheckError."""
+
+    def check(scene: Scene) -> None:
+        if scene.elastic:
+            free = "--free " * (scene.is_free or gives_way(scene))
+            raise CrankcheckError(
+                f"{scene.name}: {', '.join(scene.elastic)} bends, and `crankcheck {what}` takes "
+                f"rigid links; `crankcheck sweep {scene.name} {free}--segments 4,8,16 -o DIR` "
+                "finds the cheapest settings of elastic ones, and `verify` judges them"
+            )
+        refuse_unfollowed(scene)
+
+    return check
+
+
+def cut_scene(scene: Scene, given: GivenAs) -> Scene:
+    """What an engine is given of a scene with elastic links. Raises CrankcheckError."""
+    from reports.compare.elastic_truth import cut  # where links bend alone
+
+    return cut(scene, given.segments, given.springs).given
+
+
+def logged_every(steps: float) -> int:
+    """Every how manieth of so many steps is logged."""
+    return max(1, math.ceil(steps / MOST_LOGGED - 1e-9))
+
+
+def refuse_rigid(scenes: Iterable[Scene], count: object, springs: object) -> None:
+    """Refuse what is asked of segments, where no scene has any. Raises CrankcheckError."""
+    if any(scene.elastic for scene in scenes):
+        return
+    for option, given in (("--segments", count), ("--springs", springs)):
+        if given is not None:
+            raise CrankcheckError(
+                f"{option}: it is of elastic links, and no scene has one; leave {option} out"
+            )
+
+
+def refuse_unelastic(
+    truth_of: Callable[[Scene, GivenAs], ElasticTruth], scene: Scene, given: GivenAs
+) -> None:
+    """Refuse elastic links whose motion is not known, by what they start from.
+
+    Raises
+    ------
+    CrankcheckError
+        A link that stretches, which segments do not; a resonance, next to which no periodic motion
+        is found.
+    """
+    try:
+        truth = truth_of(scene, given)
+    except EngineError:
+        return  # a row with its reason
+    truth.look()
+
+
+def held_steps(scene: Scene, segments: int, springs: Springs) -> float:
+    """Steps in a turn that explicit methods hold so many segments with, at least the usual, which
+    is what the implicit ones of engines that have beams are given."""
+    if springs == "beam":
+        return float(STEPS_PER_TURN)
+    needed = scene.driver.law.period_s * _held_steps_s(scene, segments, springs)
+    return max(STEPS_PER_TURN, float(PART * math.ceil(needed / PART)))
+
+
+def _held_steps_s(scene: Scene, segments: int, springs: Springs) -> float:
+    """Steps in a second that explicit methods hold so many segments with; 0 where a link stretches
+    alone, and is no chain of them."""
+    from analytic.elastic.discretisation import Segments
+    from analytic.elastic.elastic_motion import fastest_rad_s
+    from reports.compare.elastic_truth import STEADY
+
+    links = scene.elastic.values()
+    if not all(link.bends for link in links):
+        return 0.0
+    return fastest_rad_s(scene, Segments(segments, springs == "corrected")) / STEADY
+
+
+def counted_released(
+    scene: Scene,
+    dt_s: float | None,
+    duration_s: float | None,
+    segments: int,
+    springs: Springs,
+    *,
+    every: int = 1,
+    least: int = LEAST_STEPS,
+) -> tuple[float, int]:
+    """Step [s] and number of steps for elastic links that are let go, as of `counted_free`; for a
+    few swings of the slowest link, and by steps that hold the segments, if nothing else is asked
+    for. Raises CrankcheckError as that."""
+    if duration_s is not None:
+        lasts_s = positive("--duration", duration_s, "seconds, such as 1")
+    else:
+        lasts_s = few_swings_s(scene)
+    if dt_s is None:
+        needed = lasts_s * max(_held_steps_s(scene, segments, springs), 1.0 / FREE_STEP_S)
+        dt_s = lasts_s / (PART * math.ceil(needed / PART))
+    return counted_free(scene, dt_s, lasts_s, every=every, least=least)
+
+
+def few_swings_s(scene: Scene) -> float:
+    """For how long elastic links are let go if nothing else is asked for [s]: what rings is
+    followed through all of its swings, so that the truth of a longer time takes as much longer."""
+    from analytic.elastic.natural import lowest_rad_s
+
+    swings_s = SWINGS * math.tau / lowest_rad_s(scene)
+    return min(scene.driver.law.period_s, float(f"{swings_s:.2g}"))
+
+
+def shortened_note(scene: Scene, lasts_s: float) -> str:
+    """What is said of a run of elastic links that ends before the scene does, as nothing else was
+    asked for; "" where it does not."""
+    whole_s = scene.driver.law.period_s
+    if few_swings_s(scene) >= whole_s or not math.isclose(lasts_s, few_swings_s(scene)):
+        return ""
+    return (
+        f"{scene.name}: let go for {lasts_s:.3g} s of its {whole_s:.4g} s, {SWINGS} swings of its "
+        "slowest elastic link; --duration takes more, whose truth takes as much longer"
+    )

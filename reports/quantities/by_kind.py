@@ -1,0 +1,289 @@
+"""What is compared of free motion alone: its phase, its geometry, and what it has to conserve.
+
+Errors are shares of the largest deflection of the reference over the run (``D``), of all links: a
+link that passes through its straight line is as hard on an engine there as elsewhere.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from models.motion import Motion
+from models.scene import GROUND, Scene
+from models.scene.driver import driver_place
+from reports.quantities.quantity import Criterion, Measure, Quantity, Series, Tolerance, every_place
+from sim.engine import Run
+
+
+def _driver(motion: Motion | None, scene: Scene) -> Series:
+    place = driver_place(scene, motion) if motion else None
+    return {} if place is None else {scene.driver.name: place / scene.driver_arm_m}
+
+
+def _driver_bound(scene: Scene, reference: Motion) -> Series:
+    bound, driver = reference.bound, scene.driver
+    if bound is None:
+        return {}
+    if driver.slider is not None:
+        slider = bound.sliders.get(driver.slider)
+        return {driver.name: slider.displacement / scene.driver_arm_m} if slider else {}
+    links = [bound.links.get(name) for name in (driver.link, driver.base) if name != GROUND]
+    if None in links:
+        return {}
+    return {driver.name: np.sum([link.theta for link in links if link], axis=0)}
+
+
+PHASE = Quantity(
+    name="phase",
+    role="free",
+    head="phase\n/ G",
+    measures=(
+        Measure(
+            body_kind="driver",
+            column="phase_error_rad",
+            unit="rad",
+            share="rad",
+            scale=lambda scene, reference: 1.0,
+            truth=lambda scene, reference: _driver(reference, scene),
+            logged=lambda scene, run: _driver(run.motion, scene),
+            bound=_driver_bound,
+        ),
+    ),
+    criteria=(
+        Criterion(
+            "CC127",
+            "phase",
+            "Let go, a mechanism that is a little too fast or too slow is ever further from where "
+            "it should be. The driver's angle is held to the integrated one at the same time, over "
+            "the sensitivity of the motion: what a small change of its start has grown by.",
+            "Shorten the step (--dt), or take an integrator of higher order, and look at what "
+            "damps the joints.",
+            short="phase",
+            diagram="phase: the driver's angle over the sensitivity",
+            tolerance=Tolerance(
+                "Second order, for the longest while: a loss of energy makes an error of phase "
+                "that grows with the square of time, and the sensitivity with time alone.",
+                cap=0.1,  # IFToMM's class of low precision, whatever the step
+                coefficient=6.0,
+                power=1.0,
+                lasting=1.2,
+                drifting=0.7,
+                opening=0.5,
+            ),
+        ),
+    ),
+)
+GEOMETRY = Quantity(
+    name="geometry",
+    role="free",
+    head="geom.\nat phi",
+    measures=(
+        every_place("link", "geometry_angle_error_rad"),
+        every_place("slider", "geometry_displacement_error_m"),
+        every_place("point", "geometry_position_error_m"),
+    ),
+    criteria=(
+        Criterion(
+            "CC128",
+            "geometry",
+            "All places at the angle that the run's own coordinate has: a linkage that has come "
+            "open is told from one whose phase has run away.",
+            "Stiffen the loop (MuJoCo: solref, solimp; pymunk: iterations, error_bias), or shorten "
+            "the step.",
+            short="geom",
+            diagram="geometry at the run's own angle",
+            tolerance=Tolerance(
+                "A step moves the pins along tangents, which leaves an arc of step^2/2 times the "
+                "curvature to be closed; a dyad passes it on enlarged by 1/sine of its "
+                "transmission angle.",
+                cap=2e-2,
+                coefficient=0.8,
+                power=1.0,
+                conditioned=True,
+                closes=True,
+            ),
+        ),
+    ),
+)
+
+
+def _nothing(scene: Scene, of: Motion | Run) -> Series:
+    return {}
+
+
+def _drift(column: str, unit: str, share: str) -> Measure:
+    """One number of a whole run, which no series of the log has."""
+    return Measure(
+        body_kind="mechanism",
+        column=column,
+        unit=unit,
+        share=share,
+        scale=lambda scene, reference: 1.0,
+        truth=_nothing,
+        logged=_nothing,
+    )
+
+
+ENERGY = Quantity(
+    name="energy",
+    role="free",
+    head="energy\n/ T",
+    measures=(_drift("energy_drift_j", "J", "T"),),
+    criteria=(
+        Criterion(
+            "CC129",
+            "energy drift",
+            "What the energy of the engine has drifted by, less the work of loads and dampers: the "
+            "mean over the last while less that over the first, as a share of the largest kinetic "
+            "energy. An offset that comes and goes with the motion is none.",
+            "Shorten the step (--dt); look for what damps or drives the bodies unasked.",
+            short="drift",
+            diagram="drift of energy",
+            tolerance=Tolerance(
+                "Joints that are closed by impulses, or by springs with dampers, are late by the "
+                "arc of a step: by its work the energy is off, of second order, and loses a part "
+                "at every step, of third.",
+                cap=0.1,
+                arc=4.0,
+                late=0.5,
+            ),
+        ),
+    ),
+)
+MOMENTUM = Quantity(
+    name="momentum",
+    role="free",
+    measures=(_drift("momentum_drift_kg_m2_s", "kg m^2/s", "of the largest"),),
+    criteria=(
+        Criterion(
+            "CC130",
+            "momentum drift",
+            "Without weight and loads, a mechanism that is pinned to the ground at one point keeps "
+            "its angular momentum about that point.",
+            "Look for damping in the pin, or for what acts from outside unasked.",
+            short="mom",
+            tolerance=Tolerance(
+                "Pins exert no moment about themselves, at any step: what is left is rounding, and "
+                "the arc of a step.",
+                cap=0.1,
+                coefficient=10.0,
+            ),
+        ),
+    ),
+)
+
+
+LEAST = 1e-9
+"""The least deflection that errors are shares of, over the longest link: below it a link is rigid
+to an engine, whose joints are no nearer."""
+
+
+def largest_deflection(scene: Scene, reference: Motion) -> float:
+    """The largest deflection of the middle of any elastic link over the run [m]."""
+    sizes = (float(np.max(np.abs(each), initial=0.0)) for each in _middles(reference).values())
+    return max(*sizes, LEAST * scene.longest_m, 0.0)
+
+
+def _middles(motion: Motion | None) -> Series:
+    return {n: own.middle for n, own in motion.elastic.items()} if motion else {}
+
+
+def _extensions(motion: Motion | None) -> Series:
+    return {n: own.extension for n, own in motion.elastic.items()} if motion else {}
+
+
+def _middle(column: str) -> Measure:
+    return Measure(
+        body_kind="link",
+        column=column,
+        unit="m",
+        share="D",
+        scale=largest_deflection,
+        truth=lambda scene, reference: _middles(reference),
+        logged=lambda scene, run: _middles(run.motion),
+    )
+
+
+BENT = Tolerance(
+    "What joints are off by, step^2 of the longest link at the curvature, over the deflection (of "
+    "a beam of an engine's own, which has none, step^2 of itself); "
+    "what a spring's swing of r times the driver's speed is off by, (r step)^2/24 of its phase in "
+    "every swing; and, of what is held to the beam, what the exact chain of as many segments is "
+    "off it by, and what the beam itself is.",
+    cap=0.2,  # a fifth of the largest deflection: another stiffness, however coarse the chain
+    coefficient=0.5,
+    power=1.0,
+    conditioned=True,
+    bends=True,
+)
+CURE = (
+    "Shorten the step (--steps-per-turn); look at the rates of the springs between segments, and "
+    "at what else bends or damps."
+)
+DEFLECTION = Quantity(
+    name="deflection",
+    role="elastic",
+    head="beam\n/ D",
+    measures=(_middle("deflection_error_m"),),
+    criteria=(
+        Criterion(
+            "CC131",
+            "deflection",
+            "How far the middle of each elastic link is from the line between its pins, against "
+            "the beam with foreshortening, at the commanded time.",
+            f"{CURE} More segments (--segments) come nearer to the beam, as 1/n^2.",
+            short="bend",
+            diagram="deflection of elastic links",
+            tolerance=BENT,
+        ),
+    ),
+)
+SEGMENTS = Quantity(
+    name="segments",
+    role="elastic",
+    head="engine\n/ D",
+    measures=(_middle("segments_error_m"),),
+    criteria=(
+        Criterion(
+            "CC132",
+            "deflection of segments",
+            "The same against the exact chain of as many segments, a multibody without an engine: "
+            "what the engine itself is off by.",
+            CURE,
+            short="chain",
+            diagram="deflection of segments",
+            tolerance=BENT,
+        ),
+    ),
+)
+EXTENSION = Quantity(
+    name="extension",
+    role="elastic",
+    head="extens.\n/ L",
+    measures=(
+        replace(
+            _middle("extension_error_m"),
+            share="L",
+            scale=lambda scene, reference: scene.longest_m,
+            truth=lambda scene, reference: _extensions(reference),
+            logged=lambda scene, run: _extensions(run.motion),
+        ),
+    ),
+    criteria=(
+        Criterion(
+            "CC133",
+            "extension",
+            "By how much the pins of each elastic link are further apart, or nearer, than at rest: "
+            "a bent link is shorter.",
+            CURE,
+            short="ext",
+            tolerance=Tolerance(
+                "Of places: the pins are off by step^2 at the curvature, each.",
+                cap=2e-2,
+                coefficient=2.0,
+                power=1.0,
+                conditioned=True,
+            ),
+        ),
+    ),
+)

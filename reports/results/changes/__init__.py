@@ -1,1 +1,0 @@
-"""Stored runs beside each other: what two of them say of the same cell, and what changed."""

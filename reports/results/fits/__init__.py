@@ -1,1 +1,0 @@
-"""Reading a line of cells that differ only in their step: order, floor, and where it breaks."""
