@@ -1,5 +1,5 @@
-"""The free motion of a mechanism: of one freedom in its driver's angle or the coordinate in its place,
-of several or without a closed form by the equations of motion of all bodies.
+"""The free motion of a mechanism: of one freedom in its driver's angle, or the coordinate in its
+place; of several, or without a closed form, by the equations of motion of all bodies.
 """
 
 from collections.abc import Mapping

@@ -20,7 +20,7 @@ from reports.drawing.moving import FARTHEST, INSTANTS, drawing, drawn_links, mov
 from reports.logs.channel import Reading
 from reports.own_log.judged import JudgedLog, log_rows
 from reports.page.log_curves import DrawnChannel, turn_s
-from reports.page.log_placing import LoggedBodies, Placing
+from reports.page.log_placing import LogPlacement, Placing
 from reports.page.sections.motion import scene_words
 from reports.page.sections.section import Section
 
@@ -140,7 +140,7 @@ class LoggedBodies:
     the angles of links (T,) [rad], and in words, of each body that is drawn, from what."""
 
     scene: Scene
-    pieces: tuple[LoggedBodies, ...]
+    pieces: tuple[LogPlacement, ...]
     turned: Mapping[str, Array]
     origins: Mapping[str, str]
 
@@ -162,7 +162,7 @@ class LoggedBodies:
             for piece in self.pieces
         ]
 
-    def _rows(self, piece: LoggedBodies, samples: int) -> Array:
+    def _rows(self, piece: LogPlacement, samples: int) -> Array:
         nowhere = np.full((samples, 2), np.nan)
         places = [piece.off.get(name, nowhere).T for name in moving_points(self.scene)]
         angles = [[self.turned.get(name, np.zeros(samples))] for name in drawn_links(self.scene)]

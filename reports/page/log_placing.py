@@ -29,7 +29,7 @@ Off = dict[str, Array]
 
 
 @dataclass(frozen=True)
-class LoggedBodies:
+class LogPlacement:
     """Links, blocks (by their points) and lone points that are drawn with the same places: how far
     points are ``off`` the truth (T, 2) [m]. ``apart`` is a link that has ends of its own."""
 
@@ -166,16 +166,16 @@ class Placing:
             if name not in self.scene.ground
         }
 
-    def pieces(self) -> Iterator[LoggedBodies]:
+    def pieces(self) -> Iterator[LogPlacement]:
         """What goes together first, then the links with ends of their own."""
         joined = tuple(self.joined)
         blocks = tuple(s.point for s in self.scene.sliders.values() if s.point in self.off)
         drawn = {*blocks, *(point for name in joined for point in self.scene.links[name].points)}
         marks = tuple(name for name in self.marks if name not in drawn)
         if joined or blocks or marks:
-            yield LoggedBodies("the log", joined, blocks, marks, False, self.off)
+            yield LogPlacement("the log", joined, blocks, marks, False, self.off)
         for name, ends in self.ends.items():
-            yield LoggedBodies(f"{name} by its angle", (name,), (), (), True, ends)
+            yield LogPlacement(f"{name} by its angle", (name,), (), (), True, ends)
 
 
 def _swung(arm: Array, angle: Array) -> Array:

@@ -14,7 +14,7 @@ from models.scene import Scene
 from reports.logs.map_file import ChannelTable, Map
 from reports.page.log_curves import DrawnChannel, curves, extreme_rows, turn_s
 from reports.page.log_motion import LoggedBodies, logged_bodies, truth_of_all
-from reports.page.log_placing import LoggedBodies
+from reports.page.log_placing import LogPlacement
 from tests.reports.page.judged_logs import SCENE, TURN_S, angles, judged, motion_of, points
 
 MOTION = motion_of()
@@ -164,7 +164,7 @@ def log_of(
     return logged_bodies(one, truth_of_all(one), at if scene is SCENE else time_s[::36])
 
 
-def far(piece: LoggedBodies, point: str) -> Array:
+def far(piece: LogPlacement, point: str) -> Array:
     return np.linalg.norm(piece.off[point], axis=1)
 
 
