@@ -1,1 +1,1 @@
-"""Why the channels of a user's own log are off."""
+"""Reasons why the channels of a user's own log are off."""

@@ -1,4 +1,4 @@
-"""Accounts of errors by hypotheses: their cost, which together tell most, and their words."""
+"""Accounts of errors by hypotheses: their cost, the best choice among them, and their words."""
 
 from __future__ import annotations
 
@@ -15,25 +15,24 @@ from reports.logs.channel import Channel
 from reports.output.numbers import duration, listed
 
 CAUSE, CHOICE, NUMBER = 0.5, 0.5, 1.0
-"""What it takes to believe that there is a cause at all, that it is one of several, and that a
-number in it is what it is, in powers of ten of what is left of an error: a cause with one more
-number has to leave ten times less."""
+"""Cost of a cause at all, of a choice among several causes, and of one fitted number, in powers of
+ten of the remaining error: a cause with one more number has to leave ten times less."""
 
 BOUNDED = 0.05
-"""What counts as left of an error that has the size and the shape that it may have from some fault,
-where that does not tell each number."""
+"""Part of an error that counts as left where the error has the size and shape that a fault may give
+it, but not each number follows."""
 
 
 @dataclass(frozen=True)
 class Account:
-    """What one hypothesis says.
+    """Explanation of errors by one hypothesis.
 
-    ``rests`` is what it leaves of each error that it explains, by column, and ``lefts`` the largest
-    error that is left over the one that there was. ``phrase`` has ``{who}`` for the channels, and
-    verbs as ``{is}``, ``{has}``, ``{belongs}`` or ``{s}``; without them it is about the log as a
-    whole, and accounts with the same phrase are told as one. ``corrections`` is what to write in
-    the map, by column. A ``world`` is what the whole log is of, if this is so. ``order`` is the
-    place of the hypothesis in its list.
+    ``rests`` is the remaining part of each explained error, by column, and ``lefts`` the largest
+    remaining error over the original one. ``phrase`` has ``{who}`` for the channels, and verbs as
+    ``{is}``, ``{has}``, ``{belongs}`` or ``{s}``; without them it is about the log as a whole, and
+    accounts with the same phrase are merged. ``corrections`` are the entries for the map, by
+    column. A ``world`` holds for the whole log if the account is true. ``order`` is the place of
+    the hypothesis in its list.
     """
 
     name: str
@@ -51,19 +50,19 @@ class Account:
 
 
 LEAST_REST = 1e-4
-"""What is left of an error by less than this part is nothing."""
+"""A smaller remaining part of an error counts as nothing."""
 UNTOLD = 2.0
-"""What it costs to leave a channel unexplained, in powers of ten of what is left of its error."""
+"""Cost of a channel without explanation, in powers of ten of its remaining error."""
 ORDER = 0.01
-"""What a place farther down the list of hypotheses costs: accounts that leave the same are many."""
+"""Cost of one place farther down the list of hypotheses: many accounts leave the same."""
 
 EQUAL = 0.3
-"""What is left of an error by more or less than this may be the same."""
+"""Remaining errors that differ by no more, in powers of ten, count as equal."""
 
 
 def chosen(accounts: Sequence[Account], columns: Sequence[str]) -> list[Account]:
-    """The accounts, each of the columns that it tells best, that leave least of ``columns`` for
-    what it costs to believe them; the world is one, so that at most one is of another."""
+    """Return the accounts that leave least of ``columns`` for their cost, each with the columns
+    that it explains best. At most one account is of another world, as a log has one."""
     if not accounts or not columns:
         return []
     table = _AccountTable.of(accounts, columns)
@@ -82,7 +81,7 @@ def chosen(accounts: Sequence[Account], columns: Sequence[str]) -> list[Account]
 
 
 class _AccountTable:
-    """What each account (a,) leaves of each column (c,), in powers of ten, and what it costs."""
+    """Remaining error of each account (a,) in each column (c,), in powers of ten, and its cost."""
 
     def __init__(self, left: Array, cost: Array) -> None:
         self.left, self.cost = left, cost
@@ -98,17 +97,17 @@ class _AccountTable:
         return _AccountTable(left, np.array([account.cost for account in accounts]))
 
     def total(self, some: Sequence[int]) -> float:
-        """What some accounts leave and cost together."""
+        """Return the remaining error and the cost of some accounts together."""
         return float(self._least(some).sum() + self.cost[list(some)].sum())
 
     def _least(self, some: Sequence[int]) -> Array:
-        """What is left of each column by the account of some that leaves least."""
+        """Return the least error of each column that one of some accounts leaves."""
         least: Array = self.left[list(some)].min(axis=0, initial=UNTOLD)
         return least
 
     def owner(self, some: Sequence[int], worlds: Sequence[int], place: int) -> int | None:
-        """The account of some that leaves least of a column, one of a world where that leaves about
-        as little; None where none explains it."""
+        """Return the account that leaves least of a column, preferably an account of a world if it
+        leaves about as little; None where none explains the column."""
 
         def left(number: int) -> float:
             return float(self.left[number, place]) - (EQUAL if number in worlds else 0.0)
@@ -117,8 +116,8 @@ class _AccountTable:
         return None if best is None or self.left[best, place] >= UNTOLD else best
 
     def descended(self, start: Sequence[int], plain: Sequence[int]) -> list[int]:
-        """Accounts, those of the start among them, from which no account that is added, left out or
-        put in the place of another lowers the total."""
+        """Return accounts, including the start, whose total no addition, removal or replacement of
+        one account lowers."""
         some, total = list(start), self.total(start)
         while True:
             kept = [some, *([n for n in some if n != out] for out in some if out not in start)]
@@ -129,7 +128,7 @@ class _AccountTable:
             some, total = best, self.total(best)
 
     def _with_best(self, base: Sequence[int], plain: Sequence[int]) -> list[list[int]]:
-        """Accounts and the one besides that lowers their total most."""
+        """Return the accounts with the further account that lowers their total most."""
         if not plain:
             return []
         gained = np.minimum(self.left[list(plain)], self._least(base)).sum(axis=1)
@@ -138,7 +137,7 @@ class _AccountTable:
 
 
 NAMED = 3
-"""Channels that are named each; of more the columns are listed."""
+"""Channels that are named one by one; longer lists show columns only."""
 SHOWN = 8
 CLASSES: Mapping[str, Callable[[Channel], bool]] = {
     "channels": lambda channel: True,
@@ -151,11 +150,11 @@ CLASSES: Mapping[str, Callable[[Channel], bool]] = {
     "lengths": lambda channel: channel.kind.dimension == "length",
     "lengths and their rates": lambda channel: channel.kind.body_kind != "link",
 }
-"""Classes of channels, by what they are called together."""
+"""Classes of channels, by their common name."""
 
 
 def who(channels: Sequence[Channel], every: Sequence[Channel]) -> str:
-    """Channels in a sentence; a class of ``every`` channel of the log by its name."""
+    """Return channels as words; a class of ``every`` channel of the log by its name."""
     columns = f"(columns {few([channel.column for channel in channels], SHOWN)})"
     chosen = {channel.column for channel in channels}
     for name, belongs in CLASSES.items():
@@ -167,7 +166,7 @@ def who(channels: Sequence[Channel], every: Sequence[Channel]) -> str:
 
 
 def sentence(phrase: str, channels: Sequence[Channel], every: Sequence[Channel]) -> str:
-    """A phrase with its channels and the verbs that go with them."""
+    """Return a phrase with its channels and the matching forms of its verbs."""
     many = len(channels) > 1
     verbs = {"is": "are", "has": "have", "was": "were", "does": "do", "s": ""}
     words = {one: other if many else one for one, other in verbs.items()}
@@ -184,7 +183,7 @@ def sentence(phrase: str, channels: Sequence[Channel], every: Sequence[Channel])
 
 
 def later(by_s: float, step_s: float) -> str:
-    """A delay in samples and seconds: 0.50 samples (0.69 ms) later."""
+    """Return a delay in samples and seconds: 0.50 samples (0.69 ms) later."""
     samples = abs(by_s) / step_s
     digits = 2 if samples < 100 else 0
     direction = "later" if by_s > 0.0 else "earlier"
@@ -192,12 +191,12 @@ def later(by_s: float, step_s: float) -> str:
 
 
 def number(value: float, digits: int = 4) -> str:
-    """A number with few digits, 0 where it is nothing."""
+    """Return a number with few digits."""
     return f"{value:.{digits}g}"
 
 
 def change(now: float, before: float) -> str:
-    """How much more a number is than another one that is not 0: +1 %, -120 ppm."""
+    """Return the excess of a number over another that is not 0: +1 %, -120 ppm."""
     share = now / before - 1.0
     if abs(share) < 0.9995e-3:
         return f"{1e6 * share:+.3g} ppm"
@@ -207,18 +206,18 @@ def change(now: float, before: float) -> str:
 ROUNDS = 30
 HALVINGS = 5
 SETTLED = 1e-4
-"""A round that takes less of what is left than this part of it is the last one."""
+"""The last round is the one that reduces the residual by less than this part."""
 
 Residual = Callable[[Array], Array]
-"""Of parameters (p,) the residuals (n,); it raises CrankcheckError where there are none."""
+"""Function from parameters (p,) to residuals (n,); raises CrankcheckError where there are none."""
 
 
 def fitted(
     residual: Residual, start: Sequence[float], delta: Sequence[float], rounds: int = ROUNDS
 ) -> Array | None:
-    """The parameters (p,) near ``start`` that leave the least, with differences of ``delta``, after
-    at most so many rounds; a step that leaves more is halved. None where there are no residuals at
-    the start."""
+    """Return the parameters (p,) near ``start`` with the least residual, by differences of
+    ``delta``, after at most ``rounds`` rounds. A step that increases the residual is halved. None
+    where there are no residuals at the start."""
     at = np.array(start, dtype=float)
     left = _at(residual, at)
     if left is None:
@@ -243,7 +242,7 @@ def fitted(
 
 
 def _slopes(residual: Residual, at: Array, left: Array, delta: Sequence[float]) -> Array | None:
-    """The change of the residuals (n, p) with each parameter."""
+    """Return the change of the residuals (n, p) with each parameter."""
     columns = []
     for number, each in enumerate(delta):
         moved = at.copy()
@@ -256,7 +255,7 @@ def _slopes(residual: Residual, at: Array, left: Array, delta: Sequence[float]) 
 
 
 def _at(residual: Residual, parameters: Array) -> Array | None:
-    """The residuals; None where there are none, or numbers that are none."""
+    """Return the residuals; None where there are none, or some are not finite."""
     try:
         found = residual(parameters)
     except CrankcheckError:

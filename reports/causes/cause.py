@@ -1,4 +1,4 @@
-"""A log that is off, and what explains that it is."""
+"""A log with errors over its limits, and the causes that explain them."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from reports.logs.channel import Channel, OwnLog, Reading
 
 @dataclass(frozen=True)
 class LogCase:
-    """A log beside the truth of its scene as it is driven, with what the error of each channel may
-    be [SI], by column; what has no limit is not judged."""
+    """Log beside the reference of its scene as driven, with the limit of the error of each channel
+    [SI], by column. A channel without a limit is not judged."""
 
     log: OwnLog
     truth: Truth
@@ -26,29 +26,29 @@ class LogCase:
 
     @property
     def readings(self) -> tuple[Reading, ...]:
-        """All readings, those of further bodies' copies of a point as well."""
+        """All readings, including further bodies' copies of a point."""
         return (*self.log.readings, *self.log.copies)
 
     @cached_property
     def excerpts(self) -> Mapping[str, Excerpt]:
-        """The excerpt of each channel that is judged, by column. Raises CrankcheckError where there
-        is no reference."""
+        """The excerpt of each judged channel, by column. Raises CrankcheckError where there is no
+        reference."""
         return excerpts(self.readings, self.truth, self.limits)
 
     @property
     def out(self) -> tuple[Reading, ...]:
-        """The readings that are further off than they may be."""
+        """The readings with errors over their limits."""
         return tuple(excerpt.reading for excerpt in self.excerpts.values() if excerpt.out)
 
 
 @dataclass(frozen=True)
 class Cause:
-    """What explains that some channels are off, or late though they are not off.
+    """Cause of errors, or of a delay within the limits, in some channels.
 
-    ``text`` names the fault, the channels and the numbers. ``correction`` is what to write in the
-    map for each of ``columns``, and ``of_column`` where that is something else for each of them;
-    both are empty where no map mends the log. ``left`` is the largest error that remains, over the
-    one that there was, in the channel where that is most.
+    ``text`` names the fault, the channels and the numbers. ``correction`` is the map entry for each
+    of ``columns``, and ``of_column`` the entries where they differ by column; both are empty where
+    no map mends the log. ``left`` is the largest remaining error over the original one, in the
+    channel where that ratio is largest.
     """
 
     name: str
@@ -61,28 +61,28 @@ class Cause:
 
 Rows = NDArray[np.intp]
 MOST = 1500
-"""Rows that hypotheses are tried on."""
+"""Rows on which hypotheses are tried."""
 GOLDEN = 0.6180339887498949
 EXPLAINED = 0.1
-"""The part of an error that may be left by what explains it."""
+"""Part of an error that an explanation may leave."""
 NOUGHT = 1e-3
-"""What is less than this part of its limit is as good as 0."""
+"""A value below this part of its limit counts as 0."""
 TIGHT = 0.02
-"""The part that may be left by what is like many other things, unless that is noise."""
+"""Part that an unspecific explanation may leave, unless the rest is noise."""
 ROUGH = 1.0
-"""The mean square of the steps of a series over its own, from which on it is noise: 2 where no
-sample says anything of the next one (von Neumann, Ann. Math. Stat. 12, 1941)."""
+"""Mean square of the steps of a series over its own, above which it is noise: 2 where no sample
+predicts the next one (von Neumann, Ann. Math. Stat. 12, 1941)."""
 BROUGHT_WITHIN = 1.0 / 3.0
-"""The part that may be left where the channel is within its limit then."""
+"""Part that may be left where the channel is then within its limit."""
 
 
 @dataclass(frozen=True)
 class Excerpt:
-    """Readings of a channel (n,) at ``rows`` of the log, with the instants [s] that they belong to,
-    what was ``expected`` of them, and their ``error`` [SI], 0 where a number is missing.
+    """Readings of a channel (n,) at ``rows`` of the log, with their instants [s], their
+    ``expected`` values (the reference), and their ``error`` [SI], 0 where a number is missing.
 
-    ``worst`` is the largest error in the whole log, and ``over`` counts the readings over
-    ``limit`` there.
+    ``worst`` is the largest error in the whole log, and ``over`` counts the readings over ``limit``
+    there.
     """
 
     reading: Reading
@@ -101,47 +101,47 @@ class Excerpt:
 
     @property
     def out(self) -> bool:
-        """Whether a reading is further off than it may be."""
+        """True if a reading is off by more than the limit."""
         return self.worst > self.limit
 
     def beside(self, expected: Array, values: Array | None = None) -> Array:
-        """The error of the readings, or of other ``values``, against what else may be expected."""
+        """Return the error of the readings, or of other ``values``, against another reference."""
         return _finite(self.channel.error(self.values if values is None else values, expected))
 
     def in_world(self, expected: Array) -> Excerpt:
-        """The same readings where something else is expected; ``worst`` is that of its rows."""
+        """Return the same readings against another reference; ``worst`` is that of these rows."""
         error = self.beside(expected)
         worst, over = float(np.max(np.abs(error))), int(np.sum(np.abs(error) > self.limit))
         return replace(self, expected=expected, error=error, worst=worst, over=over)
 
     def part(self, rows: Rows) -> Excerpt:
-        """Some of its rows, by their places in the excerpt."""
+        """Return some of the rows, by their places in the excerpt."""
         names = ("rows", "values", "instants", "expected", "error")
         return replace(self, **{name: getattr(self, name)[rows] for name in names})
 
     @cached_property
     def size(self) -> CauseSize:
-        """What is left is over it: the error, or the signal where that is less."""
+        """Scale of remaining errors: the size of the error, or of the signal where that is less."""
         return self.size_beside(self.expected)
 
     def size_beside(self, expected: Array) -> CauseSize:
-        """The same where something else is expected, as an explanation has to tell the readings,
-        and not merely to be nearer than what is far off. A signal of nothing bounds nothing."""
+        """Return the scale for another reference: an explanation has to predict the readings, and
+        not merely to be nearer than a large error. A signal of 0 sets no bound."""
         return CauseSize.of(self.error).least(CauseSize.of_signal(expected, self.nothing))
 
     @property
     def nothing(self) -> float:
-        """What is as good as 0 [SI]."""
+        """Magnitude that counts as 0 [SI]."""
         return NOUGHT * self.limit if math.isfinite(self.limit) else 0.0
 
     @property
     def nought(self) -> bool:
-        """Whether nothing but 0 is expected, by what counts."""
+        """True if the reference is 0, to within the magnitude that counts."""
         return CauseSize.of(self.expected[np.isfinite(self.expected)]).largest <= self.nothing
 
     def rest(self, error: Array, expected: Array | None = None) -> float:
-        """What is left of the error where it is ``error`` instead, and something else ``expected``:
-        the largest or the root mean square, whichever is more; no number is infinitely much."""
+        """Return the remaining part of the error if it is ``error``, against another reference
+        ``expected``: by maximum or root mean square, whichever is more; infinite if missing."""
         left, size = (
             CauseSize.of(error),
             self.size if expected is None else self.size_beside(expected),
@@ -150,32 +150,32 @@ class Excerpt:
         return max(part / whole if whole > 0.0 else np.inf for part, whole in pairs)
 
     def left(self, error: Array) -> float:
-        """The largest error that is left, over the one that there was."""
+        """Return the largest remaining error over the original one."""
         return CauseSize.of(error).largest / max(
             CauseSize.of(self.error).largest, np.finfo(float).tiny
         )
 
     def explained(self, error: Array, expected: Array | None = None) -> bool:
-        """Whether so little is left that the error is explained."""
+        """True if the remaining error is small enough for an explanation."""
         rest = self.rest(error, expected)
         within = CauseSize.of(error).largest <= self.limit
         return rest <= (BROUGHT_WITHIN if within else EXPLAINED)
 
     def told_apart(self, error: Array) -> bool:
-        """Whether what is left is next to nothing, or noise, so that what leaves it is not merely
-        like what there is."""
+        """True if the residual is negligible or noise, so that the explanation is not a mere
+        likeness."""
         return self.rest(error) <= TIGHT or _rough(error)
 
 
 def _rough(series: Array) -> bool:
-    """Whether a series is noise, of which no sample says anything of the next."""
+    """True if a series is noise: no sample predicts the next."""
     centred = series - np.mean(series)
     return bool(np.sum(np.diff(series) ** 2) > ROUGH * np.sum(centred**2))
 
 
 @dataclass(frozen=True)
 class CauseSize:
-    """How large a series is: its largest magnitude and its root mean square."""
+    """Size of a series: its largest magnitude and its root mean square."""
 
     largest: float
     rms: float
@@ -189,8 +189,8 @@ class CauseSize:
 
     @staticmethod
     def of_signal(series: Array, nought: float = 0.0) -> CauseSize:
-        """That of how a series moves, or of its number where it stays; no bound where that is no
-        more than ``nought``."""
+        """Return the size of the motion of a series, or of its value where it is constant; infinite
+        where the series is at most ``nought``."""
         series = series[np.isfinite(series)]
         whole = CauseSize.of(series)
         if whole.largest <= nought:
@@ -203,8 +203,8 @@ class CauseSize:
 
 
 def levelled(error: Array, channel: Channel) -> tuple[float, Array]:
-    """The mean of an error, and the error less it; of an angle the mean that is nearest to 0, by
-    whole turns, and of a wrapped one again the nearest turn at every sample."""
+    """Return the mean of an error, and the error less it. For an angle the mean is the one nearest
+    to 0 by whole turns; a wrapped angle takes the nearest turn again at every sample."""
     if not channel.kind.turns:
         zero = float(np.mean(error))
         return zero, error - zero
@@ -220,8 +220,8 @@ def levelled(error: Array, channel: Channel) -> tuple[float, Array]:
 def excerpts(
     readings: Sequence[Reading], truth: Truth, limits: Mapping[str, float]
 ) -> dict[str, Excerpt]:
-    """The excerpt of each reading that has a limit, by column: all at the same rows, among them
-    those of the largest errors. Raises CrankcheckError where there is no reference."""
+    """Return the excerpt of each reading that has a limit, by column, all at the same rows,
+    including those of the largest errors. Raises CrankcheckError where there is no reference."""
     judged = [reading for reading in readings if reading.channel.column in limits]
     motions, told = {}, []
     for reading in judged:
@@ -253,13 +253,13 @@ def excerpts(
 
 
 def _finite(error: Array) -> Array:
-    """An error with 0 where it is no number."""
+    """Return an error with 0 for each value that is not finite."""
     return np.where(np.isfinite(error), error, 0.0)
 
 
 def picked(rows: int, besides: Sequence[int] = (), most: int = MOST) -> Rows:
-    """At most some ``most`` rows spread over a log, and those ``besides``; in no even rhythm, that
-    could be the mechanism's own."""
+    """Return about ``most`` rows spread over a log, and those ``besides``; unevenly, as an even
+    rhythm could be the mechanism's own."""
     if rows <= most:
         return np.arange(rows)
     place = np.arange(most)

@@ -1,4 +1,4 @@
-"""What explains the errors of a log."""
+"""Search for the causes of the errors of a log."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -13,16 +13,16 @@ from reports.causes.inquiry import Inquiry
 
 FEWEST_ROWS = 8
 MOSTLY = 0.5
-"""The part of what is off that has no cause, from which on single numbers are doubted."""
+"""Part of the wrong channels without a cause, from which on single numbers are doubted."""
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
 def causes(case: LogCase) -> tuple[Cause, ...]:
-    """What explains the errors of a log that are over their limits, and delays within them.
+    """Return the causes of the errors of a log over their limits, and of delays within them.
 
-    A cause leaves at most a tenth of the error of each channel that it is told of, or a third where
-    that is within the limit; of several those that leave least for the numbers that they need. What
-    nothing explains is in none. Raises CrankcheckError where the scene has no reference.
+    A cause leaves at most a tenth of the error of each of its channels, or a third where the error
+    is then within the limit; of several, the ones that leave least for their numbers are chosen.
+    Unexplained errors have none. Raises CrankcheckError where the scene has no reference.
     """
     inquiry = Inquiry.of(case)
     if inquiry.rows < FEWEST_ROWS:  # numbers could be found for anything; or it has gaps alone
@@ -37,7 +37,7 @@ def causes(case: LogCase) -> tuple[Cause, ...]:
 def _advised(
     inquiry: Inquiry, accounts: Sequence[Account], told: Sequence[Account]
 ) -> list[Account]:
-    """What is told, and what explains channels that are within their limits."""
+    """Return the chosen accounts, and accounts of channels within their limits."""
     explained = _columns(told)
     within = [c for account in accounts for c in account.rests if c not in inquiry.open]
     left = [column for column in dict.fromkeys(within) if column not in explained]
@@ -45,8 +45,8 @@ def _advised(
 
 
 def _beside(inquiry: Inquiry, world: Account, told: Sequence[Account]) -> list[Account]:
-    """The account of another world, and what is told of channels that are off in it as well: what
-    explains them there, else what explains them in the scene as it is driven."""
+    """Return the account of another world, and the accounts of channels still off in it: their
+    explanation in that world, else their explanation in the scene as driven."""
     assert world.world is not None
     others = [column for column in inquiry.open if column not in world.columns]
     there = inquiry.within(world.world, inquiry.open)
@@ -60,8 +60,8 @@ def _beside(inquiry: Inquiry, world: Account, told: Sequence[Account]) -> list[A
 
 
 def _sure(inquiry: Inquiry, told: Sequence[list[Account]]) -> list[list[Account]]:
-    """What is told, without numbers of a single channel where most of what is off has no cause and
-    is off by as much: what is wrong with the others is likely to be wrong with that one too."""
+    """Return the accounts without fitted numbers of a single channel where most wrong channels have
+    no cause and are off by as much: the unknown fault of the others is probably its fault too."""
     explained = _columns([account for same in told for account in same])
     taken = {c: inquiry.excerpts[c].worst / inquiry.excerpts[c].limit for c in inquiry.open}
     left = [taken[column] for column in inquiry.open if column not in explained]
@@ -77,12 +77,12 @@ def _sure(inquiry: Inquiry, told: Sequence[list[Account]]) -> list[list[Account]
 
 
 def _columns(told: Sequence[Account]) -> set[str]:
-    """The columns that are told of."""
+    """Return the columns of some accounts."""
     return {column for account in told for column in account.columns}
 
 
 def _accounts(inquiry: Inquiry, hypotheses: Mapping[str, Hypothesis]) -> tuple[Account, ...]:
-    """What each hypothesis says, with its place in the list; each knows what those before said."""
+    """Return the accounts of each hypothesis, with its place; each sees those before it."""
     for order, hypothesis in enumerate(hypotheses.values()):
         told = (replace(account, order=order) for account in _said(hypothesis, inquiry))
         inquiry = replace(inquiry, accounts=(*inquiry.accounts, *told))
@@ -90,8 +90,8 @@ def _accounts(inquiry: Inquiry, hypotheses: Mapping[str, Hypothesis]) -> tuple[A
 
 
 def _said(hypothesis: Hypothesis, inquiry: Inquiry) -> Iterator[Account]:
-    """What a hypothesis says, up to where it leads to no mechanism, or to nothing that can be
-    reckoned with: a log of odd numbers has its verdict without it."""
+    """Yield the accounts of a hypothesis, up to a missing mechanism or an arithmetic failure: a log
+    of odd numbers gets its verdict without this hypothesis."""
     try:
         yield from filter(None, hypothesis(inquiry))
     except (CrankcheckError, ArithmeticError, ValueError, IndexError):
@@ -99,7 +99,7 @@ def _said(hypothesis: Hypothesis, inquiry: Inquiry) -> Iterator[Account]:
 
 
 def _merged(told: Sequence[Account]) -> list[list[Account]]:
-    """Accounts that say the same of different channels, together; those of all the log first."""
+    """Return accounts with the same phrase together; those of the whole log come first."""
     same: dict[tuple[str, str], list[Account]] = {}
     for account in sorted(told, key=lambda each: each.world is None):
         same.setdefault((account.name, account.phrase), []).append(account)
@@ -107,7 +107,7 @@ def _merged(told: Sequence[Account]) -> list[list[Account]]:
 
 
 def _cause(inquiry: Inquiry, same: Sequence[Account]) -> Cause:
-    """Accounts that say the same as one cause."""
+    """Return accounts with the same phrase as one cause."""
     of = {column: account for account in same for column in account.columns}
     columns = tuple(column for column in inquiry.excerpts if column in of)
     every = [excerpt.channel for excerpt in inquiry.excerpts.values()]

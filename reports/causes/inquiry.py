@@ -1,4 +1,4 @@
-"""What hypotheses look at: the errors that are to be explained, and those that must not arise."""
+"""Input of the hypotheses: the errors to be explained, and those that must not arise."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from reports.causes.world import World
 from reports.logs.channel import Channel
 
 SPOILT = 1.2
-"""Over its limit by so much, a channel that was within it is spoilt by a hypothesis."""
+"""Ratio to its limit from which on a hypothesis spoils a channel that was within it."""
 MISSING = 0.4
-"""The part of the channels that a hypothesis moves which may be off by something else as well."""
+"""Part of the channels that a hypothesis affects which may have another fault as well."""
 MENDED = 0.8
-"""What may be left in a channel that comes within its limit, of a fault that explains others."""
+"""Part that may be left in a channel that comes within its limit by a fault of others."""
 MOVED = 0.3
-"""A channel whose expectation a hypothesis changes by so much of its error is its affair."""
+"""A hypothesis affects a channel if it changes the reference by this part of its error."""
 WELL = 0.02
-"""What is left of an error that is explained well enough to look for nothing that costs much."""
+"""Remaining part of an error explained too well to try expensive hypotheses."""
 NOTHING_LEFT = 1e-3
-"""The part of a signal that is next to nothing of it."""
+"""Part of a signal that counts as nothing."""
 FEW = 400
-"""Rows that numbers are fitted to before they are tried on the others."""
+"""Rows for fits of numbers, before a trial on the others."""
 
 
 @dataclass(frozen=True)
 class Inquiry:
-    """The excerpts of a case, by column, beside what is expected in ``world``; of those in ``open``
-    the error is to be explained. ``accounts`` are what was found so far; the world is ``changed``
-    where it is no longer the scene as it is driven."""
+    """Excerpts of a case, by column, beside the reference in ``world``; the errors in ``open`` are
+    to be explained. ``accounts`` are those found so far; the world is ``changed`` where it is no
+    longer the scene as driven."""
 
     case: LogCase
     world: World
@@ -47,7 +47,7 @@ class Inquiry:
 
     @staticmethod
     def of(case: LogCase) -> Inquiry:
-        """Raises CrankcheckError where the scene has no reference."""
+        """Return the inquiry of a case. Raises CrankcheckError where the scene has no reference."""
         out = tuple(reading.channel.column for reading in case.out)
         return Inquiry(case, World.of(case.truth), case.excerpts, out)
 
@@ -63,7 +63,7 @@ class Inquiry:
 
     @cached_property
     def thin(self) -> Inquiry:
-        """The same with few rows, to fit numbers to."""
+        """The same with few rows, for fits of numbers."""
         return self.part(picked(self.rows, most=FEW))
 
     @property
@@ -72,21 +72,21 @@ class Inquiry:
         return max((each.rows.size for each in self.excerpts.values()), default=0)
 
     def part(self, rows: Rows) -> Inquiry:
-        """The same with some of the rows, by their places in the excerpts."""
+        """Return the same with some of the rows, by their places in the excerpts."""
         parts = {column: each.part(rows) for column, each in self.excerpts.items()}
         return replace(self, excerpts=parts)
 
     @property
     def unclaimed(self) -> tuple[str, ...]:
-        """What is open that nothing without a number explains."""
+        """Open columns that no account without a fitted number explains."""
         plain = [account for account in self.accounts if account.cost < CAUSE + NUMBER]
         well = {c for account in plain for c, rest in account.rests.items() if rest <= EXPLAINED}
         return tuple(column for column in self.open if column not in well)
 
     @property
     def unexplained(self) -> tuple[str, ...]:
-        """What is open that nothing with at most one number explains well, and brings within its
-        limit, so far."""
+        """Open columns that no account with at most one number so far explains well and brings
+        within its limit."""
         few = [account for account in self.accounts if account.cost < CAUSE + 2 * NUMBER]
         over = {
             column: excerpt.limit / excerpt.size.largest
@@ -107,7 +107,7 @@ class Inquiry:
         return tuple(column for column, each in self.case.excerpts.items() if not each.out)
 
     def expected(self, world: World, columns: Iterable[str] | None = None) -> dict[str, Array]:
-        """What is expected in a world, by column (all of them). Raises CrankcheckError."""
+        """Return the reference in a world, by column (all of them). Raises CrankcheckError."""
         motions: dict[bytes, Motion] = {}
         groups: dict[bytes, list[str]] = {}
         for column in self.excerpts if columns is None else columns:
@@ -121,7 +121,7 @@ class Inquiry:
         return found
 
     def errors(self, world: World, columns: Iterable[str] | None = None) -> dict[str, Array]:
-        """The errors against a world, by column. Raises CrankcheckError."""
+        """Return the errors against a world, by column. Raises CrankcheckError."""
         expected = self.expected(world, columns)
         return {column: self.excerpts[column].beside(each) for column, each in expected.items()}
 
@@ -139,8 +139,8 @@ class Inquiry:
         expected: Mapping[str, Array] | None = None,
         besides: Iterable[str] = (),
     ) -> Account | None:
-        """The account of what leaves these ``errors``, by column, where something else is
-        ``expected``; None where it explains none of the open ones, nor of some ``besides``."""
+        """Return the account with these remaining ``errors``, by column, against another reference
+        ``expected``; None where it explains no open column and none of ``besides``."""
         instead, told = expected or {}, dict[str, float]()
         for column in (*self.open, *besides):
             if column in errors:
@@ -157,7 +157,7 @@ class Inquiry:
     def _mended(
         self, errors: Mapping[str, Array], expected: Mapping[str, Array]
     ) -> dict[str, float]:
-        """What is left, by column, of errors that come within their limits, noise as it may be."""
+        """Return the remaining part, by column, of errors now within their limits, or noise."""
         found = {}
         for column in self.open:
             if column not in errors:
@@ -178,9 +178,9 @@ class Inquiry:
         among: Iterable[str] | None = None,
         missing: float = MISSING,
     ) -> Account | None:
-        """The account of a log that is of another ``world`` (or its columns ``among``); None where
-        there is no such mechanism, where a healthy channel would be off, or where more than the
-        part ``missing`` of what it moves stays unexplained."""
+        """Return the account of another ``world`` for the log (or its columns ``among``); None
+        where there is no such mechanism, where a healthy channel would be off, or where more than
+        the part ``missing`` of the affected channels stays unexplained."""
         try:
             expected = self.expected(world, among)
         except CrankcheckError:
@@ -197,15 +197,15 @@ class Inquiry:
         return told if len(missed) <= missing * len(moved) else None
 
     def no_chance(self, account: Account) -> bool:
-        """Whether an account of numbers tells several channels, or one so well that it is not
-        merely like something else that happened to it."""
+        """True if an account with numbers explains several channels, or one so well that it is not
+        a mere likeness."""
         if len(account.columns) > 1 or account.world is None:
             return True
         (column,) = account.columns
         return self.excerpts[column].told_apart(self.errors(account.world, [column])[column])
 
     def spoilt(self, errors: Mapping[str, Array]) -> tuple[str, ...]:
-        """The columns that were healthy, and are not with these errors."""
+        """Return the columns that were healthy, and are not with these errors."""
         return tuple(
             column
             for column in self.healthy
@@ -215,19 +215,19 @@ class Inquiry:
         )
 
     def _vanishes(self, column: str, expected: Array) -> bool:
-        """Whether next to nothing of a channel is expected, as at times that show it where it is 0
-        only: that would explain whatever is next to nothing."""
+        """True if the reference of a channel is next to nothing, as at times that show its zeros
+        only: that would explain any readings next to nothing."""
         before = CauseSize.of_signal(self.excerpts[column].expected).rms
         return CauseSize.of_signal(expected).rms < NOTHING_LEFT * before
 
     def _moved(self, column: str, expected: Array) -> bool:
-        """Whether a channel is expected elsewhere, by what counts beside its error."""
+        """True if the reference of a channel changes noticeably beside its error."""
         excerpt = self.excerpts[column]
         change = CauseSize.of(excerpt.beside(expected) - excerpt.error)
         return change.largest > MOVED * excerpt.size.largest
 
     def within(self, world: World, left: Iterable[str]) -> Inquiry | None:
-        """The inquiry after what is ``left`` to be explained in another world; None where there is
+        """Return the inquiry into the open columns ``left`` in another world; None where there is
         no such mechanism."""
         try:
             expected = self.expected(world)
@@ -237,8 +237,8 @@ class Inquiry:
         return replace(self, world=world, excerpts=there, open=tuple(left), changed=True)
 
     def stretch(self, column: str) -> Inquiry:
-        """The inquiry into one column at rows that follow one another, around that where its error
-        is largest. Raises CrankcheckError."""
+        """Return the inquiry into one column at consecutive rows around its largest error. Raises
+        CrankcheckError."""
         excerpt = self.excerpts[column]
         rows = excerpt.reading.values.size
         worst = int(excerpt.rows[np.argmax(np.abs(excerpt.error))])
@@ -246,7 +246,7 @@ class Inquiry:
         return self.into(column, np.arange(first, min(first + MOST, rows)))
 
     def into(self, column: str, rows: Rows) -> Inquiry:
-        """The inquiry into one column at these rows of the log. Raises CrankcheckError."""
+        """Return the inquiry into one column at these rows of the log. Raises CrankcheckError."""
         excerpt = self.excerpts[column]
         reading, channel = excerpt.reading, excerpt.channel
         values, instants = reading.values[rows], reading.instants[rows]
@@ -255,7 +255,7 @@ class Inquiry:
         return replace(self, excerpts={column: there}, open=(column,))
 
     def whole(self, column: str) -> tuple[Array, Array]:
-        """All readings of a column, and their errors, 0 where a number is missing. Raises
+        """Return all readings of a column, and their errors, 0 where a number is missing. Raises
         CrankcheckError."""
         reading = self.excerpts[column].reading
         channel = reading.channel

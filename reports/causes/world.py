@@ -1,4 +1,4 @@
-"""What a log may be of, where it is not of the scene as it is driven."""
+"""The scene, drive and frame that a hypothesis assumes for a log."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from reports.logs.log_beside import AtCrank
 
 Stamps = Callable[[Array], Array]
 Orders = tuple[Array, Array, Array]
-"""A place and its two rates."""
+"""A position and its two rates."""
 Drive = Callable[[Array], Orders]
 
 
 @dataclass(frozen=True)
 class LogFrame:
-    """How a log has the plane: all lengths times ``size``; seen from behind where ``mirrored`` (the
-    y-axis turned round), then turned by ``turn_rad``, then moved by ``shift_m``."""
+    """Frame of a log: all lengths times ``size``; seen from behind where ``mirrored`` (the y-axis
+    reversed), then rotated by ``turn_rad``, then moved by ``shift_m``."""
 
     mirrored: bool = False
     turn_rad: float = 0.0
@@ -34,7 +34,7 @@ class LogFrame:
     size: float = 1.0
 
     def seen(self, motion: Motion) -> Motion:
-        """A motion as it looks in this frame."""
+        """Return a motion as seen in this frame."""
         sign, size = (-1.0 if self.mirrored else 1.0), self.size
         cos, sin = math.cos(self.turn_rad), math.sin(self.turn_rad)
         turned = size * np.array([[cos, sin], [-sign * sin, sign * cos]])
@@ -49,9 +49,9 @@ class LogFrame:
 
 @dataclass(frozen=True)
 class World:
-    """A scene, the instants that the ``stamps`` of the log stand for, and the frame that it is seen
-    in; rates are ``pace`` times as fast as in the scene. ``drive`` gives the driver's angle, rate
-    and acceleration at instants, where it does not follow the scene's law."""
+    """A scene, the instants behind the ``stamps`` of the log, and the frame of view; rates are
+    ``pace`` times the scene's. ``drive`` gives the driver's angle, rate and acceleration at
+    instants, where it does not follow the scene's law."""
 
     scene: Scene
     drive: Drive | None = None
@@ -61,7 +61,7 @@ class World:
 
     @staticmethod
     def of(truth: Truth) -> World:
-        """That of a truth, as it is driven."""
+        """Return the world of a reference, as it is driven."""
         if not isinstance(truth, AtCrank) or truth.time_s is None or truth.crank_rad is None:
             return World(truth.scene)
         times, angles, law = truth.time_s, truth.crank_rad, truth.scene.driver.law
@@ -73,7 +73,7 @@ class World:
         return World(truth.scene, drive)
 
     def at(self, stamped: Array, channels: Iterable[Channel]) -> Motion:
-        """Of what is measured, the motion (T,) at stamped instants [s]. Raises CrankcheckError."""
+        """Return the motion (T,) of measured bodies at stamps [s]. Raises CrankcheckError."""
         instants = stamped
         for change in reversed(self.stamps):
             instants = change(instants)
@@ -92,11 +92,11 @@ class World:
         return motion
 
     def stamped(self, change: Stamps) -> World:
-        """The world where the stamps of the log stand for other instants."""
+        """Return the world with other instants behind the stamps of the log."""
         return replace(self, stamps=(*self.stamps, change))
 
     def framed(self, frame: LogFrame) -> World:
-        """The world where the log has the plane in another way."""
+        """Return the world with a further frame of the log."""
         return replace(self, frames=(*self.frames, frame))
 
 
@@ -109,7 +109,7 @@ class Bodies(TypedDict):
 
 
 def _bodies(channels: Iterable[Channel]) -> Bodies:
-    """The bodies that channels measure."""
+    """Return the bodies that channels measure."""
     names: dict[str, dict[str, None]] = {"link": {}, "point": {}, "slider": {}}
     for channel in channels:
         names[channel.kind.body_kind][channel.of] = None
@@ -120,7 +120,7 @@ def _bodies(channels: Iterable[Channel]) -> Bodies:
 
 
 def _paced(motion: Motion, pace: float) -> Motion:
-    """A motion whose rates are taken over a time that runs at another pace."""
+    """Return a motion with rates taken over a time of another pace."""
     return _changed(
         motion,
         lambda m: (m.theta, pace * m.omega, pace**2 * m.alpha),
@@ -135,7 +135,7 @@ def _changed(
     point: Callable[[PointMotion], Orders],
     slider: Callable[[SliderMotion], Orders],
 ) -> Motion:
-    """A motion whose bodies move otherwise."""
+    """Return a motion with other orders of its bodies."""
     return replace(
         motion,
         links={name: LinkMotion(*link(own)) for name, own in motion.links.items()},

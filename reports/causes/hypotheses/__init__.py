@@ -1,4 +1,4 @@
-"""The hypotheses, by what they are about, in the order in which equal ones are preferred."""
+"""The hypotheses by subject, in the order in which equal ones are preferred."""
 
 from collections.abc import Callable, Iterator, Mapping
 
@@ -24,7 +24,7 @@ from reports.causes.inquiry import Inquiry
 
 Hypothesis = Callable[[Inquiry], Iterator[Account | None]]
 OF_SAMPLES: Mapping[str, Hypothesis] = {"turns": turns, "samples": samples}
-"""What may be wrong with some samples, beside whatever is wrong with all of them."""
+"""Faults of some samples, besides any fault of all samples."""
 OF_CHANNELS: Mapping[str, Hypothesis] = {
     "straight": straight,
     "swapped": swapped,
@@ -34,7 +34,7 @@ OF_CHANNELS: Mapping[str, Hypothesis] = {
     "filtered": filtered,
     "rounded": rounded,
 }
-"""What may be wrong with some channels."""
+"""Faults of some channels."""
 OF_LOGS: Mapping[str, Hypothesis] = {
     "backwards": backwards,
     "assembly": assembly,
@@ -50,5 +50,5 @@ OF_LOGS: Mapping[str, Hypothesis] = {
     "smoothed": smoothed,
     "two faults": two_faults,
 }
-"""What may be wrong with the log as a whole, or with the scene; and what costs most, last, for
-channels that nothing before explains well."""
+"""Faults of the log as a whole, or of the scene; the expensive ones come last, for channels without
+a good explanation so far."""

@@ -1,7 +1,7 @@
-"""A clock that is not that of the scene: another unit of time, another pace, uneven stamps.
+"""A clock that differs from the scene's: another unit of time, another pace, uneven stamps.
 
-That the clock is slow and that the driver is fast is one thing where places alone are logged; rates
-tell them apart, if they were not taken over the log's own time.
+A slow clock and a fast driver are the same where only positions are logged; rates distinguish them,
+if they were not taken over the log's own time.
 """
 
 import math
@@ -21,24 +21,24 @@ from reports.logs.kinds import UNITS
 from reports.output.numbers import duration
 
 MOST_FITS = 4
-"""Channels that a clock is fitted to, one after another."""
+"""Channels to which a clock is fitted, one after another."""
 FIRST, GROWTH, LEAST_ROWS = 0.02, 2.5, 12
-"""In periods, the stretch at the beginning of the log that a fit starts with; how much longer each
-next one is; and the rows of the shortest."""
+"""First stretch of a fit, in periods from the beginning of the log; the growth of each next
+stretch; and the rows of the shortest."""
 SCANNED = 0.5
-"""In periods, the stretch that starts elsewhere are looked for in."""
+"""Stretch, in periods, in which other starts are searched."""
 SCAN = 24
 ROWS = 200
-"""Rows of a stretch that a clock is fitted to."""
+"""Rows of a stretch to which a clock is fitted."""
 UNLIKE = 3.0
-"""Of two readings of a drift one is ruled out where it leaves so many times as much."""
+"""Of two explanations of a drift, the one that leaves so many times as much is ruled out."""
 FASTEST = 1e3
-"""Times that a clock may be slow, or fast."""
+"""Largest factor by which a clock may be slow or fast."""
 
 
 @dataclass(frozen=True)
 class ClockFault:
-    """What a stamp t [s] of the log stands for: t + start + gain (t - first)."""
+    """Clock that maps a stamp t [s] of the log to t + start + gain (t - first)."""
 
     first_s: float
     start_s: float
@@ -49,17 +49,17 @@ class ClockFault:
 
     @property
     def runs(self) -> bool:
-        """Whether it is a clock at all, and does not stand or go back."""
+        """True if the clock runs forward, at a plausible pace."""
         return 1.0 / FASTEST < 1.0 + self.gain < FASTEST
 
     def world(self, world: World, *, paced: bool) -> World:
-        """The world as this clock has it; ``paced`` where the rates are taken over its time."""
+        """Return the world by this clock; ``paced`` where the rates are taken over its time."""
         pace = world.pace * (1.0 + self.gain) if paced else world.pace
         return replace(world.stamped(self), pace=pace)
 
 
 def time_unit(inquiry: Inquiry) -> Iterator[Account | None]:
-    """Times that are in another unit than the map says."""
+    """Yield accounts of times in another unit than the map states."""
     column, told = inquiry.case.log.stamp
     size = UNITS["time"].get(told, 1.0)
     for unit, other in UNITS["time"].items():
@@ -75,7 +75,7 @@ def time_unit(inquiry: Inquiry) -> Iterator[Account | None]:
 
 
 def drift(inquiry: Inquiry) -> Iterator[Account]:
-    """Clocks that run at another pace, fitted to one channel after another until one tells all."""
+    """Yield clocks of another pace, fitted to one channel after another until one explains all."""
     if inquiry.world.drive is not None:
         return
     needy = sorted(inquiry.unexplained, key=lambda column: inquiry.channel(column).kind.order)
@@ -92,8 +92,8 @@ def drift(inquiry: Inquiry) -> Iterator[Account]:
 
 
 def _fitted(inquiry: Inquiry, column: str, *, paced: bool) -> ClockFault | None:
-    """The clock of one channel: fitted to its beginning, then to more and more of it, so that it is
-    never off by much of a turn."""
+    """Return the clock of one channel: fitted to its beginning, then to ever longer stretches, so
+    that it is never off by much of a turn."""
     reading = inquiry.excerpts[column].reading
     first_s = float(reading.instants[0])
     ages, period = reading.instants - first_s, inquiry.period_s
@@ -111,14 +111,14 @@ def _fitted(inquiry: Inquiry, column: str, *, paced: bool) -> ClockFault | None:
 
 
 def _rows(ages: Array, width: float) -> Rows:
-    """Rows spread over the beginning of a log."""
+    """Return rows spread over the beginning of a log."""
     return picked(int(np.searchsorted(ages, width, side="right")), most=ROWS)
 
 
 def _grown(
     inquiry: Inquiry, column: str, clock: ClockFault, width: float, *, paced: bool
 ) -> ClockFault | None:
-    """The clock near another that tells the beginning of a channel, and then all of it."""
+    """Return the clock near another, fitted to the beginning of a channel, then to all of it."""
     ages = inquiry.excerpts[column].reading.instants - clock.first_s
     while True:
         there = inquiry.into(column, _rows(ages, width))
@@ -132,7 +132,7 @@ def _grown(
 
 
 def _nearest(there: Inquiry, column: str, clock: ClockFault, *, paced: bool) -> ClockFault | None:
-    """The clock near another that leaves least of what a channel is off at some rows."""
+    """Return the clock near another with the least residual of a channel at some rows."""
 
     def residual(numbers: Array) -> Array:
         tried = ClockFault(clock.first_s, float(numbers[0]), float(numbers[1]))
@@ -144,7 +144,7 @@ def _nearest(there: Inquiry, column: str, clock: ClockFault, *, paced: bool) -> 
 
 
 def _rest(there: Inquiry, column: str, clock: ClockFault, *, paced: bool) -> float:
-    """What a clock leaves of the error of a column; no end where there is no mechanism."""
+    """Return the remaining part of the error of a column; infinite where there is no mechanism."""
     try:
         errors = there.errors(clock.world(there.world, paced=paced))
     except CrankcheckError:
@@ -153,7 +153,7 @@ def _rest(there: Inquiry, column: str, clock: ClockFault, *, paced: bool) -> flo
 
 
 def _told(inquiry: Inquiry, column: str, clock: ClockFault) -> Iterator[Account]:
-    """The accounts of a clock, and of the one that starts with the scene's where that does."""
+    """Yield the accounts of a clock, and of a clock with the scene's start if that fits too."""
     thin = inquiry.thin
     excerpt = thin.excerpts[column]
 
@@ -174,8 +174,8 @@ def _told(inquiry: Inquiry, column: str, clock: ClockFault) -> Iterator[Account]
 
 
 def _either(inquiry: Inquiry, column: str, clock: ClockFault, cost: float) -> Account | None:
-    """The account of a clock or of a driver of another pace, whichever leaves less; it says of both
-    where nothing tells them apart."""
+    """Return the account of a clock or of a driver of another pace, whichever leaves less; it names
+    both where nothing distinguishes them."""
     time = inquiry.channel(column).time
     among = [c for c in inquiry.excerpts if inquiry.channel(c).time == time]
     accounts = {
@@ -195,12 +195,12 @@ def _either(inquiry: Inquiry, column: str, clock: ClockFault, cost: float) -> Ac
 
 
 def _left(account: Account, other: Account) -> float:
-    """What is left in the worst channel that this or another account explains."""
+    """Return the remaining part in the worst channel that either account explains."""
     return max(account.rests.get(column, 1.0) for column in (*account.rests, *other.rests))
 
 
 def _words(inquiry: Inquiry, clock: ClockFault) -> tuple[str, str]:
-    """A clock in words, and the driver that would show the same."""
+    """Return a clock in words, and the driver that would show the same."""
     law, pace = inquiry.world.scene.driver.law, 1.0 + clock.gain
     slow = "slow" if clock.gain > 0.0 else "fast"
     of_clock = f"the clock of the log runs {change(1.0 / pace, 1.0).lstrip('+-')} {slow}"
@@ -215,16 +215,16 @@ def _words(inquiry: Inquiry, clock: ClockFault) -> tuple[str, str]:
 
 
 FARTHEST = 0.55
-"""In intervals, the most that a time is off the even ones."""
+"""Largest offset of a time from the even grid, in intervals."""
 EVEN_STAMPS = 1e-9
-"""In intervals, times that are even as they are."""
+"""Offset below which times count as even, in intervals."""
 DECIMALS = range(10)
 ON_GRID = 1e-3
-"""In steps of its last decimal, how near a printed number is to it."""
+"""Distance within which a number is on its decimal grid, in steps of the last decimal."""
 
 
 def stamps(inquiry: Inquiry) -> Iterator[Account | None]:
-    """Times that were rounded, or shaken, where the samples are as far apart as they can be."""
+    """Yield accounts of rounded or jittered times, for samples that in fact are evenly spaced."""
     time_s = inquiry.case.log.time_s
     if time_s.size < 3 or inquiry.world.drive is not None:
         return
@@ -251,8 +251,8 @@ def stamps(inquiry: Inquiry) -> Iterator[Account | None]:
 
 
 def _aligned(inquiry: Inquiry, world: World, middle: float, shaken: float) -> World | None:
-    """The world of even samples, moved and stretched within what the times are off, as the line
-    through uneven times is not quite that of the samples."""
+    """Return the world of even samples, moved and stretched within the offsets of the times, as the
+    line through uneven times is not quite the samples' own."""
     thin, columns = inquiry.thin, inquiry.unclaimed
     if not columns:
         return None
@@ -273,7 +273,7 @@ def _aligned(inquiry: Inquiry, world: World, middle: float, shaken: float) -> Wo
 
 
 def _printed(inquiry: Inquiry) -> str:
-    """How the times are printed."""
+    """Return the printed form of the times in words."""
     log = inquiry.case.log
     column, unit = log.stamp
     size = UNITS["time"].get(unit, 1.0)

@@ -1,4 +1,4 @@
-"""A scene that has another length, pivot or line than the mechanism that was logged."""
+"""A length, pivot or line of the scene that differs from the logged mechanism's."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -13,26 +13,26 @@ from reports.causes.account import CAUSE, CHOICE, NUMBER, Account, change, fitte
 from reports.causes.inquiry import Inquiry
 
 MOST = 60
-"""Dimensions that are looked at."""
+"""Number of dimensions that are examined."""
 MOST_FITTED = 4
-"""Dimensions that are fitted: those that a straight line makes the most likely."""
+"""Number of dimensions that are fitted: the most likely by a straight line."""
 LEAST_GAIN = 0.25
-"""The part of the squares of the errors that a straight line has to take off."""
+"""Part of the squares of the errors that a straight line has to remove."""
 SENSITIVE = 1e-12
-"""A sum of squares of what is expected, by the change of a dimension, that is nothing."""
+"""Sum of squares of the reference's change with a dimension, below which it counts as 0."""
 ROUNDS = 6
 BEST = 2e-3
-"""What is left of an error that is told too well to look for a dimension."""
+"""Remaining part of an error too well explained to look for a dimension."""
 SLIGHT = 1e-6
-"""The change that slopes are taken of, over the longest link or in radians."""
+"""Change by which slopes are taken, over the longest link or in radians."""
 FARTHEST = 1.0
-"""The most that a dimension may be changed, over the longest link or in radians."""
+"""Largest change of a dimension, over the longest link or in radians."""
 
 
 @dataclass(frozen=True)
 class DimensionFault:
-    """One number of a scene, in ``unit`` m or rad: what it is called, what it is, and the scene
-    with another one. A ``point`` that two numbers place is the same for both."""
+    """One number of a scene, in ``unit`` m or rad: its name, its value, and the scene with another
+    value. ``point`` is common to the two coordinates of one point."""
 
     name: str
     value: float
@@ -42,7 +42,7 @@ class DimensionFault:
 
 
 def dimension(inquiry: Inquiry) -> Iterator[Account | None]:
-    """The dimensions that explain most of what is open, alone or, of a point, both."""
+    """Yield accounts of the dimensions that explain most, alone or both of a point."""
     columns = list(inquiry.unclaimed)
     if not columns or (len(columns) == 1 and _told_alone(inquiry, columns[0])):
         return
@@ -56,13 +56,13 @@ def dimension(inquiry: Inquiry) -> Iterator[Account | None]:
 
 
 def _told_alone(inquiry: Inquiry, column: str) -> bool:
-    """Whether something with few numbers explains a single channel too well for anything else."""
+    """True if an account with few numbers explains a single channel too well for anything else."""
     rests = (account.rests.get(column, 1.0) for account in inquiry.accounts)
     return min(rests, default=1.0) < BEST
 
 
 def dimensions(scene: Scene) -> list[DimensionFault]:
-    """All numbers that the places of a scene follow from."""
+    """Return all numbers that determine the geometry of a scene."""
     found: list[DimensionFault] = []
     for point, place in scene.ground.items():
         for axis in (0, 1):
@@ -84,7 +84,7 @@ def _ground(point: str, axis: int) -> Callable[[Scene, float], Scene]:
 
 
 def _of_link(link: Link) -> Iterator[DimensionFault]:
-    """The distance between the first two points of a link, and the places of the others."""
+    """Yield the distance of the first two points of a link, and the coordinates of the others."""
     names = list(link.points)
     if len(names) > 1:
         (x0, y0), (x1, y1) = (link.points[name] for name in names[:2])
@@ -121,14 +121,14 @@ def _place(name: str, point: str, axis: int) -> Callable[[Scene, float], Scene]:
 
 
 def _moved(scene: Scene, name: str, point: str, place: tuple[float, float]) -> Scene:
-    """The scene with a point of a link elsewhere in its frame."""
+    """Return the scene with a point of a link elsewhere in its frame."""
     link = scene.links[name]
     link = replace(link, points={**link.points, point: place})
     return replace(scene, links={**scene.links, name: link})
 
 
 def _of_slider(slider: Slider) -> Iterator[DimensionFault]:
-    """How far the line lies to its left of where it is in the scene, and its directions."""
+    """Yield the offset of the line to its left from its place in the scene, and its directions."""
     line = f"the line of slider {slider.name}"
     sine, cosine = math.sin(slider.direction_rad), math.cos(slider.direction_rad)
 
@@ -154,14 +154,14 @@ def _slid(scene: Scene, slider: Slider) -> Scene:
 
 
 def _with(place: tuple[float, float], axis: int, value: float) -> tuple[float, float]:
-    """A place with another coordinate."""
+    """Return a point with another coordinate."""
     return (value, place[1]) if axis == 0 else (place[0], value)
 
 
 def _residual(
     inquiry: Inquiry, columns: Sequence[str], chosen: Sequence[DimensionFault]
 ) -> Callable[[Array], Array]:
-    """What is left of the errors of columns, each over its size, where dimensions are changed; it
+    """Return the residual function of columns, each over its size, for changes of dimensions; it
     raises CrankcheckError where there is no such mechanism."""
     sizes = {column: inquiry.excerpts[column].size.rms for column in columns}
     scale = inquiry.world.scene.longest_m
@@ -179,7 +179,7 @@ def _residual(
 def _likely(
     inquiry: Inquiry, columns: Sequence[str], every: Sequence[DimensionFault]
 ) -> list[DimensionFault]:
-    """The dimensions that change what is expected, by what a straight line leaves of the errors."""
+    """Return the dimensions that affect the reference, by the residual of a straight line."""
     thin, found = inquiry.thin, []
     errors = np.concatenate([thin.excerpts[c].error / thin.excerpts[c].size.rms for c in columns])
     for number_of, one in enumerate(every):
@@ -198,8 +198,8 @@ def _likely(
 def _told(
     inquiry: Inquiry, columns: Sequence[str], chosen: Sequence[DimensionFault]
 ) -> Account | None:
-    """The account of other values of dimensions; fitted again without the channels that these do
-    not explain, which something else may be wrong with."""
+    """Return the account of other values of dimensions; fitted again without the channels that it
+    does not explain, which may have another fault."""
     start = [0.0] * len(chosen)
     for _ in range(2):
         delta = [SLIGHT] * len(chosen)
@@ -215,7 +215,7 @@ def _told(
 
 
 def _account(inquiry: Inquiry, chosen: Sequence[DimensionFault], found: Array) -> Account | None:
-    """The account of fitted changes."""
+    """Return the account of fitted changes."""
     scene, longest = inquiry.world.scene, inquiry.world.scene.longest_m
     words = []
     for one, by in zip(chosen, found, strict=True):

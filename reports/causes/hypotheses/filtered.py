@@ -1,7 +1,7 @@
-"""Readings that a low-pass or a mean went over, or several: smooth, and late.
+"""Readings after one or more low-pass or mean filters: smooth, and late.
 
-Both make a signal late as well as smooth, where they look back. Where they take off little beside
-that, a delay explains the readings too, and what is left tells which it is.
+Both filters delay a signal as well as smooth it, where they look back. Where they remove little
+besides, a delay explains the readings too, and the residual shows which it is.
 """
 
 import math
@@ -17,23 +17,23 @@ from reports.causes.inquiry import Inquiry
 from reports.output.numbers import duration
 
 WIDEST = 0.25
-"""The part of a stretch that a mean may be taken over."""
+"""Largest part of a stretch for the width of a mean."""
 NEAR = 48
-"""Means of up to so many samples are tried each, wider ones in steps of a twentieth."""
+"""Largest width in samples up to which each is tried; wider means go in steps of a twentieth."""
 TIME_CONSTANTS = np.logspace(-0.5, 3.0, 12)
-"""In samples, what the fit of a low-pass starts from."""
+"""Time constants, in samples, from which the fit of a low-pass starts."""
 FEEDS = (0.0, 0.5, 1.0)
-"""How much of the sample before goes in beside the new one: backward, bilinear, forward."""
+"""Weights of the previous sample beside the new one: backward, bilinear, forward."""
 FARTHEST = 20.0
-"""The logarithm of a time constant in samples, and that of one over it, at most."""
+"""Largest magnitude of the logarithm of a time constant in samples."""
 LEAST_ROWS = 16
 PASSED = 0.1
-"""The part of a signal that a filter has to let through: of what lets nothing through, nothing
-would be seen but that."""
+"""Least part of a signal that a filter has to pass: below it, no reading would be there to
+explain."""
 
 
 def filtered(inquiry: Inquiry) -> Iterator[Account | None]:
-    """Each filter that explains a channel."""
+    """Yield each filter that explains a channel."""
     for column in inquiry.open:
         try:
             stretch = inquiry.stretch(column)
@@ -45,7 +45,7 @@ def filtered(inquiry: Inquiry) -> Iterator[Account | None]:
 
 
 def _low_pass(stretch: Inquiry, column: str) -> Account | None:
-    """The account of a low-pass of first order that began with the first reading."""
+    """Return the account of a low-pass of first order that began with the first reading."""
     excerpt = stretch.excerpts[column]
     intervals = np.diff(excerpt.instants)
     step = float(np.median(intervals))
@@ -84,8 +84,8 @@ def _low_pass(stretch: Inquiry, column: str) -> Account | None:
 
 
 def _told(stretch: Inquiry, column: str, name: str, left: Array, phrase: str) -> Account | None:
-    """The account of a filter; None of one that lets next to nothing through, or of a curve that
-    is merely like what it would make."""
+    """Return the account of a filter; None if it passes next to nothing, or if its curve is a mere
+    likeness."""
     excerpt = stretch.excerpts[column]
     passed = CauseSize.of_signal(excerpt.expected + excerpt.error - left).rms
     if passed < PASSED * CauseSize.of_signal(excerpt.expected).rms or not excerpt.told_apart(left):
@@ -94,7 +94,7 @@ def _told(stretch: Inquiry, column: str, name: str, left: Array, phrase: str) ->
 
 
 def low_pass(signal: Array, start: float, decay: Array, feed: float) -> Array:
-    """A signal (n,) after y[k] = a[k] y[k-1] + (1 - a[k]) x[k], where ``decay`` is a (n - 1,), y
+    """Return signal (n,) as y[k] = a[k] y[k-1] + (1 - a[k]) x[k], where ``decay`` is a (n - 1,), y
     begins with ``start``, and x has the part ``feed`` of the sample before. In log2(n) rounds."""
     fed = (1.0 - feed) * signal[1:] + feed * signal[:-1]
     factor = np.concatenate([[0.0], decay])
@@ -108,7 +108,7 @@ def low_pass(signal: Array, start: float, decay: Array, feed: float) -> Array:
 
 
 def _mean(stretch: Inquiry, column: str) -> Account | None:
-    """The account of a mean over the last samples, or over as many on both sides."""
+    """Return the account of a mean over the last samples, or over as many on both sides."""
     excerpt = stretch.excerpts[column]
     rows = excerpt.rows.size
     _, coarse, _ = min(_means(excerpt, _widths(rows)))
@@ -122,8 +122,7 @@ def _mean(stretch: Inquiry, column: str) -> Account | None:
 
 
 def _means(excerpt: Excerpt, widths: Iterable[int]) -> Iterator[tuple[float, int, int]]:
-    """What means leave (the mean square), how many samples they are over, and how many of these
-    are ahead."""
+    """Yield the mean square that each mean leaves, its width in samples, and its samples ahead."""
     for width in widths:
         for ahead in (0, width // 2) if width % 2 else (0,):
             if width > 1:
@@ -132,7 +131,7 @@ def _means(excerpt: Excerpt, widths: Iterable[int]) -> Iterator[tuple[float, int
 
 
 def _left_by_mean(excerpt: Excerpt, width: int, ahead: int) -> tuple[int, Array]:
-    """The first row that has all samples of its mean, and what is left of the error from there."""
+    """Return the first row that has all samples of its mean, and the residual from there on."""
     sums = np.concatenate([[0.0], np.cumsum(excerpt.expected)])
     means = (sums[width:] - sums[:-width]) / width
     first = width - 1 - ahead
@@ -141,7 +140,7 @@ def _left_by_mean(excerpt: Excerpt, width: int, ahead: int) -> tuple[int, Array]
 
 
 def _widths(rows: int) -> list[int]:
-    """The widths in samples that are tried: of wide ones, those that have a middle."""
+    """Return the widths in samples that are tried; wide ones are odd, to have a middle."""
     widest = int(WIDEST * rows)
     wide = {int(each) | 1 for each in np.geomspace(NEAR, max(widest, NEAR), 60)}
     return [*range(2, min(NEAR, widest)), *(each for each in sorted(wide) if each <= widest)]
@@ -149,18 +148,18 @@ def _widths(rows: int) -> list[int]:
 
 NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(7)
 LEAST = 1.5
-"""Samples that anything is smoothed over at least."""
+"""Least width in samples of any smoothing."""
 
 
 def smoothed(inquiry: Inquiry) -> Iterator[Account | None]:
-    """Channels that nothing else explains well, smoothed evenly to both sides or late as well."""
+    """Yield accounts of smoothing, even or delayed, for channels without a good explanation."""
     for column in inquiry.unexplained:
         for delayed in (False, True):
             yield _told_of_smooth(inquiry, column, delayed=delayed)
 
 
 def _told_of_smooth(inquiry: Inquiry, column: str, *, delayed: bool) -> Account | None:
-    """The account of smoothing over a width that is fitted, with a delay or without."""
+    """Return the account of smoothing over a fitted width, with a delay or without."""
     period = inquiry.period_s
     excerpt = inquiry.thin.excerpts[column]
 
@@ -189,7 +188,7 @@ def _told_of_smooth(inquiry: Inquiry, column: str, *, delayed: bool) -> Account 
 
 
 def _smooth(inquiry: Inquiry, excerpt: Excerpt, spread_s: float, by_s: float) -> Array:
-    """What is expected that much later, as a mean over a bell of that spread; it raises
+    """Return the reference ``by_s`` later, averaged over a bell curve of that spread. Raises
     CrankcheckError where there is no mechanism."""
     total = np.zeros(excerpt.rows.size)
     for node, weight in zip(NODES, WEIGHTS / WEIGHTS.sum(), strict=True):

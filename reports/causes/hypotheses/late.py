@@ -1,4 +1,4 @@
-"""Readings that belong to other instants than they are stamped with, all by the same delay."""
+"""Readings that belong to other instants than their stamps, all by the same delay."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,30 +15,30 @@ from reports.causes.hypotheses.samples import resolution
 from reports.causes.inquiry import MOVED, Inquiry
 
 NUDGE = 1e-6
-"""In periods, by how much a delay is moved to see what that changes."""
+"""Change of a delay for its slope, in periods."""
 SCAN = 48
-"""Delays within half a period to either side that large ones are looked for among."""
+"""Number of delays, within half a period to either side, among which large ones are searched."""
 SCANNED = 120
-"""Rows that they are tried on."""
+"""Rows on which they are tried."""
 SAME = 0.02
-"""Delays of which one differs by less than this part of itself, or of a sample, may be one."""
+"""Delays count as one if they differ by less than this part of one, or of a sample."""
 MOST_PERIODS = 0.75
-"""Delays beyond so many periods are none: half a period away there is a nearer one."""
+"""Largest delay in periods: beyond half a period there is a nearer one."""
 GROUPS = 8
-"""Delays that are told apart."""
+"""Number of delays that are distinguished."""
 MOSTLY = 0.5
-"""The part of the readings that a delay has to be of."""
+"""Part of the readings that a delay has to cover."""
 LEAST_SAMPLES = 0.05
-"""A delay of less is none that a log within its limits is told of."""
+"""Least delay in samples that is reported for a channel within its limit."""
 CLEAR = 5.0
-"""How much less of an error within its limit a delay has to leave, to be told."""
+"""Factor by which a delay has to reduce an error within its limit to be reported."""
 SEEN = 20.0
-"""How far above the last digit of the readings such an error has to be."""
+"""Least ratio of such an error to the last digit of the readings."""
 
 
 @dataclass(frozen=True)
 class Delay:
-    """How much later [s] the readings of a column belong, and how sure that is."""
+    """Delay [s] by which the readings of a column belong later, and its uncertainty."""
 
     column: str
     by_s: float
@@ -46,8 +46,8 @@ class Delay:
 
 
 def late(inquiry: Inquiry) -> Iterator[Account | None]:
-    """Delays that explain a channel, or several at once; also, of channels that are within their
-    limits, those that clearly explain what there is of an error."""
+    """Yield delays that explain one or several channels; for channels within their limits, only
+    those that clearly explain the small error."""
     candidates = (*inquiry.open, *_doubtful(inquiry))
     delays = [delay for delay in map(Search(inquiry).delay, candidates) if delay is not None]
     for group in _groups(delays, inquiry.step_s):
@@ -55,7 +55,7 @@ def late(inquiry: Inquiry) -> Iterator[Account | None]:
 
 
 def _doubtful(inquiry: Inquiry) -> list[str]:
-    """The channels within their limits whose error is more than their last digit makes."""
+    """Return the channels within their limits whose error exceeds their last digit's."""
     return [
         column
         for column in inquiry.healthy
@@ -65,7 +65,7 @@ def _doubtful(inquiry: Inquiry) -> list[str]:
 
 
 class Search:
-    """The delays of columns, fitted to few rows; what was scanned is kept for all of them."""
+    """Delays of columns, fitted to few rows; scans are kept for all columns."""
 
     def __init__(self, inquiry: Inquiry) -> None:
         self.inquiry, self.thin = inquiry, inquiry.thin
@@ -74,7 +74,7 @@ class Search:
         self._scans: dict[float, dict[str, Array]] = {}
 
     def delay(self, column: str) -> Delay | None:
-        """By how much the readings of a column belong later; None where that can not be told."""
+        """Return the delay of the readings of a column; None where it cannot be determined."""
         excerpt = self.thin.excerpts[column]
         delta = NUDGE * self.inquiry.period_s
 
@@ -101,14 +101,14 @@ class Search:
         return Delay(column, found, left / moving / math.sqrt(excerpt.rows.size))
 
     def _error(self, excerpt: Excerpt, column: str, by_s: float) -> Array:
-        """The error of readings that belong ``by_s`` later. Raises CrankcheckError."""
+        """Return the error of readings that belong ``by_s`` later. Raises CrankcheckError."""
         world = self.inquiry.world.stamped(lambda stamps: stamps + by_s)
         channel = excerpt.channel
         error = excerpt.beside(channel.expected(world.at(excerpt.instants, [channel])))
         return np.where(_logged(self.inquiry, excerpt, by_s), error, 0.0)
 
     def _scan(self, column: str) -> Sequence[float]:
-        """The two delays within half a period of which the least is left of an error."""
+        """Return the two delays within half a period that leave least of an error."""
         lefts = []
         for by_s in np.linspace(-0.5, 0.5, SCAN + 1)[:-1] * self.inquiry.period_s:
             expected = self._scanned(float(by_s)).get(column)
@@ -122,7 +122,7 @@ class Search:
         return [by_s for _, by_s in near[:2]]
 
     def _scanned(self, by_s: float) -> dict[str, Array]:
-        """What is expected of all columns that much later; nothing where there is no mechanism."""
+        """Return the reference of all columns at that delay; empty where there is no mechanism."""
         if by_s not in self._scans:
             world = self.inquiry.world.stamped(lambda stamps: stamps + by_s)
             try:
@@ -133,10 +133,10 @@ class Search:
 
 
 def _logged(inquiry: Inquiry, excerpt: Excerpt, by_s: float) -> Mask:
-    """Where readings that belong ``by_s`` later belong to an instant of the log: what shifts a
-    channel has nothing for the others, and holds a reading there, or takes it from the other end.
-    All, where these are most. What a nudge of the delay takes beyond an end is there still: a fit
-    that lost a sample by it would take that for the slope."""
+    """Return a mask of readings that belong, ``by_s`` later, to an instant of the log. A shifted
+    channel lacks the others: it repeats a reading there, or takes it from the other end. All True
+    where the mask would drop most. The slack keeps readings that a nudge of the delay moves beyond
+    an end: a fit that lost a sample by it would mistake that for the slope."""
     instants, slack = excerpt.instants + by_s, 2.0 * NUDGE * inquiry.period_s
     first, last = excerpt.instants[0] - slack, excerpt.instants[-1] + slack
     there = (instants >= first) & (instants <= last)
@@ -144,7 +144,7 @@ def _logged(inquiry: Inquiry, excerpt: Excerpt, by_s: float) -> Mask:
 
 
 def _groups(delays: Sequence[Delay], step_s: float) -> list[list[Delay]]:
-    """Delays that may be one, each group around its surest."""
+    """Return groups of delays that may be one, each around its surest."""
     groups: list[list[Delay]] = []
     for delay in sorted(delays, key=lambda each: each.doubt_s):
         for group in groups:
@@ -158,7 +158,7 @@ def _groups(delays: Sequence[Delay], step_s: float) -> list[list[Delay]]:
 
 
 def _told(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
-    """The account of one delay of several columns."""
+    """Return the account of one delay of several columns."""
     weights = np.array([1.0 / max(each.doubt_s, 1e-9 * inquiry.step_s) ** 2 for each in group])
     by_s = float(weights @ np.array([each.by_s for each in group]) / weights.sum())
     world = inquiry.world.stamped(lambda stamps: stamps + by_s)
@@ -198,7 +198,7 @@ def _told(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
 
 
 def _clearly(excerpt: Excerpt, error: Array, expected: Array) -> bool:
-    """Whether a delay explains an error that is within its limit, and would show in it."""
+    """True if a delay explains an error within its limit, and would show in it."""
     change = CauseSize.of(excerpt.beside(expected) - excerpt.error).largest
     return CLEAR * excerpt.rest(error) <= 1.0 and change > MOVED * excerpt.size.largest
 
@@ -209,8 +209,8 @@ def _everything(
     expected: Mapping[str, Array],
     errors: Mapping[str, Array],
 ) -> bool:
-    """Whether all that would show a delay has it, a place among them; where the log itself drives
-    the scene there is nothing that it starts after."""
+    """True if most channels that would show a delay have it, including a position. False where the
+    log itself drives the scene, as it then has no start."""
     if inquiry.world.drive is not None:
         return False
     shown = [
@@ -226,7 +226,7 @@ def _everything(
 
 
 def _start(inquiry: Inquiry, by_s: float) -> str:
-    """What it is that starts elsewhere."""
+    """Return the words for the other start."""
     law = inquiry.world.scene.driver.law
     clock = "the clock of the log starts elsewhere"
     if not isinstance(law, ConstantSpeed):

@@ -1,4 +1,4 @@
-"""Readings of something else than their column says: of another body, another kind, or against
+"""Readings of another quantity than the column states: another body, another kind, or relative to
 another link."""
 
 import math
@@ -20,7 +20,7 @@ from reports.logs.kinds import KINDS, UNITS, Kind
 
 @dataclass(frozen=True)
 class OtherMeaning:
-    """What a column may be instead; ``any_zero`` where its zero is anywhere."""
+    """Other meaning of a column; ``any_zero`` where its zero is anywhere."""
 
     name: str
     cost: float
@@ -29,7 +29,7 @@ class OtherMeaning:
 
 
 def misnamed(inquiry: Inquiry) -> Iterator[Account | None]:
-    """What else the readings of a channel may be of."""
+    """Yield accounts of other meanings of the readings of a channel."""
     motions: dict[bytes, Motion] = {}
     for column in inquiry.open:
         excerpt = inquiry.excerpts[column]
@@ -44,7 +44,7 @@ def misnamed(inquiry: Inquiry) -> Iterator[Account | None]:
 
 
 def _bodies(inquiry: Inquiry) -> dict[str, tuple[str, ...]]:
-    """The bodies of the scene by their kind."""
+    """Return the bodies of the scene by their kind."""
     scene = inquiry.world.scene
     return {
         "link": tuple(scene.links),
@@ -55,14 +55,14 @@ def _bodies(inquiry: Inquiry) -> dict[str, tuple[str, ...]]:
 
 
 def _all(inquiry: Inquiry, channel: Channel) -> Iterator[Channel]:
-    """A channel of every body."""
+    """Yield a channel of every body."""
     for body_kind, names in _bodies(inquiry).items():
         kind = next(kind for kind in KINDS.values() if kind.body_kind == body_kind)
         yield from (replace(channel, kind=kind, of=name, relative_to="") for name in names)
 
 
 def _meanings(inquiry: Inquiry, channel: Channel) -> Iterator[OtherMeaning]:
-    """What a channel may be: the same of other bodies, against other links, and other kinds."""
+    """Yield the meanings of a channel: other bodies, relative to other links, and other kinds."""
     bodies = _bodies(inquiry)
     if channel.kind.body_kind == "link":
         yield from _relative(channel, bodies["link"])
@@ -80,7 +80,7 @@ def _meanings(inquiry: Inquiry, channel: Channel) -> Iterator[OtherMeaning]:
 
 
 def _relative(channel: Channel, links: tuple[str, ...]) -> Iterator[OtherMeaning]:
-    """The same link against other ones, its sign either way and its zero free or not."""
+    """Yield the same link relative to others, with either sign, and its zero free or not."""
     for link in ("", *links):
         if link in (channel.of, channel.relative_to):
             continue
@@ -95,7 +95,7 @@ def _relative(channel: Channel, links: tuple[str, ...]) -> Iterator[OtherMeaning
 def _told(
     inquiry: Inquiry, excerpt: Excerpt, other: OtherMeaning, motion: Motion
 ) -> Account | None:
-    """The account of a meaning."""
+    """Return the account of a meaning."""
     own, channel = excerpt.channel, other.channel
     expected = channel.expected(motion)
     moves = np.ptp(expected) > 1e-9 * np.max(np.abs(expected))
@@ -125,7 +125,7 @@ def _told(
 
 
 def _phrase(own: Channel, other: OtherMeaning, zero: float) -> str:
-    """What the column is instead."""
+    """Return the words for another meaning of the column."""
     channel = other.channel
     if other.name != "relative":
         return f"{{who}} {{has}} the readings of {channel.name}"
@@ -136,11 +136,11 @@ def _phrase(own: Channel, other: OtherMeaning, zero: float) -> str:
 
 
 LONGEST = 4
-"""Channels that may stand in each other's place in a ring."""
+"""Largest number of channels in a ring that have each other's readings."""
 
 
 def swapped(inquiry: Inquiry) -> Iterator[Account]:
-    """Channels that have each other's readings, in pairs or in rings."""
+    """Yield accounts of channels that have each other's readings, in pairs or in rings."""
     holds = {column: dict(_held(inquiry, column)) for column in inquiry.open}
     for first in holds:
         for ring in _rings(holds, (first,)):
@@ -160,14 +160,14 @@ def swapped(inquiry: Inquiry) -> Iterator[Account]:
 
 @dataclass(frozen=True)
 class ColumnContent:
-    """What a column holds: its channel as it is in truth, and the error that is left then."""
+    """Content of a column: its actual channel, and the remaining error."""
 
     channel: Channel
     error: Array
 
 
 def _swap_phrase(inquiry: Inquiry, pairs: list[tuple[str, str]]) -> str:
-    """Which channel has which readings."""
+    """Return the words for the exchange of readings."""
     if len(pairs) == 2:
         return "{who} have each other's readings"
     rings = ", ".join(f"{inquiry.channel(other).name} in {column}" for column, other in pairs)
@@ -175,7 +175,7 @@ def _swap_phrase(inquiry: Inquiry, pairs: list[tuple[str, str]]) -> str:
 
 
 def meaning(channel: Channel, instead: Channel) -> dict[str, object]:
-    """What to write in the map of a channel that is another one: what differs."""
+    """Return the map entries by which another channel differs from this one."""
     names = ("of", "unit", "sign", "offset", "relative_to", "on", "wrapped")
     found: dict[str, object] = {
         name: getattr(instead, name)
@@ -188,7 +188,7 @@ def meaning(channel: Channel, instead: Channel) -> dict[str, object]:
 
 
 def unit_of(channel: Channel, kind: Kind) -> str | None:
-    """The unit of another kind that reads the same numbers alike; None where it has none."""
+    """Return the unit of another kind that reads the same numbers alike; None where it has none."""
     if kind.dimension == channel.kind.dimension:
         return channel.unit
     size = UNITS[channel.kind.dimension][channel.unit]
@@ -199,7 +199,7 @@ def unit_of(channel: Channel, kind: Kind) -> str | None:
 def _rings(
     holds: Mapping[str, Mapping[str, ColumnContent]], path: tuple[str, ...]
 ) -> Iterator[tuple[str, ...]]:
-    """The rings of columns each of which holds what the next one should, the least column first."""
+    """Yield the rings of columns, each with the readings of the next; the least comes first."""
     for column in holds[path[-1]]:
         if column == path[0]:
             yield path
@@ -208,7 +208,7 @@ def _rings(
 
 
 def _held(inquiry: Inquiry, column: str) -> Iterator[tuple[str, ColumnContent]]:
-    """The other open columns whose readings a column holds."""
+    """Yield the other open columns whose readings a column holds."""
     own = inquiry.excerpts[column]
     for other in inquiry.open:
         excerpt = inquiry.excerpts[other]
@@ -225,8 +225,8 @@ def _held(inquiry: Inquiry, column: str) -> Iterator[tuple[str, ColumnContent]]:
 
 
 def _read_as(values: Array, own: Channel, other: Channel) -> Iterator[tuple[Channel, Array]]:
-    """A column as another channel, with its readings as they are and with its numbers as the map
-    reads those of the other."""
+    """Yield a column as another channel, with its readings as they are and with its numbers as the
+    map reads the other's."""
     instead = replace(
         other,
         column=own.column,

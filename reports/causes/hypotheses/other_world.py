@@ -1,4 +1,4 @@
-"""A log of another assembly or driver, or that has the whole plane in another way."""
+"""A log of another assembly or driver, or with another frame of the whole plane."""
 
 import itertools
 import math
@@ -21,11 +21,11 @@ from reports.logs.kinds import UNITS
 from reports.output.numbers import listed
 
 MOST_CHOICES = 6
-"""Assemblies are looked at one by one up to so many choices: two to the power of it."""
+"""Largest number of choices of assembly: two to this power are tried one by one."""
 
 
 def assembly(inquiry: Inquiry) -> Iterator[Account]:
-    """Each other assembly that the log may be of."""
+    """Yield accounts of each other assembly."""
     scene = inquiry.world.scene
     groups = chosen_groups(analyse(scene))[:MOST_CHOICES]
     for count in range(1, len(groups) + 1):
@@ -40,7 +40,7 @@ def assembly(inquiry: Inquiry) -> Iterator[Account]:
 def _told(
     inquiry: Inquiry, world: World, groups: Sequence[Group | Triad], branch: Mapping[str, int]
 ) -> Iterator[Account]:
-    """The accounts of an assembly: of the whole log, or of all that comes after an instant."""
+    """Yield the accounts of an assembly, for the whole log or from an instant on."""
     links = inquiry.world.scene.links
     names = listed([name for group in groups for name in group.bodies if name in links])
     which = "another" if any(isinstance(group, Triad) for group in groups) else "the other"
@@ -58,7 +58,7 @@ def _told(
 
 
 def _later(inquiry: Inquiry, world: World, cost: float, phrase: str) -> Iterator[Account]:
-    """The account of a log that goes over to an assembly on the way, from its best sample on."""
+    """Yield the account of a log that changes to an assembly midway, from its best sample on."""
     try:
         others = inquiry.errors(world)
     except CrankcheckError:
@@ -86,14 +86,14 @@ def _later(inquiry: Inquiry, world: World, cost: float, phrase: str) -> Iterator
 
 
 SIGNED = {"speed_rad_s", "acceleration_rad_s2", "amplitude_rad", "before_rad_s", "after_rad_s"}
-"""What of a law changes its sign where the driver turns the other way."""
+"""Numbers of a law that change sign where the driver turns the other way."""
 STARTS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
-"""Angles of the driver, and turns of the plane, that a fit starts from."""
+"""Angles of the driver, and rotations of the plane, from which a fit starts."""
 
 
 def backwards(inquiry: Inquiry) -> Iterator[Account | None]:
-    """The driver turning the other way from the same start, and rates that show it or, as from a
-    sensor of the speed alone, do not."""
+    """Yield accounts of the driver turning the other way from the same start, with rates that show
+    it or, as from a sensor of the speed alone, do not."""
     if inquiry.world.drive is not None:
         return
     law = inquiry.world.scene.driver.law
@@ -107,7 +107,7 @@ def backwards(inquiry: Inquiry) -> Iterator[Account | None]:
 
 
 def start_angle(inquiry: Inquiry) -> Iterator[Account | None]:
-    """The driver starting at another angle; at constant speed that is a clock that does."""
+    """Yield the account of another start of the driver; at constant speed the clock covers it."""
     law = inquiry.world.scene.driver.law
     another = isinstance(law, ConstantSpeed) or inquiry.world.drive is not None
     if another or not inquiry.unexplained:
@@ -129,17 +129,17 @@ def start_angle(inquiry: Inquiry) -> Iterator[Account | None]:
 
 
 def _driven(world: World, law: Law) -> World:
-    """The world with another law of its driver."""
+    """Return the world with another law of its driver."""
     scene = world.scene
     return replace(world, scene=replace(scene, driver=replace(scene.driver, law=law)))
 
 
 NEAR_UNIT = 1e-3
-"""A scale that is as near to a ratio of units is one."""
+"""Relative distance within which a scale counts as a ratio of units."""
 
 
 def mirrored(inquiry: Inquiry) -> Iterator[Account]:
-    """The plane seen from behind, so that one axis and all angles count the other way."""
+    """Yield accounts of the plane seen from behind: one axis and all angles count the other way."""
     for turn, axis in ((0.0, "y"), (math.pi, "x")):
         world = inquiry.world.framed(LogFrame(mirrored=True, turn_rad=turn))
         phrase = (
@@ -152,7 +152,7 @@ def mirrored(inquiry: Inquiry) -> Iterator[Account]:
 
 
 def _turned_round(channel: Channel, axis: str) -> Mapping[str, object]:
-    """What to write in the map of a channel where an axis is turned round."""
+    """Return the map entries of a channel for a reversed axis."""
     kind = channel.kind
     if kind.axis is not None and "xy"[kind.axis] != axis:
         return {}
@@ -164,7 +164,7 @@ def _turned_round(channel: Channel, axis: str) -> Mapping[str, object]:
 
 
 def turned(inquiry: Inquiry) -> Iterator[Account]:
-    """The axes of the log turned against those of the scene, about its origin or another point."""
+    """Yield accounts of axes rotated against the scene's, about its origin or another point."""
     for count in (1, 3):
         found = _frame(inquiry, _of(inquiry, "link", "point"), count)
         if found is None:
@@ -181,15 +181,15 @@ def turned(inquiry: Inquiry) -> Iterator[Account]:
 
 
 def _of(inquiry: Inquiry, *body_kinds: str) -> list[str]:
-    """The columns that are to be explained, and measure such bodies: those that nothing without a
-    number explains, but where these are not two, all."""
+    """Return the columns of such bodies without an explanation free of fitted numbers; all open
+    columns where these are fewer than two."""
     found = [c for c in inquiry.open if inquiry.channel(c).kind.body_kind in body_kinds]
     needy = [column for column in found if column in inquiry.unclaimed]
     return needy if len(needy) > 1 else found
 
 
 def _frame(inquiry: Inquiry, columns: Sequence[str], count: int) -> LogFrame | None:
-    """The frame that tells some columns best: turned, and moved where ``count`` is 3."""
+    """Return the best frame for some columns: rotated, and moved where ``count`` is 3."""
     if len(columns) < 2:
         return None
     thin, longest = inquiry.thin, inquiry.world.scene.longest_m
@@ -212,7 +212,7 @@ def _frame(inquiry: Inquiry, columns: Sequence[str], count: int) -> LogFrame | N
 
 
 def moved(inquiry: Inquiry) -> Iterator[Account]:
-    """The origin of the log at another point than the scene's."""
+    """Yield accounts of an origin of the log at another point than the scene's."""
     shifts = [_shift(inquiry, axis) for axis in (0, 1)]
     for axes in ((0,), (1,), (0, 1)):
         x, y = (shifts[axis] if axis in axes else 0.0 for axis in (0, 1))
@@ -227,7 +227,7 @@ def moved(inquiry: Inquiry) -> Iterator[Account]:
 
 
 def _shift(inquiry: Inquiry, axis: int) -> float:
-    """The median offset [m] of the coordinates of points along an axis; 0 where there is none."""
+    """Return the median offset [m] of the coordinates of points along an axis; 0 without any."""
     coordinates = [
         inquiry.excerpts[column].error
         for column in _of(inquiry, "point")
@@ -237,7 +237,7 @@ def _shift(inquiry: Inquiry, axis: int) -> float:
 
 
 def _origin(frame: LogFrame) -> str:
-    """Where the origin of the log is."""
+    """Return the words for the origin of the log."""
     cos, sin = math.cos(frame.turn_rad), math.sin(frame.turn_rad)
     x, y = frame.shift_m
     place = ", ".join(number(each) for each in (-x * cos - y * sin, x * sin - y * cos))
@@ -245,7 +245,7 @@ def _origin(frame: LogFrame) -> str:
 
 
 def sized(inquiry: Inquiry) -> Iterator[Account]:
-    """All lengths in one ratio to the scene's, while the angles are right."""
+    """Yield the account of all lengths in one ratio to the scene's, with right angles unchanged."""
     ratios = []
     for column in _of(inquiry, "point", "slider"):
         excerpt = inquiry.excerpts[column]

@@ -1,4 +1,4 @@
-"""Single samples that are off: stuck ones, held ones, spikes; and the last digit of all of them."""
+"""Single wrong samples: stuck, held or spikes; and the last digit of all samples."""
 
 import math
 from collections.abc import Iterator
@@ -15,25 +15,25 @@ from reports.logs.kinds import UNITS
 from reports.output.numbers import listed
 
 SHOWN = 3
-"""Places that are named each; the others are counted."""
+"""Places that are named one by one; the others are counted."""
 HELD = 0.3
-"""A channel of which more readings than this part repeat the one before is updated that seldom."""
+"""A channel is held if more than this part of its readings repeat the one before."""
 DEAD = 1e-4
-"""A channel that moves by so little of what it should does not move."""
+"""A channel is dead if it moves by less than this part of its reference motion."""
 NOTHING = 1e-15
-"""What is left of an error that needs no number: a clock that stands would explain it no better."""
+"""Remaining part for a fault without a number: a stopped clock would explain it no better."""
 FEW_RUNS = 3
-"""Stretches that stick by themselves, whatever their lengths."""
+"""Number of stretches that may stick singly, of any length."""
 FEW, FEWEST = 0.03, 5
-"""The part of the readings that may be spikes, and how many may be in any log."""
+"""Part of the readings that may be spikes, and their number in any log."""
 MINORITY = 0.2
-"""The part of the readings of a short log that may be: the others must tell what is right."""
+"""Largest part of a short log that may be spikes: the others must show the right values."""
 LONGEST_SPIKE = 3
-"""Samples in a row that are one spike."""
+"""Consecutive samples that may be one spike."""
 
 
 def samples(inquiry: Inquiry) -> Iterator[Account | None]:
-    """Channels that are off at samples which repeat the one before, or at a few single ones."""
+    """Yield accounts of channels off at samples that repeat the one before, or at a few others."""
     for column in inquiry.open:
         try:
             values, error = inquiry.whole(column)
@@ -45,13 +45,13 @@ def samples(inquiry: Inquiry) -> Iterator[Account | None]:
 
 
 def runs(where: Mask) -> Rows:
-    """The first and the last place (n, 2) of each stretch that is true."""
+    """Return the first and the last place (n, 2) of each stretch that is True."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], where, [False]]).astype(np.int8)))
     return np.asarray(edges.reshape(-1, 2) - np.array([0, 1]))
 
 
 def _dead(inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask) -> Account | None:
-    """The account of readings that stay where they are, while the channel should move."""
+    """Return the account of constant readings of a channel that should move."""
     excerpt = inquiry.excerpts[column]
     expected = excerpt.expected[np.isfinite(excerpt.expected)]
     if excerpt.channel.kind.turns:  # whole turns from sample to sample do not show
@@ -64,7 +64,7 @@ def _dead(inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask)
 
 
 def _stuck(inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask) -> Account | None:
-    """The account of readings that repeat the one before."""
+    """Return the account of readings that repeat the one before."""
     repeated = np.zeros_like(off)
     repeated[1:] = values[1:] == values[:-1]
     if not off.any() or np.any(off & ~repeated):
@@ -85,7 +85,7 @@ def _stuck(inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask
 def _spikes(
     inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask
 ) -> Account | None:
-    """The account of single samples that are off by far more than those beside them."""
+    """Return the account of single samples that are off by far more than their neighbours."""
     if not 0 < np.sum(off) <= min(max(FEWEST, FEW * off.size), MINORITY * off.size):
         return None
     spikes = runs(off)
@@ -99,7 +99,7 @@ def _spikes(
 def _without(
     inquiry: Inquiry, column: str, error: Array, off: Mask, said: tuple[str, float, str]
 ) -> Account | None:
-    """The account, by its name, cost and phrase, of what leaves the other samples as they are."""
+    """Return the account, by name, cost and phrase, of a fault that spares the other samples."""
     rest = float(np.max(np.abs(error[~off]), initial=0.0)) / float(np.max(np.abs(error)))
     if rest > BROUGHT_WITHIN:
         return None
@@ -108,7 +108,7 @@ def _without(
 
 
 def places_text(inquiry: Inquiry, stretches: Rows, verb: str = "") -> str:
-    """Samples, counted from 0, with their times: the first of them, and how many more."""
+    """Return the first samples, counted from 0, with their times, and the number of the others."""
     times = inquiry.case.log.time_s
     each = []
     for first, last in stretches[:SHOWN]:
@@ -126,20 +126,20 @@ def places_text(inquiry: Inquiry, stretches: Rows, verb: str = "") -> str:
 DECIMALS = range(-4, 13)
 DIGITS = range(1, 10)
 ON_GRID = 1e-4
-"""A number is on the grid where it is so near to it, in steps of the grid."""
+"""Distance within which a number is on the grid, in steps of the grid."""
 DOUBLE = 4e-16
-"""What a number loses as it is read and turned into SI, over itself."""
+"""Relative loss of a number by reading it and converting it to SI."""
 HALF = 0.51
-"""What is taken off at most, in steps of the grid; what the readings were off before, they are."""
+"""Largest change by rounding, in steps of the grid; earlier errors of the readings remain."""
 MOST_PREDICTED = 0.9
-"""The part of the readings that has to be what is expected, rounded."""
+"""Part of the readings that has to equal the rounded reference."""
 EVEN_RMS = 12.0**-0.5
-"""The root mean square of what rounding takes off, in steps of the grid."""
+"""Root mean square of the change by rounding, in steps of the grid."""
 
 
 @dataclass(frozen=True)
 class RoundingGrid:
-    """What the readings are rounded to: steps (n,) [SI], and what is said of them."""
+    """Grid of rounded readings: steps (n,) [SI], and its words."""
 
     name: str
     step: Array
@@ -147,20 +147,20 @@ class RoundingGrid:
 
 
 def rounded(inquiry: Inquiry) -> Iterator[Account | None]:
-    """Channels whose error is no more than what is cut off behind their last digit."""
+    """Yield accounts of channels whose error is no more than the part after the last digit."""
     for column in inquiry.open:
         excerpt = inquiry.excerpts[column]
         yield from (_told(inquiry, excerpt, grid) for grid in _grids(excerpt))
 
 
 def resolution(excerpt: Excerpt) -> float:
-    """The last digit of the readings [SI], as far as it shows."""
+    """Return the last digit of the readings [SI], as far as it shows."""
     steps = [float(np.max(grid.step)) for grid in _grids(excerpt)]
     return max([DOUBLE * float(np.max(np.abs(excerpt.values), initial=0.0)), *steps])
 
 
 def _grids(excerpt: Excerpt) -> Iterator[RoundingGrid]:
-    """The grids that all readings lie on, the coarsest of each kind."""
+    """Yield the grids on which all readings lie, the coarsest of each kind."""
     channel = excerpt.channel
     size = UNITS[channel.kind.dimension][channel.unit]
     numbers = channel.sign * excerpt.values / size - channel.offset
@@ -187,14 +187,14 @@ def _grids(excerpt: Excerpt) -> Iterator[RoundingGrid]:
 
 
 def _on(numbers: Array, step: Array, lost: Array) -> bool:
-    """Whether numbers are whole steps, and the steps are longer than what was lost in reading."""
+    """True if numbers are whole steps, and the steps exceed the loss in reading."""
     off = np.abs(numbers / step - np.round(numbers / step)) * step
     steps = np.ptp(numbers) > 0.5 * np.max(step)  # what is less than one step is on every grid
     return bool(steps and np.all(off <= ON_GRID * step + lost) and np.all(step > 1e3 * lost))
 
 
 def _told(inquiry: Inquiry, excerpt: Excerpt, grid: RoundingGrid) -> Account | None:
-    """The account of a grid, rounded to or cut off at, where the error is of that size."""
+    """Return the account of rounding to a grid, or truncation at it, for an error of that size."""
     sign = np.sign(excerpt.values)
     for verb, error in (
         ("rounded", excerpt.error),
@@ -211,8 +211,8 @@ def _told(inquiry: Inquiry, excerpt: Excerpt, grid: RoundingGrid) -> Account | N
 
 
 def _predicted(excerpt: Excerpt, grid: RoundingGrid) -> bool:
-    """Whether most readings are what is expected, rounded to the grid; of a sequence of steps, of
-    which the errors may be few numbers, that tells more than their size."""
+    """True if most readings equal the reference rounded to the grid; for a sequence of steps, with
+    errors of few values, this shows more than their size."""
     zero = excerpt.channel.offset * UNITS[excerpt.channel.kind.dimension][excerpt.channel.unit]
     expected = excerpt.values - excerpt.error + zero
     off = np.round(expected / grid.step) * grid.step - zero - excerpt.values

@@ -1,4 +1,4 @@
-"""Readings that are a straight line of what they should be: wrong unit, sign, zero or gain."""
+"""Readings that are a straight line of the reference: wrong unit, sign, zero or gain."""
 
 import math
 from collections.abc import Iterable, Iterator
@@ -16,21 +16,21 @@ from reports.logs.kinds import UNITS, si
 from reports.output.numbers import listed
 
 TURNS = (0, 1, -1, 2, -2)
-"""Whole turns that a scaled angle may count from elsewhere."""
+"""Whole turns from which a scaled angle may count."""
 LEAST_GAIN = 1e-3
-"""A signal that is weaker is none, and its gain is of noise."""
+"""Least gain of a signal; below it the gain is noise."""
 STRAIGHT = 1e-3
-"""A signal that leaves a straight line by less than this part of an error is even."""
+"""A signal within this part of an error from a straight line is even."""
 TIGHT = 0.02
-"""What a gain and a zero may leave together: much the same leaves any curve of another height."""
+"""Part that a gain and a zero may leave: any curve of another height leaves nearly as little."""
 NO_GAIN = 1e-5
-"""A gain that is nearer to 1 would be seen in no reading."""
+"""A gain nearer to 1 shows in no reading."""
 
 
 @dataclass(frozen=True)
 class StraightLineFault:
-    """Readings as ``gain`` times what is expected, plus ``zero``; ``unit`` is another one of which
-    the gain is made, and ``cost`` what it takes to believe."""
+    """Readings as ``gain`` times the reference, plus ``zero``; ``unit`` is the other unit behind
+    the gain, and ``cost`` the cost of the hypothesis."""
 
     name: str
     cost: float
@@ -40,7 +40,7 @@ class StraightLineFault:
 
 
 def straight(inquiry: Inquiry) -> Iterator[Account]:
-    """Each line that explains a channel: by a sign or a unit, by a zero, by a gain, or by two."""
+    """Yield each line that explains a channel: by sign or unit, by zero, by gain, or by two."""
     for column in inquiry.open:
         excerpt = inquiry.excerpts[column]
         if excerpt.nought:
@@ -60,12 +60,12 @@ def straight(inquiry: Inquiry) -> Iterator[Account]:
 def _each(
     inquiry: Inquiry, excerpt: Excerpt, lines: Iterable[StraightLineFault]
 ) -> Iterator[Account]:
-    """The accounts of those lines that explain a channel."""
+    """Yield the accounts of the lines that explain a channel."""
     yield from filter(None, (_told(inquiry, excerpt, line) for line in lines))
 
 
 def _known(channel: Channel) -> Iterator[StraightLineFault]:
-    """The lines whose gain is a sign or a ratio of units."""
+    """Yield the lines whose gain is a sign or a ratio of units."""
     yield StraightLineFault("sign", CAUSE, -1.0)
     yield StraightLineFault("offset", CAUSE + NUMBER, 1.0, shifted=True)
     yield StraightLineFault("sign", CAUSE + CHOICE + NUMBER, -1.0, shifted=True)
@@ -79,7 +79,7 @@ def _known(channel: Channel) -> Iterator[StraightLineFault]:
 
 
 def _fitted(excerpt: Excerpt) -> Iterator[StraightLineFault]:
-    """The lines whose gain is fitted, with a zero and without."""
+    """Yield the lines whose gain is fitted, with a zero and without."""
     even = CHOICE if _steady_rate(excerpt) else 0.0  # more likely the driver has another speed
     for gain, shifted in _gains(excerpt):
         if abs(gain) > LEAST_GAIN and abs(gain - 1.0) > NO_GAIN:
@@ -88,7 +88,7 @@ def _fitted(excerpt: Excerpt) -> Iterator[StraightLineFault]:
 
 
 def _gains(excerpt: Excerpt) -> Iterable[tuple[float, bool]]:
-    """The gain of least squares, and that beside a zero that is free."""
+    """Return the gain of least squares, and the gain beside a free zero."""
     expected, values = excerpt.expected, excerpt.values
     if excerpt.channel.wrapped:  # the nearest turn: as good as the error is less than half of one
         values = expected + excerpt.error
@@ -108,7 +108,7 @@ def _gains(excerpt: Excerpt) -> Iterable[tuple[float, bool]]:
 
 
 def _told(inquiry: Inquiry, excerpt: Excerpt, line: StraightLineFault) -> Account | None:
-    """The account of a line, its zero fitted where it has one."""
+    """Return the account of a line, its zero fitted where it has one."""
     channel = excerpt.channel
     values = excerpt.values
     if line.name == "scaled" and channel.wrapped:
@@ -126,7 +126,7 @@ def _told(inquiry: Inquiry, excerpt: Excerpt, line: StraightLineFault) -> Accoun
 
 
 def _correction(line: StraightLineFault, channel: Channel, zero: float) -> dict[str, object]:
-    """What mends it in the map: a reading in SI is ``sign * (number + offset) * unit``."""
+    """Return the mending map entries: a reading in SI is ``sign * (number + offset) * unit``."""
     if line.name == "scaled":
         return {}
     unit = line.unit or channel.unit
@@ -145,7 +145,7 @@ def _correction(line: StraightLineFault, channel: Channel, zero: float) -> dict[
 def _phrase(
     line: StraightLineFault, channel: Channel, zero: float, inquiry: Inquiry, excerpt: Excerpt
 ) -> str:
-    """What is wrong, in words."""
+    """Return the words for the fault."""
     unit = line.unit or channel.unit
     said = {
         "unit": f"{{is}} in {unit}, not in {channel.unit}",
@@ -166,8 +166,8 @@ def _phrase(
 
 
 def _steady_rate(excerpt: Excerpt) -> float:
-    """The rate at which the expectation goes on evenly, of which no zero can be told from a delay;
-    0 where it does not."""
+    """Return the rate of a steadily moving reference, for which a zero and a delay are the same; 0
+    where it is not steady."""
     fine = np.isfinite(excerpt.expected)
     times, signal = excerpt.instants[fine], excerpt.expected[fine]
     times, signal = times - times.mean(), signal - signal.mean()
@@ -177,23 +177,23 @@ def _steady_rate(excerpt: Excerpt) -> float:
 
 
 def _amount(value: float, unit: str, channel: Channel) -> str:
-    """A number in the unit of the log, and in SI where that is another one."""
+    """Return a number in the unit of the log, and in SI where that differs."""
     dimension = channel.kind.dimension
     shown = f"{value / UNITS[dimension][unit]:+.4g} {unit}"
     return shown if unit == si(dimension) else f"{shown} ({value:+.4g} {si(dimension)})"
 
 
 EDGES = (-math.tau, -math.pi, 0.0)
-"""Where the turn begins that wrapped readings lie in [rad]."""
+"""Begin of the turn in which wrapped readings lie [rad]."""
 EDGE = 1e-2
-"""How near to an edge noise may take readings over it [rad]."""
+"""Distance from an edge within which noise may take readings over it [rad]."""
 MOST_JUMPS = 12
-"""Turns that may be lost; of more it is how the angle is measured."""
+"""Number of turns that may be lost; more are due to the way the angle is measured."""
 SHOWN = 3
 
 
 def turns(inquiry: Inquiry) -> Iterator[Account | None]:
-    """Angles whose error is whole turns, or half ones, or whose sign is lost."""
+    """Yield accounts of angles off by whole or half turns, or without their sign."""
     for column in inquiry.open:
         excerpt = inquiry.excerpts[column]
         if excerpt.channel.kind.turns:
@@ -207,7 +207,7 @@ def turns(inquiry: Inquiry) -> Iterator[Account | None]:
 
 
 def _whole(inquiry: Inquiry, column: str, values: Array, error: Array) -> Account | None:
-    """The account of whole turns: an angle that is wrapped, or lost some."""
+    """Return the account of whole turns: an angle that is wrapped, or lost some."""
     if inquiry.channel(column).wrapped:
         return None
     turn = np.round(error / math.tau)
@@ -226,8 +226,8 @@ def _whole(inquiry: Inquiry, column: str, values: Array, error: Array) -> Accoun
 
 
 def _wrapped(values: Array, angle: Array) -> bool:
-    """Whether readings are an angle (known but for whole turns) within one turn that begins where
-    people let one begin; beside its edges noise may take some over them."""
+    """True if readings are an angle, known up to whole turns, within one turn of a usual beginning;
+    noise may take some over its edges."""
     for edge in EDGES:
         from_edge = np.remainder(angle - edge, math.tau)
         inside = np.minimum(from_edge, math.tau - from_edge) > EDGE
@@ -237,14 +237,14 @@ def _wrapped(values: Array, angle: Array) -> bool:
 
 
 def _folded(values: Array) -> bool:
-    """Whether readings lie in half a turn that begins where an arc tangent does."""
+    """True if readings lie in half a turn that begins as an arc tangent's does."""
     least, most = float(np.min(values)), float(np.max(values))
     begins = (-0.5 * math.pi, 0.0)
     return any(each - EDGE < least and most < each + math.pi + EDGE for each in begins)
 
 
 def _half(inquiry: Inquiry, column: str, values: Array, error: Array) -> Account | None:
-    """The account of an angle that is known but for half turns, as from an arc tangent."""
+    """Return the account of an angle known up to half turns, as from an arc tangent."""
     half = np.round(error / math.pi)
     if not np.any(half % 2.0) or not _folded(values):
         return None
@@ -260,7 +260,7 @@ def _told_of_turns(
     said: tuple[str, float, str],
     correction: dict[str, object],
 ) -> Account | None:
-    """The account, by its name, cost and phrase, of what leaves this over the whole log."""
+    """Return the account, by name, cost and phrase, with this residual over the whole log."""
     excerpt = inquiry.excerpts[column]
     rest = float(np.max(np.abs(left))) / math.tau
     if rest > BROUGHT_WITHIN or (rest > 0.1 and np.max(np.abs(left)) > excerpt.limit):
@@ -271,7 +271,7 @@ def _told_of_turns(
 
 
 def _jumps(inquiry: Inquiry, turn: Array, jumps: Rows) -> str:
-    """Where turns are lost, and how many at once."""
+    """Return the places where turns are lost, and their numbers."""
     times, each = inquiry.case.log.time_s, []
     for place in jumps[:SHOWN]:
         by = int(turn[place] - turn[place - 1])
@@ -282,7 +282,7 @@ def _jumps(inquiry: Inquiry, turn: Array, jumps: Rows) -> str:
 
 
 def _unsigned(inquiry: Inquiry, column: str) -> Account | None:
-    """The account of readings that have lost their sign."""
+    """Return the account of readings that have lost their sign."""
     excerpt = inquiry.excerpts[column]
     expected = excerpt.expected
     if excerpt.channel.kind.turns:

@@ -1,7 +1,7 @@
-"""Channels with two faults at once: what is found where the first of them is put right.
+"""Channels with two faults at once: the second is sought with the first put right.
 
-What is put right is what needs no number that is fitted: another unit or sign, or some samples that
-stick or jump, which are left out. Another fault is looked for in what is there then.
+The first fault needs no fitted number: another unit or sign, or some samples that stick or jump,
+which are left out. The second is sought in the corrected readings.
 """
 
 import math
@@ -24,22 +24,21 @@ from reports.logs.channel import Channel, Reading
 from reports.logs.kinds import UNITS
 
 MOST = 4
-"""Channels that are looked at twice."""
+"""Channels that are examined twice."""
 NEARER = 0.6
-"""The part of an error that may be left where another unit or sign is put right."""
+"""Part of an error that may be left with another unit or sign put right."""
 LIKE = 3.0
-"""Times that readings may then be larger, or smaller, than what is expected."""
+"""Largest ratio of the corrected readings to the reference, or of the reference to them."""
 FEW, FEWEST = 0.03, 3
-"""The part of the readings that may jump, or be in stretches that stick, and how many in any
-log."""
+"""Part of the readings that may jump, or be in stuck stretches, and their number in any log."""
 FAR = 20.0
-"""A reading jumps that is so many times as far from those beside it as four in five are."""
+"""A reading jumps if it is so many times as far from its neighbours as four in five are."""
 
 
 @dataclass(frozen=True)
 class First:
-    """A fault that is put right: its name, what it costs to believe it, its phrase, what to write
-    in the map, the inquiry into its column then, and what else is looked for there."""
+    """Fault that is put right: its name, cost, phrase, map entries, the inquiry into its column
+    after that, and the further hypotheses for it."""
 
     name: str
     cost: float
@@ -50,7 +49,7 @@ class First:
 
 
 def two_faults(inquiry: Inquiry) -> Iterator[Account]:
-    """The accounts of two faults of each channel that one does not explain well."""
+    """Yield the accounts of two faults of each channel that one does not explain well."""
     for column in _unclear(inquiry)[:MOST]:
         for first in (*_read_otherwise(inquiry, column), *_without_samples(inquiry, column)):
             for hypothesis in first.others:
@@ -63,7 +62,7 @@ def two_faults(inquiry: Inquiry) -> Iterator[Account]:
 
 
 def _unclear(inquiry: Inquiry) -> list[str]:
-    """The channels that one fault does not explain well, nor one of the log with several others."""
+    """Return the channels that neither one fault nor one of several channels explains well."""
     clear = {
         column
         for account in inquiry.accounts
@@ -74,14 +73,14 @@ def _unclear(inquiry: Inquiry) -> list[str]:
 
 
 def _well(first: First, column: str, second: Account) -> bool:
-    """Whether two faults leave so little that they are no chance."""
+    """True if the residual of two faults is too small for chance."""
     excerpt = first.inquiry.excerpts[column]
     largest = second.lefts[column] * CauseSize.of(excerpt.error).largest
     return second.rests[column] <= TIGHT or largest <= excerpt.limit
 
 
 def _both(inquiry: Inquiry, column: str, first: First, second: Account) -> Account:
-    """The account of both, beside the error that there was."""
+    """Return the account of both, against the original error."""
     before, after = inquiry.excerpts[column], first.inquiry.excerpts[column]
     share = after.size.largest / before.size.largest
     left = CauseSize.of(after.error).largest / CauseSize.of(before.error).largest
@@ -99,8 +98,8 @@ def _both(inquiry: Inquiry, column: str, first: First, second: Account) -> Accou
 
 
 def _read_otherwise(inquiry: Inquiry, column: str) -> Iterator[First]:
-    """A channel in other units and of the other sign, as far as its readings are of the size that
-    they should be then, and nearer."""
+    """Yield a channel in other units and of the other sign, if its readings then have the right
+    size, and are nearer."""
     excerpt = inquiry.excerpts[column]
     channel = excerpt.channel
     units = UNITS[channel.kind.dimension]
@@ -127,15 +126,15 @@ def _read_otherwise(inquiry: Inquiry, column: str) -> Iterator[First]:
 
 
 def _reread(excerpt: Excerpt, channel: Channel, gain: float) -> Excerpt:
-    """The readings, which are ``gain`` times what they should be, as another channel has them."""
+    """Return the readings, which are ``gain`` times too large, as another channel has them."""
     reading = Reading(channel, excerpt.reading.values / gain, excerpt.reading.instants)
     fresh = replace(excerpt, reading=reading, values=excerpt.values / gain)
     return fresh.in_world(excerpt.expected)
 
 
 def _likely(excerpt: Excerpt, fresh: Excerpt) -> bool:
-    """Whether readings are of the size that is expected, and nearer to it than before; of angles
-    whatever whole turns they lost."""
+    """True if readings are of the size of the reference, and nearer to it than before; angles may
+    have lost any whole turns."""
     error = fresh.error
     if fresh.channel.kind.turns:
         error = np.remainder(error + math.pi, math.tau) - math.pi
@@ -147,7 +146,7 @@ def _likely(excerpt: Excerpt, fresh: Excerpt) -> bool:
 
 
 def _without_samples(inquiry: Inquiry, column: str) -> Iterator[First]:
-    """A channel without some samples that stick or jump, where that is what few do."""
+    """Yield a channel without some samples that stick or jump, if these are few."""
     excerpt = inquiry.excerpts[column]
     values, error = inquiry.whole(column)
     for name, where in (("stuck", _stuck(excerpt, values, error)),
@@ -172,8 +171,8 @@ def _without_samples(inquiry: Inquiry, column: str) -> Iterator[First]:
 
 
 def _stuck(excerpt: Excerpt, values: Array, error: Array) -> Mask:
-    """Where readings repeat the one before for as long as they should move by more than their
-    limit."""
+    """Return a mask of readings that repeat the one before while they should move by more than
+    their limit."""
     where = np.zeros(values.shape, dtype=bool)
     where[1:] = values[1:] == values[:-1]
     expected = values - error
@@ -183,7 +182,7 @@ def _stuck(excerpt: Excerpt, values: Array, error: Array) -> Mask:
 
 
 def _jumps(excerpt: Excerpt, error: Array) -> Mask:
-    """Where an error is far from those of the samples beside it, by more than its limit."""
+    """Return a mask of errors that are far from their neighbours', by more than the limit."""
     off = np.abs(error[1:-1] - 0.5 * (error[:-2] + error[2:]))
     padded = np.pad(off, 1)
     peak = (off >= padded[:-2]) & (off >= padded[2:])
