@@ -1,1 +1,1 @@
-"""A run beside the truth."""
+"""Comparison of a run with the reference."""

@@ -1,8 +1,8 @@
-"""The beam that engines are held to, and what it may be off by.
+"""The beam that is the reference of elastic links, and its uncertainty.
 
-It is described by polynomials, with the shortening of a bent link. What it may be off by is seen
-from fewer of them, or more, and from where exact chains of more and more segments go to, which know
-nothing of polynomials or of foreshortening: their distance to it falls as 1/n^2, up to what the
+Polynomials describe it, with the shortening of a bent link. Its uncertainty follows from fewer or
+more of them, and from the limit of exact chains of ever more segments, which need neither
+polynomials nor foreshortening: their distance to it falls as 1/n^2, down to the effects that the
 beam neglects.
 """
 
@@ -30,9 +30,9 @@ from models.scene.elastic import Shape
 from reports.quantities.by_kind import largest_deflection
 
 FEWER = Polynomials(REFERENCE.across - 2, REFERENCE.along - 1)
-"""What says how far the reference is to be trusted."""
+"""Polynomials that show how far the reference can be trusted."""
 FINE, COARSE, LEAST = 8, 4, 4
-"""Segments of the chains that say where more and more of them go to; and of the one that is
+"""Segments of the chains that are extrapolated to infinitely many; and of the chain that is
 integrated where the motion is not periodic: the fastest frequency grows with the square of their
 number, and the time with it."""
 LOOKS = 400
@@ -40,25 +40,25 @@ LOOKS = 400
 
 
 def shape_of(scene: Scene) -> Shape:
-    """How the elastic links of a scene start; with their quasi-static shape if it does not say."""
+    """Return the start of the elastic links of a scene; their quasi-static shape by default."""
     return scene.start.shape or "quasi-static"
 
 
 @dataclass(frozen=True)
 class BeamTheory:
-    """The links of a scene as beams with foreshortening, from time 0 to ``until_s`` [s]; what is
-    periodic goes on for ever."""
+    """The links of a scene as beams with foreshortening, from time 0 to ``until_s`` [s]; a periodic
+    motion has no end."""
 
     others: ClassVar[Polynomials] = FEWER
-    """Another description of the beam."""
+    """Polynomials of another description of the beam."""
     looked_by: ClassVar[Polynomials] = REFERENCE
-    """Of the linear theory."""
+    """Polynomials of the linear theory."""
     scene: Scene
     until_s: float
 
     @property
     def doubted(self) -> Sequence[tuple[Motion, Motion]]:
-        """Motions whose difference is a doubt of all that is compared, but of deflections."""
+        """Pairs of motions whose difference is an uncertainty of all quantities but deflections."""
         return ()
 
     @property
@@ -80,7 +80,7 @@ class BeamTheory:
 
     @cached_property
     def other(self) -> ElasticHistory:
-        """By other polynomials."""
+        """The motion by other polynomials."""
         return self._moved(self.others)
 
     @cached_property
@@ -95,12 +95,12 @@ class BeamTheory:
 
     @cached_property
     def looked(self) -> Motion:
-        """The beam there."""
+        """The motion of the beam at these instants."""
         return self.beam.at(self.looks_s)
 
     @cached_property
     def looked_other(self) -> Motion:
-        """The other description of it, there."""
+        """The motion by the other polynomials at these instants."""
         return self.other.at(self.looks_s)
 
     @cached_property
@@ -110,20 +110,20 @@ class BeamTheory:
 
     @cached_property
     def linear_m(self) -> float:
-        """What the linear theory, without foreshortening, is off by."""
+        """Error of the linear theory, without foreshortening [m]."""
         linear = self._moved(self.looked_by, stiffened=False).at(self.looks_s)
         return deflections_apart(linear, self.looked)
 
     @cached_property
     def doubt_m(self) -> float:
-        """What the beam may be off by: what other polynomials are off it by and, where chains are
-        soon found, how far from it these go to."""
+        """Uncertainty of the beam [m]: its difference to other polynomials and, for cheap chains,
+        their extrapolated distance from it."""
         off = deflections_apart(self.looked_other, self.looked)
         chained = self.is_periodic and not any(e.stretches for e in self.scene.elastic.values())
         return max(off, self._beside_chains()) if chained else off
 
     def _beside_chains(self) -> float:
-        """How far from the beam two chains go to, without the part that falls as 1/n^2 [m]."""
+        """Return the distance from the beam of two chains extrapolated by 1/n^2 [m]."""
         fine, coarse = (self.chain(count).at(self.looks_s) for count in (FINE, COARSE))
         gain = FINE**2 / (FINE**2 - COARSE**2)
         return max(
@@ -133,18 +133,18 @@ class BeamTheory:
         )  # fmt: skip
 
     def chain(self, count: int, *, corrected: bool = False) -> ExactChain:
-        """The exact chain of so many segments."""
+        """Return the exact chain of ``count`` segments."""
         return ExactChain(SegmentedScene(self.scene, count, corrected), self.until_s, self.shape)
 
     @property
     def cycles_per_s(self) -> float:
-        """How often the links swing, 0 where their motion is periodic."""
+        """Frequency of the swings of the links, 0 where their motion is periodic."""
         return 0.0 if self.is_periodic else self.lowest_rad_s / math.tau
 
 
 class FreeBeamTheory(BeamTheory):
-    """As `BeamTheory`, of free motion: small differences grow there, and the beam's own doubt of
-    all of it with them."""
+    """As `BeamTheory`, for free motion: small differences grow there, and with them the uncertainty
+    of the whole beam."""
 
     others: ClassVar[Polynomials] = REFERENCE.finer
     looked_by: ClassVar[Polynomials] = FEWER  # at half the time
@@ -155,7 +155,7 @@ class FreeBeamTheory(BeamTheory):
 
 
 def deflections_apart(one: Motion, other: Motion) -> float:
-    """The largest difference of the deflections of two motions [m]."""
+    """Return the largest difference of the deflections of two motions [m]."""
     return max(
         float(np.abs(one.elastic[name].middle - other.elastic[name].middle).max())
         for name in other.elastic
@@ -164,7 +164,7 @@ def deflections_apart(one: Motion, other: Motion) -> float:
 
 @dataclass(frozen=True)
 class ExactChain:
-    """A chain of segments as a multibody of our own, and its motion as one of the scene."""
+    """A chain of segments as a multibody of our own, with its motion in the scene's terms."""
 
     chain: SegmentedScene
     until_s: float
@@ -175,7 +175,7 @@ class ExactChain:
         return chain_motion(self.chain, self.shape, self.until_s)
 
     def at(self, time_s: Array) -> Motion:
-        """At times [s] (T,), with the links and points of the scene."""
+        """Return the motion at times [s] (T,), with the links and points of the scene."""
         motion = self.motion.at(time_s)
         first = {
             self.chain.segments(name)[0]: motion.links[name] for name in self.chain.scene.elastic

@@ -1,4 +1,4 @@
-"""A run beside the truth, which is solved for once at each set of instants that is asked for."""
+"""A run beside the reference, which is solved once at each set of requested instants."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ from reports.quantities import named
 from sim.engine import Energy, Run
 
 SETTLING = 40
-"""Samples in which an engine that starts with closed pins comes to its steady error: rates of these
-are rows of their own, of kind "start". (pymunk: its velocities jump by half a step's worth.)"""
+"""Samples in which an engine that starts with closed pins comes to its steady error: their rates
+are separate rows, of kind "start". (pymunk: its velocities jump by half a step's worth.)"""
 SETS = 2
-"""Sets of instants that are kept: those of places and of velocities are often two."""
+"""Sets of instants that are kept: positions and velocities often have two."""
 
 
 @lru_cache(maxsize=1)
 def truth_of(same: Same) -> Truth:
-    """The truth of the scene that was asked for last: its cells follow one another, and most are
+    """Return the reference of the scene requested last: its cells follow one another, and most are
     logged at the same instants."""
     return Truth(same.scene)
 
 
 @dataclass(frozen=True)
 class Truth:
-    """The reference of a scene at sets of instants, each solved for once; with ``bound``, what it
-    may be wrong by as well; of some ``links`` and ``points`` alone, or of all for None."""
+    """The reference of a scene at sets of instants, each solved once; with ``bound``, its own
+    uncertainty too; for some ``links`` and ``points`` alone, or for all if None."""
 
     scene: Scene
     bound: bool = True
@@ -46,16 +46,16 @@ class Truth:
     _loaded: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
 
     def beside(self, run: Run) -> Beside | None:
-        """A run beside this truth; None where it logged nothing."""
+        """Return a run beside this reference; None where it logged nothing."""
         return Beside.of(self, run)
 
     @property
     def given(self) -> Scene:
-        """The scene that an engine is given: of elastic links, the segments."""
+        """The scene for the engine: with segments for elastic links."""
         return self.scene
 
     def logged(self, run: Run) -> Run:
-        """A run of what an engine was given as one of the scene: the same, unless links bend."""
+        """Return a run of the engine's scene as one of the scene: the same, unless links bend."""
         return run
 
     @cached_property
@@ -64,7 +64,7 @@ class Truth:
         return solve(self.scene, np.zeros(1), bound=False).state()
 
     def at(self, time_s: Array) -> Motion:
-        """The reference at instants (T,). Raises CrankcheckError where there is none."""
+        """Return the reference at instants (T,). Raises CrankcheckError where there is none."""
         instants = time_s.tobytes()
         motion = self._motions.get(instants)
         if motion is None:
@@ -76,7 +76,7 @@ class Truth:
         return solve(self.scene, time_s, links=self.links, points=self.points, bound=self.bound)
 
     def with_forces_at(self, time_s: Array) -> Motion:
-        """As `at`, with the forces; there are none (NaN) in dead points."""
+        """Return `at` with the forces; there are none (NaN) in dead points."""
         instants = time_s.tobytes()
         motion = self._loaded.get(instants)
         if motion is None:
@@ -99,10 +99,10 @@ def _keep(motions: dict[bytes, Motion], instants: bytes, motion: Motion) -> None
 
 @dataclass(frozen=True)
 class Beside:
-    """A run that logged something, beside the truth; ``motion`` is what it logged.
+    """A run that logged something, beside the reference; ``motion`` is the logged one.
 
-    Runs of a scene that were logged at the same instants share what was solved for, where they
-    share ``truth``. What is worked out raises CrankcheckError where there is no reference.
+    Runs of a scene that were logged at the same instants share the solutions, where they share
+    ``truth``. Derived values raise CrankcheckError where there is no reference.
     """
 
     compared_by: ClassVar[tuple[str, ...]] = (".driven_errors",)
@@ -114,7 +114,7 @@ class Beside:
 
     @staticmethod
     def of(truth: Truth, run: Run) -> Beside | None:
-        """The run beside the truth; None where it logged nothing."""
+        """Return the run beside the reference; None where it logged nothing."""
         motion = run.motion
         return Beside(truth, run, motion) if motion is not None and motion.time_s.size else None
 
@@ -124,12 +124,12 @@ class Beside:
 
     @cached_property
     def reference(self) -> Motion:
-        """The truth at the logged instants."""
+        """The reference at the logged instants."""
         return self.truth.at(self.motion.time_s)
 
     @cached_property
     def at_crank(self) -> Motion:
-        """The truth, without bounds, at the logged angles of the driver, which stands still."""
+        """The reference, without bounds, at the logged angles of the driver, with rates 0."""
         still = np.zeros_like(self.crank)
         return solve_driven(self.scene, self.crank, still, still, self.motion.time_s, bound=False)
 
@@ -146,65 +146,65 @@ class Beside:
 
     @cached_property
     def drive(self) -> Array:
-        """How far the driver is from where it was told to be [rad], (T,); of a slider over the
+        """Distance of the driver from its commanded place [rad], (T,); for a slider over the
         longest length."""
         if self.scene.driver.slider is not None:
             return np.asarray((self.crank - self.driver_rad) / self.scene.driver_arm_m)
         return angle_error(self.crank, self.driver_rad)
 
     def driver_at(self, time_s: Array, reference: Motion) -> Array:
-        """The true angle of the driver [rad] at instants, (T,), those of a reference."""
+        """Return the true angle of the driver [rad] at the instants of a reference, (T,)."""
         return self.scene.driver.law.at(time_s)[0]
 
     def judged(self, track: Track, time_s: Array) -> Track:
-        """A track of an error at the same time, as it is held to a limit."""
+        """Return a track of an error at the same time in the form that limits apply to."""
         return track
 
     @cached_property
     def whole(self) -> Motion:
-        """The truth of all that is compared of the scene, which says how hard it is."""
+        """The reference of all compared quantities of the scene, for its difficulty."""
         return self.reference
 
     @property
     def of_engine(self) -> bool:
-        """Whether an engine made the run, which is never as near as the reference to itself."""
+        """True if an engine made the run: it is never as near as the reference to itself."""
         return True
 
     @property
     def settling(self) -> int:
-        """How many samples may be the start."""
+        """Largest number of samples of the start."""
         return SETTLING
 
     @property
     def is_even(self) -> bool:
-        """Whether the logged places are to be differenced, at steps that are all the same."""
+        """True if the logged positions can be differenced, with equal steps throughout."""
         return True
 
     @property
     def has_crank(self) -> bool:
-        """Whether errors at the logged angle of the driver are asked for."""
+        """True if errors at the logged angle of the driver are required."""
         return True
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """What the scene has and the run should have logged."""
+        """Parts of the scene that the run should have logged."""
         gaps = self.tracks(named("closure"), self.reference)
         open_ = [f"gap of {track.body}" for track in gaps if track.body not in self.run.gaps]
         return (*lacking(self.motion, self.reference), *open_)
 
     @property
     def incomplete(self) -> str:
-        """What the time stamps lack of those that were commanded, "" where they are whole."""
+        """Gap of the time stamps against the commanded ones, "" where they are complete."""
         return incomplete(self.run)
 
     @property
     def places(self) -> tuple[Track, ...]:
-        """The tracks of place against the truth at the logged instants."""
+        """The tracks of position against the reference at the logged instants."""
         return self.tracks(named("place"), self.reference)
 
     def tracks(self, quantities: Sequence[str], reference: Motion) -> tuple[Track, ...]:
-        """The tracks of some quantities of the log, against a reference of as many samples; those
-        against the truth at the logged instants are kept."""
+        """Return the tracks of some quantities of the log, against a reference of as many samples;
+        tracks against the reference at the logged instants are kept."""
         kept = self._own if reference is self.reference else dict[str, tuple[Track, ...]]()
         for name in quantities:
             if name not in kept:
@@ -218,7 +218,7 @@ EPSILON = float(np.finfo(np.float64).eps)
 
 
 def incomplete(run: Run) -> str:
-    """What the log lacks of the commanded samples, start + k * every * dt; "" where it is whole.
+    """Return the gap of the log in the commanded samples, start + k * every * dt; "" if complete.
 
     A run that did not end well has a short log by its nature: its status says so already.
     """
@@ -244,7 +244,7 @@ def incomplete(run: Run) -> str:
 
 
 def first_samples(run: Run, number: int) -> Run:
-    """The run with its first samples alone, of all that it logged at each; itself where these are
+    """Return the run with its first samples alone, in all its series; itself where these are
     all."""
     motion = run.motion
     if motion is None or number >= motion.time_s.size:
@@ -253,7 +253,7 @@ def first_samples(run: Run, number: int) -> Run:
 
 
 def each_at(run: Run, chosen: Callable[[Array], Array]) -> Run:
-    """The run at some of its samples, of all that it logged at each."""
+    """Return the run at some of its samples, in all its series."""
     assert run.motion is not None
     energy = run.energy
     return replace(

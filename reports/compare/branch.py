@@ -1,4 +1,4 @@
-"""Whether a run stayed on its branch: the other assembly of a closed loop is closed as well."""
+"""Check that a run stayed on its branch: the other assembly of a closed loop is closed as well."""
 
 import itertools
 from collections.abc import Iterable, Mapping
@@ -17,22 +17,22 @@ from reports.compare.free_truth import FreeBeside
 from reports.quantities.by_kind import GEOMETRY
 
 AWAY_RAD = 0.5
-"""A link that is off by so much, in a loop that is closed, may stand in the other assembly."""
+"""Error from which on a link, in a closed loop, may be in the other assembly."""
 CLOSED = 0.05
-"""A loop whose pins are open by less, over the longest link, is closed."""
+"""Opening of the pins below which a loop is closed, over the longest link."""
 HERE_RAD = 0.02
-"""A link that is off by less is still on its branch."""
+"""Error below which a link is still on its branch."""
 THERE_RAD = 0.1
-"""A mechanism whose links are all off another assembly by less stands in that one."""
+"""Distance of all links from another assembly below which the mechanism is in it."""
 MOST_CHOICES = 6
-"""Assemblies are looked at one by one up to so many choices: two to the power of it."""
+"""Largest number of choices of assembly: two to this power are tried one by one."""
 
 
 def departure(beside: Beside) -> Departure | None:
-    """Where the first link left the branch of the scene while its loop stayed closed.
+    """Return the place where the first link left the branch of the scene with its loop closed.
 
-    A link that is far off in a loop that is closed has left its branch if the mechanism stands in
-    another assembly at that or a later sample; else it is off its place, and on its way.
+    A link that is far off in a closed loop has left its branch if the mechanism is in another
+    assembly at that or a later sample; else it is off its place, and on its way.
     """
     tracks = beside.tracks(("angle",), beside.reference)
     far, left = _far_off(beside, ((track.body, track.error) for track in tracks))
@@ -46,8 +46,8 @@ def departure(beside: Beside) -> Departure | None:
 def _far_off(
     beside: Beside, errors: Iterable[tuple[str, Array]]
 ) -> tuple[Mask, tuple[int, str] | None]:
-    """The samples at which links are far off while the loop is closed, by the ``errors`` of their
-    angles; and where the first of them began to be, and which it is."""
+    """Return the samples at which links are far off while the loop is closed, by the ``errors`` of
+    their angles; and the sample and link where this began first."""
     closed = np.ones(beside.motion.time_s.shape, dtype=bool)
     for gap in beside.run.gaps.values():
         closed &= np.abs(gap) < CLOSED * beside.scene.longest_m
@@ -64,12 +64,12 @@ def _far_off(
 
 
 def _elsewhere(beside: Beside, far: Mask) -> bool:
-    """Whether the mechanism stands in another assembly at one of the samples ``far``.
+    """True if the mechanism is in another assembly at one of the samples ``far``.
 
-    Assemblies are the choices of their groups, in solving order: two of a dyad, up to
-    six of a triad, which are those that it has at the start. What cannot be had at all of the
-    samples is passed over: a run that went over to it is off its place all the same. So are those
-    which share their first choices with one that is ruled out by the links of these alone.
+    Assemblies are the choices of their groups, in solving order: two of a dyad, up to six of a
+    triad, as at the start. An assembly that does not exist at all samples is skipped: a run that
+    changed to it is off its place anyway. So is one that shares its first choices with an assembly
+    already excluded by the links of these alone.
     """
     scene, times = beside.scene, beside.motion.time_s
     groups = chosen_groups(analyse(scene))[:MOST_CHOICES]
@@ -101,7 +101,7 @@ def _elsewhere(beside: Beside, far: Mask) -> bool:
 
 
 def stay(there: Mask, logged: Motion, links: Mapping[str, LinkMotion]) -> None:
-    """Take out the samples at which one of the links, as far as they are logged, is elsewhere."""
+    """Remove the samples at which one of the links, as far as they are logged, is elsewhere."""
     for name, link in links.items():
         if name not in logged.links or np.all(np.isnan(logged.links[name].theta)):
             continue
@@ -109,17 +109,17 @@ def stay(there: Mask, logged: Motion, links: Mapping[str, LinkMotion]) -> None:
 
 
 def _turned(angle: Array) -> Array:
-    """Angles [rad] less whole turns."""
+    """Return angles [rad] less whole turns."""
     return np.asarray(np.remainder(angle + np.pi, 2.0 * np.pi) - np.pi)
 
 
 def free_departure(beside: FreeBeside) -> Departure | None:
-    """Where the first link left the assembly that the truth has at that time, while its loop stayed
-    closed.
+    """Return the place where the first link left the reference's assembly at that time, with its
+    loop closed.
 
-    What the truth goes through itself is no departure, and a phase that has run away is none: the
-    links are held to the position that the run's own coordinate has. With several freedoms the
-    phase alone tells.
+    A change that the reference makes itself is no departure, nor is a phase that has run away: the
+    links are compared with the position at the run's own coordinate. With several freedoms only the
+    phase shows it.
     """
     truth = beside.free
     if not truth.by_dyads or beside.no_geometry:
@@ -137,8 +137,8 @@ def free_departure(beside: FreeBeside) -> Departure | None:
 
 
 def _free_elsewhere(beside: FreeBeside, far: Mask) -> bool:
-    """Whether the run stands in one of the assemblies of the scene at one of the samples ``far``,
-    at its own driver angle."""
+    """True if the run is in one of the scene's assemblies at one of the samples ``far``, at its own
+    driver angle."""
     scene = beside.scene
     keys = [group.branch_key for group in analyse(scene).groups if group.assemblies == 2]
     index = np.flatnonzero(far)[:: max(int(np.sum(far)) // 200, 1)]

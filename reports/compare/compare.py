@@ -3,8 +3,7 @@
 Total error: the reference at the commanded time. Geometric error: the reference at the crank angle
 that the engine logged, so that a crank which lags shows in the drive and not in the geometry.
 
-What a run is beside (`Beside`) names the modules that compare it, which are loaded when they are
-needed.
+The kind of comparison (`Beside`) names the modules that compare it; they are loaded on demand.
 """
 
 import math
@@ -25,19 +24,19 @@ class Comparing(Protocol):
     """A module that compares runs of a kind."""
 
     def compared(self, beside: Beside, errors: Errors | None) -> Errors:
-        """The errors of a run, with those that the modules before have found."""
+        """Return the errors of a run, added to the errors of the modules before."""
         ...
 
     def places(self, beside: Beside) -> list[Error]:
-        """Drive or phase errors, total errors of place and gaps alone."""
+        """Return drive or phase errors, total errors of position and gaps alone."""
         ...
 
 
 def compare(beside: Beside | None) -> Errors | None:
-    """The errors of a run, a row per quantity, body, source and kind; None where it logged nothing.
+    """Return the errors of a run, a row per quantity, body, source and kind; None for an empty log.
 
-    Samples that are not finite, and bodies or pins of the scene that a run lacks, give errors
-    that are not finite; what a user's own log lacks gives none.
+    Samples that are not finite, and bodies or pins of the scene that a run lacks, give errors that
+    are not finite; gaps of a user's own log give none.
     """
     errors: Errors | None = None
     for module in _modules(beside):
@@ -47,27 +46,27 @@ def compare(beside: Beside | None) -> Errors | None:
 
 
 def places(beside: Beside | None) -> list[Error]:
-    """Drive error, total errors of place and gaps alone; none of a run that logged nothing."""
+    """Return drive error, total errors of position and gaps alone; none for an empty log."""
     if beside is None:
         return []
     return [row for module in _modules(beside) for row in module.places(beside)]
 
 
 def _modules(beside: Beside | None) -> Iterator[Comparing]:
-    """The modules that compare a run."""
+    """Yield the modules that compare a run."""
     for name in beside.compared_by if beside else ():
         yield cast(Comparing, import_module(name, __package__))
 
 
 ROUNDING = 1e-12
-"""A relative difference that is rounding: of a number that is worked out in another order."""
+"""Largest relative difference by rounding, for a number computed in another order."""
 
 
 def not_asked_for(run: Run, setup: Setup, holds: Settings, scene: Scene, state: State) -> list[str]:
-    """What the run says of itself that is not as asked for, field by field.
+    """Return the differences between the run's own data and the request, field by field.
 
-    ``holds`` is what an engine that was given the settings says that it holds of them; ``state`` is
-    what the run was to start from.
+    ``holds`` are the settings as an engine with the requested ones reports them; ``state`` is the
+    requested start of the run.
     """
     texts = [
         _words(field.name, getattr(setup, field.name), getattr(run, field.name))
@@ -88,7 +87,7 @@ def not_asked_for(run: Run, setup: Setup, holds: Settings, scene: Scene, state: 
 
 
 def _elsewhere(run: Run, scene: Scene, state: State) -> list[str]:
-    """The bodies whose first logged place is not that of the state."""
+    """Return the bodies whose first logged position differs from the state's."""
     motion = run.motion
     if motion is None or not motion.time_s.size:
         return []

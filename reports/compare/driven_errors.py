@@ -1,5 +1,5 @@
-"""The errors of a run whose driver follows a law: of the drive, of places at the same time and at
-the logged angle of the driver, and of rates."""
+"""The errors of a run whose driver follows a law: of the drive, of positions at the same time and
+at the logged angle of the driver, and of rates."""
 
 from dataclasses import replace
 
@@ -17,7 +17,7 @@ from reports.quantities.quantity import Role
 
 
 def compared(beside: Beside, errors: Errors | None) -> Errors:
-    """The errors of a driven run; there are none before."""
+    """Return the errors of a driven run; no module comes before."""
     scene, run, reference = beside.scene, beside.run, beside.reference
     at = instants_of(beside, beside.motion.time_s, reference)
     geometric, notes = _geometric(beside, at)
@@ -38,7 +38,7 @@ def compared(beside: Beside, errors: Errors | None) -> Errors:
 
 
 def places(beside: Beside) -> list[Error]:
-    """Drive error, total errors of place and gaps alone."""
+    """Return drive error, total errors of position and gaps alone."""
     at = instants_of(beside, beside.motion.time_s, beside.reference)
     return _of_roles(beside, at, "drive", "place", "closure")
 
@@ -48,7 +48,7 @@ def _of_roles(beside: Beside, at: Instants, *roles: Role) -> list[Error]:
 
 
 def _geometric(beside: Beside, at: Instants) -> tuple[list[Error], tuple[str, ...]]:
-    """Errors against the reference at the logged crank angle, or a note that says why not."""
+    """Return errors against the reference at the logged crank angle, or a note with the reason."""
     if not beside.has_crank:
         return [], ()
     if not np.all(np.isfinite(beside.crank)):

@@ -1,4 +1,4 @@
-"""The errors of elastic links: beside the beam, beside the exact chain, and of that itself."""
+"""The errors of elastic links: against the beam, against the exact chain, and of that itself."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ BENT = (
 
 @dataclass(frozen=True, kw_only=True)
 class ElasticFacts(LinkFacts):
-    """``segments`` were given for each link, with springs of a kind, or as many elements where that
-    is "beam"; ``ratio`` is their lowest frequency over the driver's speed, and ``cycles`` how often
-    they swing at it over the run, 0 where the motion is periodic. ``slender`` is the longest link
-    over the largest deflection.
+    """Facts of elastic links: ``segments`` of each link, with a kind of ``springs``, or elements
+    where that is "beam"; ``ratio`` is their lowest frequency over the driver's speed, and
+    ``cycles`` the number of its swings over the run, 0 where the motion is periodic. ``slender`` is
+    the longest link over the largest deflection.
 
-    ``straight`` says that they start so, and ring with all that they have; ``pushed`` is the
-    acceleration that elements start off by, over the square of the driver's speed.
+    ``straight`` links start so, and ring with all their deflection; ``pushed`` is the error of the
+    elements' acceleration at the start, over the square of the driver's speed.
 
-    As shares of the largest deflection: ``doubt`` is what the beam may be off by, and ``linear``
-    what the linear theory, without foreshortening, is off it by. ``apart`` is how far the exact
-    chain is from the beam, as a pure number by quantity, of what is let go with what the beam may
-    be off by; of a driven motion that is not periodic it is ``estimated`` from the chain of a few
-    segments, and of elements from what they lock by.
+    As shares of the largest deflection: ``doubt`` is the uncertainty of the beam, and ``linear``
+    the error of the linear theory, without foreshortening. ``apart`` is the distance of the exact
+    chain from the beam, as a pure number by quantity, for free motion with the uncertainty of the
+    beam; for a driven motion that is not periodic it is ``estimated`` from a chain of a few
+    segments, and for elements from their locking.
     """
 
     limits: ClassVar[Mapping[str, Tolerance]] = BENDING
@@ -56,23 +56,23 @@ class ElasticFacts(LinkFacts):
 
     @staticmethod
     def of(errors: Errors | None) -> ElasticFacts | None:
-        """Those of elastic links, None of rigid ones."""
+        """Return the facts of elastic links, None for rigid ones."""
         facts = errors.of_links if errors else None
         return facts if isinstance(facts, ElasticFacts) else None
 
     @property
     def of_beam(self) -> bool:
-        """Whether they are elements of a beam."""
+        """True if they are elements of a beam."""
         return self.springs == "beam"
 
     @property
     def pieces(self) -> str:
-        """How many there are of what, in words."""
+        """The number and kind of the pieces, in words."""
         return f"{self.segments} {'elements' if self.of_beam else 'segments'}"
 
     @property
     def chain(self) -> float:
-        """What so many segments leave of the deflection, as a share of the largest."""
+        """Error of the segments in the deflection, as a share of the largest."""
         return self.apart.get("deflection", 0.0)
 
     @property
@@ -80,7 +80,7 @@ class ElasticFacts(LinkFacts):
         return 2.0 * self.chain if self.of_beam else 0.0
 
     def beyond(self, name: str) -> float:
-        """Model error of the segments (or beam elements), and of the beam theory."""
+        """Return the model error of the segments (or beam elements), and of the beam theory."""
         if name == "segments":
             return 0.0
         own = self.apart.get(name.removesuffix("-differenced"), 0.0)
@@ -91,11 +91,11 @@ class ElasticFacts(LinkFacts):
         return budget * (1.0 if self.of_beam else self.slender) + self._swung(step)
 
     def _swung(self, step: float) -> float:
-        """What the swings of springs are off by, of which a step makes (r step)^2/24 of the phase.
+        """Return the error of the swings of springs; a step makes (r step)^2/24 of the phase.
 
-        What starts straight rings as under an even load: k half-waves, k odd, with 1/k^5 of the
-        deflection, k^2 times as fast, and so with k^6 of the phase, up to their whole swing. Of
-        that the sum falls as the step to the power 4/3.
+        Links that start straight ring as under an even load: k half-waves, k odd, with 1/k^5 of the
+        deflection, k^2 times as fast, and so with k^6 of the phase, up to their whole swing. The
+        sum of these falls as the step to the power 4/3.
         """
         phase = (self.ratio * step) ** 2 * (1.0 + math.tau * self.cycles) / 12.0
         if not self.straight:
@@ -109,19 +109,19 @@ class ElasticFacts(LinkFacts):
 
 
 BEAM, CHAIN = ("deflection", "extension"), ("segments",)
-"""What is held to the beam, and to the exact chain."""
+"""Quantities compared with the beam, and with the exact chain."""
 
 
 def compared(beside: Beside, errors: Errors | None) -> Errors:
-    """The errors of a run as of one with rigid links, with those of its elastic links."""
+    """Return the errors of a run as with rigid links, and those of its elastic links."""
     assert isinstance(beside, ElasticBeside)
     assert errors is not None
     return replace(errors, rows=(*errors.rows, *places(beside)), of_links=elastic_facts(beside))
 
 
 def places(beside: Beside) -> list[Error]:
-    """Deflections and extensions, of kind "total" those of the run; of kind "chain" those of the
-    exact chain, beside the beam."""
+    """Return deflections and extensions against the beam: of the run, of kind "total", and of the
+    exact chain, of kind "chain"."""
     assert isinstance(beside, ElasticBeside)
     at = instants_of(beside, beside.motion.time_s, beside.reference)
     rows = [whole_row(track, at) for track in beside.tracks(BEAM, beside.reference)]
@@ -135,7 +135,7 @@ def places(beside: Beside) -> list[Error]:
 
 
 def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
-    """What is known beside the errors."""
+    """Return the facts beside the errors."""
     truth, theory, time_s = beside.elastic, beside.elastic.theory, beside.motion.time_s
     apart = truth.apart(partial(_apart_by_name, beside))
     for other, looked in theory.doubted:
@@ -157,7 +157,7 @@ def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
 
 
 def _apart_by_name(beside: ElasticBeside, chain: Motion, beam: Motion) -> dict[str, float]:
-    """The largest difference of all that is compared, as pure numbers by quantity."""
+    """Return the largest differences of all compared quantities, as pure numbers by quantity."""
     found: dict[str, float] = {}
     for name in named("free", "place", "derived", "force", "elastic"):
         for measure in QUANTITIES[name].measures:

@@ -1,9 +1,9 @@
-"""The truth of a scene with elastic links: the beam, and the exact chain that engines are given.
+"""The reference of a scene with elastic links: the beam, and the exact chain that engines simulate.
 
-An engine of rigid bodies is given each elastic link as a chain of segments. Its error is of two
-parts, which different things mend: the exact chain beside the beam (more segments), and the engine
-beside the exact chain (another step, other settings). Both truths have no engine in them. One that
-has beams of its own may be given these: there is the beam alone to hold it to.
+An engine of rigid bodies gets each elastic link as a chain of segments. Its error has two parts
+with different remedies: the exact chain against the beam (more segments), and the engine against
+the exact chain (another step, other settings). Both references are free of engines. An engine with
+beams of its own may get these: its only reference is the beam.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ from sim.engine import Run
 
 
 def cut(scene: Scene, count: int, springs: str) -> CutScene:
-    """The links of a scene in so many segments, with springs "plain" or "corrected"; or in so many
-    elements of a "beam". Raises CrankcheckError as these do."""
+    """Return the links of a scene in ``count`` segments, with springs "plain" or "corrected"; or in
+    as many elements of a "beam". Raises CrankcheckError as these do."""
     if springs == "beam":
         return BeamedScene(scene, count)
     return SegmentedScene(scene, count, springs == "corrected")
@@ -40,15 +40,15 @@ def cut(scene: Scene, count: int, springs: str) -> CutScene:
 
 Apart = dict[str, float]
 STEADY = 1.5
-"""Of the step times the fastest frequency of the chain: explicit methods come apart from 2 on, or
-from 2.8."""
+"""Limit of the step times the fastest frequency of the chain: explicit methods come apart from 2
+on, or from 2.8."""
 
 
 def elastic_truth(scene: Scene, count: int, springs: str, until_s: float) -> ElasticTruth:
-    """The truth of a scene that is driven until then [s], its elastic links in so many segments, or
-    elements of a beam.
+    """Return the reference of a scene that is driven until then [s], its elastic links in ``count``
+    segments, or elements of a beam.
 
-    Raises EngineError where there are no such: fewer than two, segments of a link that stretches.
+    Raises EngineError where they are impossible: fewer than two, segments of a stretching link.
     """
     if shape_of(scene) == "periodic":  # however long a run is, the truth is one
         until_s = scene.driver.law.period_s
@@ -56,7 +56,7 @@ def elastic_truth(scene: Scene, count: int, springs: str, until_s: float) -> Ela
 
 
 def chain_truth(scene: Scene, count: int, until_s: float) -> ChainTruth:
-    """As `elastic_truth`, of so many segments with plain springs."""
+    """Return `elastic_truth` for segments with plain springs."""
     truth = elastic_truth(scene, count, "plain", until_s)
     assert isinstance(truth, ChainTruth)
     return truth
@@ -71,8 +71,8 @@ def _truth(pickled: bytes, count: int, springs: str, until_s: float) -> ElasticT
 
 
 def cut_scene(scene: Scene, count: int, springs: str) -> CutScene:
-    """What an engine is given of a scene with elastic links. Raises EngineError where there is
-    none."""
+    """Return an engine's scene with the pieces of elastic links. Raises EngineError where they are
+    impossible."""
     try:
         pieces = cut(scene, count, springs)
         assert pieces.given  # made now, to be refused now
@@ -83,22 +83,22 @@ def cut_scene(scene: Scene, count: int, springs: str) -> CutScene:
 
 @lru_cache(maxsize=2)
 def kept_theory(pickled: bytes, until_s: float, kind: type[BeamTheory] = BeamTheory) -> BeamTheory:
-    """The beam of a scene, which may come from another process: one for every number of
+    """Return the beam of a scene, which may come from another process: one for every number of
     segments."""
     return kind(pickle.loads(pickled), until_s)
 
 
 @dataclass(frozen=True)
 class ElasticTruth(Truth):
-    """The stiffened beam of ``theory`` as the reference; an engine is given the scene as ``cut``:
-    beams of its own, unless it is a `ChainTruth`."""
+    """The stiffened beam of ``theory`` as the reference; an engine gets the scene as ``cut``: beams
+    of its own, unless it is a `ChainTruth`."""
 
     cut: CutScene = field(kw_only=True)
     theory: BeamTheory = field(kw_only=True)
 
     @property
     def springs(self) -> str:
-        """What is between the pieces."""
+        """The connection between the pieces."""
         return "beam"
 
     @property
@@ -107,20 +107,20 @@ class ElasticTruth(Truth):
 
     @property
     def is_exact(self) -> bool:
-        """Whether what is given is soon found without an engine."""
+        """True if the motion of the pieces is cheap to compute without an engine."""
         return False
 
     def apart(self, by_name: Callable[[Motion, Motion], Apart]) -> Apart:
-        """How far what is given is from the beam, as a pure number by quantity, ``by_name`` of two
-        motions; an estimate of what elements lock by, where it is not exact."""
+        """Return the distance of the pieces from the beam, as a pure number by quantity,
+        ``by_name`` for two motions; an estimate from the elements' locking, where not exact."""
         largest = self.theory.largest_m
         off = (one.locked(largest) + one.between() for one in self.given.beams.values())
         return {"deflection": max(off)}
 
     @property
     def doubt(self) -> float:
-        """What the beam may be off by, as a share of its largest deflection. Its slopes are small:
-        elements, whose slopes are not, show what goes with their squares."""
+        """Uncertainty of the beam, as a share of its largest deflection. Its slopes are small:
+        elements, whose slopes are not, show the terms in their squares."""
         largest = self.theory.largest_m
         beams = self.given.beams.values()
         slopes = max((math.pi * largest / one.length_m) ** 2 for one in beams)
@@ -128,7 +128,7 @@ class ElasticTruth(Truth):
 
     @property
     def pushed(self) -> float:
-        """What pieces start off by, as an acceleration over the square of the driver's speed."""
+        """Acceleration error of the pieces at the start, over the square of the driver's speed."""
         start = self.theory.looked.elastic
         most = max(
             one.pushed(abs(float(start[name].middle[0]))) for name, one in self.given.beams.items()
@@ -137,7 +137,7 @@ class ElasticTruth(Truth):
 
     @cached_property
     def start(self) -> State:
-        """That of the nodes of the beam."""
+        """The start of the beam's nodes."""
         assert isinstance(self.cut, BeamedScene)
         return node_start(self.cut, self.theory.shape)
 
@@ -154,16 +154,16 @@ class ElasticTruth(Truth):
         return self.at(time_s)
 
     def exact_at(self, time_s: Array) -> Motion | None:
-        """The exact chain at times (T,) [s]; None of a beam."""
+        """Return the exact chain at times (T,) [s]; None for a beam."""
         return None
 
     def logged(self, run: Run) -> Run:
-        """A run of what was given as one of the scene."""
+        """Return a run of the engine's scene as one of the scene."""
         return folded_run(self.cut, run)
 
     def beside(self, run: Run) -> Beside | None:
-        """The run, with its elastic links as such, beside the beam; None where it logged
-        nothing."""
+        """Return the run, with its elastic links as such, beside the beam; None for an empty
+        log."""
         motion = run.motion
         if motion is None or not motion.time_s.size:
             return None
@@ -172,14 +172,14 @@ class ElasticTruth(Truth):
 
 @dataclass(frozen=True)
 class ChainTruth(ElasticTruth):
-    """As `ElasticTruth` of an engine that is given chains of segments, whose exact motion is known
-    as well."""
+    """As `ElasticTruth`, for an engine with chains of segments, whose exact motion is known as
+    well."""
 
     _chains: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def chain(self) -> SegmentedScene:
-        """What an engine is given."""
+        """The scene of the engine."""
         assert isinstance(self.cut, SegmentedScene)
         return self.cut
 
@@ -189,17 +189,17 @@ class ChainTruth(ElasticTruth):
 
     @cached_property
     def exact(self) -> ExactChain:
-        """The chain that is given, without an engine."""
+        """The engine's chain, without an engine."""
         return self.theory.chain(self.chain.count, corrected=self.chain.corrected)
 
     @property
     def is_exact(self) -> bool:
-        """Its periodic motion is soon found, while it takes minutes to integrate one of many
-        segments."""
+        """True if the motion is periodic, or the segments few: an integration of many takes
+        minutes."""
         return self.theory.is_periodic or self.chain.count <= LEAST
 
     def apart(self, by_name: Callable[[Motion, Motion], Apart]) -> Apart:
-        """Of the chain that is given, or estimated from one of few segments in its place."""
+        """Return the distance of the engine's chain, or estimate it from one of few segments."""
         few, share = self.exact, 1.0
         if not self.is_exact:
             few = self.theory.chain(LEAST, corrected=self.chain.corrected)
@@ -217,7 +217,7 @@ class ChainTruth(ElasticTruth):
 
     @cached_property
     def start(self) -> State:
-        """That of the chain."""
+        """The start of the chain."""
         return segment_start(self.chain, self.theory.shape, self.exact.motion)
 
     @cached_property
@@ -226,7 +226,7 @@ class ChainTruth(ElasticTruth):
         return fastest_rad_s(self.theory.scene, Segments(self.chain.count, self.chain.corrected))
 
     def exact_at(self, time_s: Array) -> Motion:
-        """Of the last instants that were asked for it is kept."""
+        """Return the exact chain at times (T,) [s]; the last set of instants is kept."""
         instants = time_s.tobytes()
         if instants not in self._chains:
             motion = self.exact.at(time_s)
@@ -235,7 +235,7 @@ class ChainTruth(ElasticTruth):
         return self._chains[instants]
 
     def logged(self, run: Run) -> Run:
-        """One that came apart says which step would do."""
+        """Return the run as one of the scene; if it came apart, its reason names a stable step."""
         done = super().logged(run)
         stiff = run.dt_s * self.fastest_rad_s
         if done.status != "diverged" or stiff <= STEADY:
@@ -249,22 +249,22 @@ class ChainTruth(ElasticTruth):
 
     @property
     def needed_step(self) -> str:
-        """The longest step that holds, in words."""
+        """The longest stable step, in words."""
         period_s = self.scene.driver.law.period_s
         return f"{math.ceil(period_s * self.fastest_rad_s / STEADY)} steps a turn"
 
 
 @dataclass(frozen=True)
 class ElasticBeside(Beside):
-    """As `Beside`. Where links bend the angle of the driver says nothing of the others: there are
-    no errors at the logged angle."""
+    """As `Beside`. Where links bend, the angle of the driver determines no other: there are no
+    errors at the logged angle."""
 
     compared_by: ClassVar[tuple[str, ...]] = (*Beside.compared_by, ".elastic_errors")
     elastic: ElasticTruth = field(kw_only=True)
 
     @cached_property
     def exact(self) -> Motion | None:
-        """The exact chain at the logged instants, None where it takes too long to be found."""
+        """The exact chain at the logged instants, None where it takes too long."""
         truth = self.elastic
         return truth.exact_at(self.motion.time_s) if truth.is_exact else None
 
@@ -278,8 +278,8 @@ class ElasticBeside(Beside):
 
 
 def folded_run(cut: CutScene, run: Run) -> Run:
-    """Links, points and pins of the scene; the pins between pieces are told by the deflection,
-    which is off where they come apart."""
+    """Return a run with links, points and pins of the scene; the pins between pieces show in the
+    deflection, which is off where they come apart."""
     motion = run.motion
     if motion is None:
         return run
@@ -293,7 +293,7 @@ def folded_run(cut: CutScene, run: Run) -> Run:
 
 
 def _without(forces: Forces, inner: set[str], links: Mapping[str, str]) -> Forces:
-    """The forces in the pins of the scene, on its links."""
+    """Return the forces in the pins of the scene, on its links."""
 
     def on_links(bodies: Mapping[str, Array]) -> dict[str, Array]:
         return {links.get(body, body): force for body, force in bodies.items()}

@@ -1,9 +1,9 @@
-"""Rows of errors: a track in numbers, over all samples, or the first ones, those near change points
-and the rest apart.
+"""Rows of errors: a track in numbers, over all samples, or separately over the first ones, those
+near change points and the rest.
 
-Velocities and accelerations come twice: as the engine reports them, against the reference at the
-instants they belong to; and by differencing the logged positions, against the reference
-differenced in the same way.
+Velocities and accelerations come twice: as the engine reports them, against the reference at their
+own instants; and by differencing the logged positions, against the reference differenced in the
+same way.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from reports.quantities.quantity import Role, Source
 
 @dataclass(frozen=True)
 class Instants:
-    """The samples of a series: time [s], commanded driver angle [rad], and whether they are in the
-    window of a change point, each (T,); how many may be the start; what the driver is told in."""
+    """The samples of a series: time [s], commanded driver angle [rad], and a mask of those in the
+    window of a change point, each (T,); the number that may be the start; the driver's unit."""
 
     time_s: Array
     driver_rad: Array
@@ -41,7 +41,7 @@ class Instants:
 
     @property
     def first(self) -> int:
-        """The number of samples that are the start."""
+        """The number of samples of the start."""
         return min(self.settling, self.time_s.size // 4)
 
     @cached_property
@@ -59,7 +59,7 @@ class Instants:
 
 
 def instants_of(beside: Beside, time_s: Array, reference: Motion) -> Instants:
-    """The samples of a run at instants of its own, or of its forces."""
+    """Return the samples of a run at its own instants, or at those of its forces."""
     driver_rad = beside.driver_at(time_s, reference)
     passed = near(reference.crossings, driver_rad, WINDOW_RAD)
     return Instants(time_s, driver_rad, passed, beside.settling, beside.scene.driver.unit)
@@ -68,14 +68,14 @@ def instants_of(beside: Beside, time_s: Array, reference: Motion) -> Instants:
 def whole_row(
     track: Track, at: Instants, source: Source = "reported", kind: ErrorKind = "total"
 ) -> Error:
-    """A track as numbers."""
+    """Return a track as numbers."""
     return _numbers(track, length(track.error), track.bound, at, source, kind)
 
 
 def _numbers(
     track: Track, error: Array, bound: Array, at: Instants, source: Source, kind: ErrorKind
 ) -> Error:
-    """A series of lengths (T,) of a track's error as numbers, with what they may be wrong by."""
+    """Return a series of lengths (T,) of a track's error as numbers, with their uncertainty."""
     measured = size(error)
     return Error(
         quantity=track.quantity,
@@ -97,7 +97,7 @@ def _numbers(
 
 
 def rate_rows(track: Track, at: Instants, source: Source) -> Iterable[Error]:
-    """A rate as rows of its parts: the first samples, those at change points, and the rest."""
+    """Yield a rate as rows of its parts: first samples, those at change points, and the rest."""
     error = length(track.error)
     for kind, part, instants in at.parts:
         yield _numbers(track, error[part], track.bound[part], instants, source, kind)
@@ -107,14 +107,14 @@ EPSILON = float(np.finfo(np.float64).eps)
 
 
 def whole_rows(beside: Beside, at: Instants, role: Role) -> list[Error]:
-    """The quantities that play a role, each over the whole run; one after the other, as the tracks
+    """Return the quantities of a role, each over the whole run; one after the other, as the tracks
     of one take enough memory."""
     every = (beside.tracks((name,), beside.reference) for name in named(role))
     return [whole_row(beside.judged(track, at.time_s), at) for tracks in every for track in tracks]
 
 
 def reported_rows(beside: Beside) -> tuple[list[Error], tuple[str, ...]]:
-    """Velocities, accelerations and the like as the engine gives them, and the bodies without."""
+    """Return reported velocities, accelerations and the like, and the bodies without."""
     rows, missing = list[Error](), list[str]()
     for name in named("derived"):
         entry = QUANTITIES[name]
@@ -133,7 +133,7 @@ def reported_rows(beside: Beside) -> tuple[list[Error], tuple[str, ...]]:
 
 
 def differenced_rows(beside: Beside, at: Instants) -> Iterable[Error]:
-    """Velocities and accelerations from the logged positions, by central differences."""
+    """Yield velocities and accelerations from the logged positions, by central differences."""
     if at.time_s.size < 3 or not beside.is_even:
         return
     step_s = float(at.time_s[1] - at.time_s[0])
@@ -163,7 +163,7 @@ def differenced_rows(beside: Beside, at: Instants) -> Iterable[Error]:
 
 
 def uncertain(beside: Beside) -> dict[tuple[str, str], float]:
-    """The largest bound of the reference per quantity and body, as a pure number."""
+    """Return the largest bound of the reference per quantity and body, as a pure number."""
     scene, reference = beside.scene, beside.reference
     shares = {}
     for name in named("place", "derived"):

@@ -1,4 +1,4 @@
-"""What a comparison found: one `Error` per quantity and body, and facts of the run in groups."""
+"""Result of a comparison: one `Error` per quantity and body, and facts of the run in groups."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence, Set
@@ -13,20 +13,19 @@ from reports.quantities.quantity import BodyKind, Source, Tolerance, tolerance_n
 
 @dataclass(frozen=True)
 class SceneFacts:
-    """How hard a scene is, at its step.
+    """Difficulty of a scene, at its step.
 
     ``curvature`` is the largest pure acceleration of the reference (at least 1) and
-    ``conditioning`` its smallest sine of a transmission angle, away from the change points that it
-    goes through. ``step_rad`` is the driver's peak speed times the time between two steps.
-    ``summed_rad`` is the most that rounding makes of the driver's angle in an engine that adds it
-    up step by step: it grows with the number of steps (`reports.compare.whole_errors`). ``jolt`` is
-    how much an engine may make up for at its start, over a step, as a pure number
-    (`analytic.forces.late_impulses`), ``worst_jolt`` the most of it over the run, and
-    ``mass_ratio`` the mass of the heaviest body over that of the lightest. ``drives_within`` says
-    that the driver moves two moving bodies against each other, and ``starts_in_passage`` that one
-    of the first samples is near a change point. ``uneven`` is how far bodies depart from moving
-    evenly with the driver, ``uneven_rates`` those of them whose rates do too
-    (`reports.compare.hardness`).
+    ``conditioning`` its smallest sine of a transmission angle, away from the change points on its
+    way. ``step_rad`` is the driver's peak speed times the time between two steps. ``summed_rad`` is
+    the largest effect of rounding on the driver's angle in an engine that adds it up step by step:
+    it grows with the number of steps (`reports.compare.whole_errors`). ``jolt`` is the most that an
+    engine may make up for at its start, over a step, as a pure number
+    (`analytic.forces.late_impulses`), ``worst_jolt`` its maximum over the run, and ``mass_ratio``
+    the mass of the heaviest body over that of the lightest. ``drives_within`` is True if the driver
+    moves two moving bodies against each other, and ``starts_in_passage`` if one of the first
+    samples is near a change point. ``uneven`` is the departure of bodies from even motion with the
+    driver, ``uneven_rates`` those of them whose rates depart too (`reports.compare.hardness`).
     """
 
     curvature: float
@@ -44,7 +43,7 @@ class SceneFacts:
 
 @dataclass(frozen=True)
 class Unbalanced:
-    """What the forces of a pin add up to at most, as a share of the largest reaction."""
+    """Largest sum of the forces of a pin, as a share of the largest reaction."""
 
     point: str
     share: float
@@ -52,14 +51,14 @@ class Unbalanced:
 
 @dataclass(frozen=True)
 class ForceFacts:
-    """What loads do, and what an engine's forces say.
+    """Effects of loads, and properties of an engine's forces.
 
-    ``contradictions`` is what the engine's own numbers say against its forces, ``unbalanced`` the
-    pin whose forces add up to most, None where there are none; ``start_load`` the largest force at
-    the start, as a share of the largest of its kind, where the engine's forces are those of steps,
-    which start with half a step. ``loading`` is how loads would shake the bodies by themselves,
-    ``load_slopes`` how much they change over a displacement, in reactions and in the torque, and
-    ``inertia_share`` what inertia may have of the largest reaction (`reports.compare.hardness`).
+    ``contradictions`` are those between the engine's own numbers and its forces, ``unbalanced`` the
+    pin with the largest sum of forces, None where there are none; ``start_load`` is the largest
+    force at the start, as a share of the largest of its kind, where the engine's forces are those
+    of steps, which start with half a step. ``loading`` is the shaking of the bodies by loads alone,
+    ``load_slopes`` the change of loads over a displacement, in reactions and in the torque, and
+    ``inertia_share`` the most of the largest reaction due to inertia (`reports.compare.hardness`).
     """
 
     contradictions: tuple[str, ...] = ()
@@ -72,15 +71,15 @@ class ForceFacts:
 
 @dataclass(frozen=True, kw_only=True)
 class MotionFacts:
-    """How errors grow with a motion: those of a driver that follows its law do not.
+    """Growth of errors with a motion: with a driver that follows its law they do not grow.
 
     ``limits`` are the tolerances of the motion, ``closing`` the quantities that finer runs keep
-    within theirs. ``cancels`` says that errors may cancel from step to step, and ``solved`` is the
+    within theirs. ``cancels`` is True if errors may cancel from step to step, and ``solved`` is the
     share of a limit below which an error that does not shrink is no floor of a model.
     ``least_order`` is an order of the step that any engine may reach, and ``step_option`` sets the
     step. ``travel_rad`` is the angle that a free driver turns through, weighed with the square of
-    its speed over the largest, ``drifted_rad`` the most that it has turned through over the
-    sensitivity of then, and ``late`` what impulses that come a step late may make of its energy.
+    its speed over the largest, ``drifted_rad`` the largest angle turned over the sensitivity at
+    that time, and ``late`` the effect on its energy of impulses that come a step late.
     """
 
     limits: ClassVar[Mapping[str, Tolerance]] = DEFAULTS
@@ -90,26 +89,26 @@ class MotionFacts:
     least_order: ClassVar[int] = 0
     step_option: ClassVar[str] = "--steps-per-turn"
     over_g: ClassVar[Sequence[str]] = ()
-    """What is over the sensitivity, in words, beside other words of errors."""
+    """Quantities over the sensitivity, in words, beside other words of errors."""
     sensitivity: float = 1.0
-    """By how much a small change of the start has grown by the end."""
+    """Growth of a small change of the start until the end."""
     travel_rad: float = 0.0
     drifted_rad: float = 0.0
     late: LateImpulses = ON_TIME
 
     @property
     def has_order(self) -> bool:
-        """Whether errors at finer steps say an order."""
+        """True if errors at finer steps show an order."""
         return True
 
     def rounding(self, explained: float, summed_rad: float, bound: float) -> float:
-        """The pure error of place that no engine is to blame for: ``explained`` by the rounding of
-        the driver, or by what its angle is summed to, or by the ``bound`` of the reference."""
+        """Return the pure error of position that no engine can avoid: ``explained`` by rounding of
+        the driver, or by summation of its angle, or by the ``bound`` of the reference."""
         return explained
 
     def compared_with(self, moved: str) -> str:
-        """The reference of the errors, and the letters of their shares; ``moved`` says what moves
-        the closed form."""
+        """Return the reference of the errors, and the letters of their shares; ``moved`` names a
+        change of the closed form."""
         return (
             f"Largest errors against the closed form{moved}; L longest link, w driver's peak speed."
         )
@@ -120,17 +119,17 @@ DRIVEN = MotionFacts()
 
 @dataclass(frozen=True)
 class LinkFacts:
-    """What links add to the limits of errors: rigid ones nothing.
+    """Contribution of the links to the limits of errors: none for rigid ones.
 
     ``followed`` are groups of quantities; the largest error of the first that has any is followed
-    from step to step. ``segments`` are those of each link, ``pushed`` is the acceleration that
-    elements start off by, over the square of the driver's speed, and ``slender`` the longest link
-    over the largest deflection.
+    from step to step. ``segments`` are those of each link, ``pushed`` is the error of the elements'
+    acceleration at the start, over the square of the driver's speed, and ``slender`` the longest
+    link over the largest deflection.
     """
 
     limits: ClassVar[Mapping[str, Tolerance]] = {}
     shut: ClassVar[Sequence[str]] = named("place")
-    """Quantities that tell whether joints are closed in their places."""
+    """Quantities that show whether joints are closed in their places."""
     followed: ClassVar[Sequence[Sequence[str]]] = (("phase", *named("place")),)
     segments: int = 1
     slender: float = math.inf
@@ -138,19 +137,19 @@ class LinkFacts:
 
     @property
     def locked(self) -> float:
-        """What elements lock by, twice, as a share of the largest deflection."""
+        """Twice the locking of elements, as a share of the largest deflection."""
         return 0.0
 
     def beyond(self, name: str) -> float:
-        """The model error of the links in a quantity, as a pure number."""
+        """Return the model error of the links in a quantity, as a pure number."""
         return 0.0
 
     def deflecting(self, budget: float, step: float) -> float:
-        """A budget of places as one of deflections, at a ``step`` [rad]."""
+        """Return a budget of positions as one of deflections, at a ``step`` [rad]."""
         return budget
 
     def compared_with(self, motion: MotionFacts, moved: str) -> str:
-        """As of the motion."""
+        """Return the words of the motion."""
         return motion.compared_with(moved)
 
 
@@ -167,10 +166,10 @@ class Error:
     ``scale`` makes a pure number of it: 1 rad for angles, the longest link for lengths, the
     driver's speed (times that length) for velocities, its square for accelerations. Rates of the
     first steps, in which an engine takes up its pins, are of kind ``start``, those of later ones
-    near a change point of kind ``passage`` (`reports.compare.hardness`). Of free motion they
-    are all over the sensitivity, and those of kind ``raw`` are not. Those of kind ``chain`` are of
-    the exact chain of segments, without an engine. ``bound`` is the largest error
-    of the reference itself [unit]. ``driver_at_maximum_rad`` is in ``driver_unit``: m of a slider.
+    near a change point of kind ``passage`` (`reports.compare.hardness`). For free motion all are
+    over the sensitivity, except those of kind ``raw``. Kind ``chain`` is the exact chain of
+    segments, without an engine. ``bound`` is the largest error of the reference itself [unit].
+    ``driver_at_maximum_rad`` is in ``driver_unit``: m of a slider.
     """
 
     quantity: str
@@ -201,7 +200,7 @@ class Error:
 
     @property
     def tolerance(self) -> str:
-        """The name of the tolerance that a total error is held to."""
+        """The name of the tolerance for a total error."""
         return tolerance_name(self.quantity, self.source)
 
     @property
@@ -211,7 +210,7 @@ class Error:
 
 @dataclass(frozen=True)
 class Departure:
-    """Where a run went over to the other assembly: link, time [s] and commanded place of the
+    """Place where a run changed to the other assembly: link, time [s] and commanded place of the
     driver, in ``driver_unit``."""
 
     link: str
@@ -222,13 +221,13 @@ class Departure:
 
 @dataclass(frozen=True)
 class Errors:
-    """All errors of one run, and what is known of it beside them, in groups.
+    """All errors of one run, and its facts in groups.
 
-    ``missing`` names what the scene has and the log has not; ``incomplete`` says what the time
-    stamps lack of those that were commanded, and is empty where they are whole. ``uncertain`` is
-    what the reference may be wrong by, per quantity and body over the whole run, as a pure number:
-    the same for every engine, whatever it reports. ``departure`` is None where the run stayed on
-    its branch.
+    ``missing`` names the parts of the scene that the log lacks; ``incomplete`` describes the gap of
+    the time stamps against the commanded ones, and is empty without one. ``uncertain`` is the
+    uncertainty of the reference, per quantity and body over the whole run, as a pure number: the
+    same for every engine, whatever it reports. ``departure`` is None where the run stayed on its
+    branch.
     """
 
     rows: tuple[Error, ...]
@@ -249,14 +248,14 @@ class Errors:
         return {**self.of_motion.limits, **self.of_links.limits}
 
     def compared_with(self, moved: str = "") -> str:
-        """The reference of the errors, and the letters of their shares: it stands under every table
-        of them. ``moved`` says what moves a closed form."""
+        """Return the reference of the errors, and the letters of their shares, as shown below every
+        table of them. ``moved`` names a change of a closed form."""
         return self.of_links.compared_with(self.of_motion, moved)
 
     def worst(
         self, quantity: str, source: Source = "reported", kind: ErrorKind = "total"
     ) -> Error | None:
-        """The largest error of a quantity as a pure number (not finite counts as largest)."""
+        """Return the largest pure error of a quantity (not finite counts as largest)."""
         return largest(
             row
             for row in self.rows
@@ -265,5 +264,5 @@ class Errors:
 
 
 def largest(rows: Iterable[Error]) -> Error | None:
-    """The row with the largest pure error; one that is not finite is larger than any."""
+    """Return the row with the largest pure error; a value that is not finite counts as largest."""
     return max(rows, key=lambda row: row.pure if row.finite else math.inf, default=None)

@@ -1,6 +1,5 @@
-"""The errors of a run that was let go: phase, places and rates at the same time over the
-sensitivity of the motion, the geometry at the run's own angle, and what has to be conserved.
-"""
+"""The errors of a free run: phase, positions and rates at the same time over the sensitivity of the
+motion, the geometry at the run's own angle, and conserved quantities."""
 
 import sys
 from collections.abc import Iterable
@@ -26,14 +25,14 @@ from reports.quantities.by_kind import GEOMETRY, PHASE
 COURSE = 400
 """Instants at which the growth of the errors is kept."""
 LEAST_SINE = 0.3
-"""Of a transmission angle, where the driver passes a limit of its own: near it the geometry is that
-of another coordinate, which is not singular there."""
+"""Least sine of a transmission angle where the driver passes a limit of its own: near it the
+geometry belongs to another coordinate, which is not singular there."""
 STILL = 1e-12
-"""Over the largest speed of the driver: what does not move."""
+"""Speed below which the driver is at rest, over its largest."""
 
 
 def compared(beside: Beside, errors: Errors | None) -> Errors:
-    """The errors of a free run, as far as the truth is known; there are none before."""
+    """Return the errors of a free run, as far as the reference is known; no module comes before."""
     assert isinstance(beside, FreeBeside)
     reference, scene = beside.reference, beside.scene
     at = instants_of(beside, beside.motion.time_s, reference)
@@ -59,7 +58,7 @@ def compared(beside: Beside, errors: Errors | None) -> Errors:
 
 
 def places(beside: Beside) -> list[Error]:
-    """Phase, places at the same time, geometry and gaps alone."""
+    """Return phase, positions at the same time, geometry and gaps alone."""
     assert isinstance(beside, FreeBeside)
     at = instants_of(beside, beside.motion.time_s, beside.reference)
     return [
@@ -70,20 +69,20 @@ def places(beside: Beside) -> list[Error]:
 
 
 def _same_time(beside: FreeBeside) -> tuple[Track, ...]:
-    """The phase and all places against the truth at the same time, as they are."""
+    """Return the phase and all positions against the reference at the same time, unscaled."""
     return (*beside.tracks((PHASE.name,), beside.reference), *beside.places)
 
 
 def _phase_and_places(beside: FreeBeside, tracks: Iterable[Track], at: Instants) -> Iterable[Error]:
-    """Errors at the same time, as they are and over the sensitivity."""
+    """Yield errors at the same time, unscaled and over the sensitivity."""
     for track in tracks:
         yield whole_row(beside.judged(track, at.time_s), at)
         yield whole_row(track, at, kind="raw")
 
 
 def _geometry(beside: FreeBeside, at: Instants) -> tuple[list[Error], tuple[str, ...]]:
-    """Errors against the truth in the position of the run's own coordinate, or a note of why there
-    are none."""
+    """Return errors against the reference at the run's own coordinate, or a note with the reason
+    for none."""
     if beside.no_geometry:
         return [], (beside.no_geometry,)
     try:
@@ -94,21 +93,21 @@ def _geometry(beside: FreeBeside, at: Instants) -> tuple[list[Error], tuple[str,
 
 
 def _travel(beside: FreeBeside) -> float:
-    """The angle that the driver turns through, weighed as `MotionFacts.travel_rad` says."""
+    """Return the angle that the driver turns through, weighed as `MotionFacts.travel_rad`."""
     speed = np.abs(beside.driver_speed)
     peak = beside.scene.pace_rad_s
     return float(np.trapezoid(peak * (speed / peak) ** 3, beside.motion.time_s))
 
 
 def _drifted(beside: FreeBeside) -> float:
-    """The largest angle that the driver has turned through, over the sensitivity of then [rad]."""
+    """Return the largest turned angle of the driver over the sensitivity at that time [rad]."""
     speed, time_s = np.abs(beside.driver_speed), beside.motion.time_s
     turned = np.cumsum(np.diff(time_s, prepend=time_s[0]) * speed)
     return float(np.max(turned / beside.growth))
 
 
 def _facts(beside: FreeBeside, same_time: Iterable[Track]) -> FreeFacts:
-    """How the errors grow, at `COURSE` instants."""
+    """Return the growth of the errors, at `COURSE` instants."""
     worst: Array = np.zeros_like(beside.motion.time_s)
     for track in same_time:
         pure = length(track.error) / track.scale
@@ -132,7 +131,7 @@ def _facts(beside: FreeBeside, same_time: Iterable[Track]) -> FreeFacts:
 
 
 def _notes(beside: FreeBeside, facts: FreeFacts) -> Iterable[str]:
-    """What is to be told of the truth."""
+    """Yield notes on the reference."""
     if facts.left_out:
         yield (
             f"the truth ends at t = {facts.until_s:.4g} s, where it is no longer known to a "
@@ -144,8 +143,8 @@ def _notes(beside: FreeBeside, facts: FreeFacts) -> Iterable[str]:
 
 
 def _held(beside: FreeBeside) -> Iterable[str]:
-    """A note of where loads that act on one stroke alone hold the truth at rest, as friction does:
-    an engine goes to and fro there, and creeps by what it steps over."""
+    """Yield a note where loads of one stroke hold the reference at rest, as friction does: an
+    engine oscillates there, and creeps by its overshoot."""
     of_strokes = [load.name for load in beside.scene.loads.values() if load.stroke != "both"]
     still = np.abs(beside.driver_speed) <= STILL * beside.scene.pace_rad_s
     held = np.flatnonzero(still[1:] & still[:-1])

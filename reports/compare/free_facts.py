@@ -1,4 +1,4 @@
-"""What there is to know of a free run beside its errors."""
+"""Facts of a free run beside its errors."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from reports.quantities.by_kind import ENERGY, MOMENTUM
 from reports.quantities.quantity import Quantity, Tolerance
 
 MOST_GROWTH = 1e3
-"""A sensitivity of free motion from which on errors of phase cancel and add up as they like, and
-say nothing of an order."""
+"""Sensitivity of free motion from which on errors of phase cancel and add up at random, and show no
+order."""
 FREE_MOTION = (
     "Let go: largest errors at the same time over the sensitivity, by how much a small change of "
     "the start has grown; geometry at the logged angle of the driver; L longest link, w driver's "
@@ -33,21 +33,21 @@ OVER_G = (
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FreeFacts(MotionFacts):
-    """How far a run that was let go was followed, and what its errors were divided by.
+    """Judged length of a free run, and the divisor of its errors.
 
-    ``sensitivity`` is by how much a small change of the start has grown by ``until_s``, the last
-    instant that is judged; ``left_out`` samples after it are not, as the truth is not known well
-    enough there. ``time_s``, ``raw`` and ``judged`` are the largest error of phase and place up to
-    some instants, as pure numbers: as it is, and over the sensitivity of its time.
+    ``sensitivity`` is the growth of a small change of the start until ``until_s``, the last judged
+    instant; ``left_out`` samples after it are not judged, as the reference is too uncertain there.
+    ``time_s``, ``raw`` and ``judged`` are the largest error of phase and position up to some
+    instants, as pure numbers: unscaled, and over the sensitivity of its time.
     """
 
     limits: ClassVar[Mapping[str, Tolerance]] = FREE
     closing: ClassVar[Sequence[str]] = ("phase", "geometry", *named("place", "closure"))
     cancels: ClassVar[bool] = True
     solved: ClassVar[float] = 3e-4
-    """Where joints are nearly dependent an engine's solver leaves as much at any step."""
+    """Share that an engine's solver leaves at any step where joints are nearly dependent."""
     least_order: ClassVar[int] = 4
-    """An engine's loops need not give way, and all of its errors may be those of its steps: of
+    """An engine's loops need not give way, and all of its errors may be those of its steps:
     MuJoCo's RK4."""
     step_option: ClassVar[str] = "--dt"
     over_g: ClassVar[Sequence[str]] = (OVER_G,)
@@ -61,7 +61,7 @@ class FreeFacts(MotionFacts):
 
     @staticmethod
     def of(errors: Errors | None) -> FreeFacts | None:
-        """Those of a free run, None of others."""
+        """Return the facts of a free run, None for others."""
         facts = errors.of_motion if errors else None
         return facts if isinstance(facts, FreeFacts) else None
 
@@ -70,7 +70,7 @@ class FreeFacts(MotionFacts):
         return not self.sensitivity > MOST_GROWTH
 
     def rounding(self, explained: float, summed_rad: float, bound: float) -> float:
-        """An integrated truth is off by more than rounding."""
+        """Return the unavoidable error: an integrated reference is off by more than rounding."""
         return max(explained, summed_rad, bound)
 
     def compared_with(self, moved: str) -> str:
@@ -81,11 +81,11 @@ class FreeFacts(MotionFacts):
     __hash__ = object.__hash__
 
     def horizon_s(self, raw: float) -> float:
-        """The time to which the error as it is stays within a number [s]."""
+        """Return the time to which the unscaled error stays within a number [s]."""
         return self._held(self.raw, raw)
 
     def judged_horizon_s(self, limit: float) -> float:
-        """The time to which the error over the sensitivity stays within a number [s]."""
+        """Return the time to which the error over the sensitivity stays within a number [s]."""
         return self._held(self.judged, limit)
 
     def _held(self, largest: Array, limit: float) -> float:
@@ -94,17 +94,17 @@ class FreeFacts(MotionFacts):
 
 
 SHARE = 0.1
-"""The least part of a run that a mean is taken over, and half of it the most."""
+"""Least part of a run for a mean; half of the run is the most."""
 WORKED = 1e-9
-"""The least work, over the largest kinetic energy, that is some."""
+"""Least work, over the largest kinetic energy, that counts."""
 
 
 def energy_rows(beside: FreeBeside) -> list[Error]:
-    """The drift of the energy: the mean over the last window less that over the first.
+    """Return the drift of the energy: the mean over the last window less that over the first.
 
-    An engine's energy also comes and goes with its motion, by an offset of second order that is
-    none of its drift. What loads and dampers do is taken off, as the reference has it; it is known
-    at the true place and not at the engine's, so that the drift is over the sensitivity there.
+    An engine's energy also varies with its motion, by an offset of second order that is no drift.
+    The work of loads and dampers is subtracted, by the reference; it is known at the true position
+    and not at the engine's, so that the drift is over the sensitivity there.
     """
     run = beside.run
     if run.energy is None or run.velocity_time_s is None or run.velocity_time_s.size < 2:
@@ -122,7 +122,7 @@ def energy_rows(beside: FreeBeside) -> list[Error]:
 
 
 def drift_row(beside: FreeBeside, quantity: Quantity, size: float, largest: float) -> Error:
-    """The drift of what a whole mechanism keeps, over the largest of it."""
+    """Return the drift of a conserved quantity of a whole mechanism, over its largest value."""
     return Error(
         quantity=quantity.name,
         body_kind="mechanism",
@@ -142,7 +142,7 @@ def drift_row(beside: FreeBeside, quantity: Quantity, size: float, largest: floa
 
 
 def window_s(scene: Scene, lasts_s: float) -> float:
-    """How long a mean is taken over [s]: a period of a pendulum of the longest link, or a tenth of
+    """Return the duration of a mean [s]: a period of a pendulum of the longest link, or a tenth of
     the run where that is longer; half of the run at most."""
     weight = math.hypot(*scene.gravity_m_s2)
     swing = math.tau * math.sqrt(scene.longest_m / weight) if weight else 0.0
@@ -150,14 +150,14 @@ def window_s(scene: Scene, lasts_s: float) -> float:
 
 
 def drift(series: Array, time_s: Array, over_s: float) -> float:
-    """The mean of a series over its last while less that over its first."""
+    """Return the mean of a series over its last window less that over its first."""
     first = series[time_s <= time_s[0] + over_s]
     last = series[time_s >= time_s[-1] - over_s]
     return float(np.mean(last) - np.mean(first))
 
 
 def window_means(scene: Scene, time_s: Array, series: Array) -> Array:
-    """The mean of a series over the window around each instant, (T,); NaN where it does not fit."""
+    """Return the mean of a series over the window around each instant, (T,); NaN if incomplete."""
     over_s = window_s(scene, float(time_s[-1] - time_s[0]))
     sums = np.concatenate([[0.0], np.cumsum(series)])
     first = np.searchsorted(time_s, time_s - 0.5 * over_s)
@@ -168,8 +168,8 @@ def window_means(scene: Scene, time_s: Array, series: Array) -> Array:
 
 
 def momentum_rows(beside: FreeBeside) -> list[Error]:
-    """The drift of the angular momentum about the one point that pins a mechanism to the ground,
-    of means over windows as that of the energy; none where something else acts from outside."""
+    """Return the drift of the angular momentum about the only pin of a mechanism to the ground, by
+    means over windows as for the energy; none where other forces act from outside."""
     run, scene = beside.run, beside.scene
     pivot = kept_about(scene) if beside.tells_momentum else None
     if pivot is None or run.velocity_time_s is None or run.velocity_time_s.size < 2:
@@ -184,14 +184,14 @@ def momentum_rows(beside: FreeBeside) -> list[Error]:
 
 
 def kept_about(scene: Scene) -> str | None:
-    """The point about which a scene keeps its angular momentum; None where it does not."""
+    """Return the point about which a scene conserves its angular momentum; None where none."""
     pinned = [point for point, bodies in scene.pins.items() if GROUND in bodies and bodies[1:]]
     acts = any(scene.gravity_m_s2) or scene.loads or scene.friction or scene.springs
     return None if acts or scene.sliders or len(pinned) != 1 else pinned[0]
 
 
 def momentum(scene: Scene, motion: Motion, time_s: Array, pivot: str) -> Array:
-    """The angular momentum of the links about a point of the ground [kg m^2/s], (T,), at the
+    """Return the angular momentum of the links about a point of the ground [kg m^2/s], (T,), at the
     instants ``time_s`` of their velocities."""
     total = np.zeros_like(time_s)
     later = time_s - motion.time_s

@@ -1,4 +1,4 @@
-"""The truth of a mechanism that was let go: integrated once, and asked for at sets of instants."""
+"""The reference of a free mechanism: integrated once, and evaluated at sets of instants."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ if TYPE_CHECKING:
 
 
 LEAST_KNOWN = 0.25
-"""What the truth may be off by, of the limit of the phase: samples beyond are not judged."""
+"""Largest uncertainty of the reference, over the limit of the phase, at judged samples."""
 
 
 def free_truth(
     scene: Scene, steps: int, dt_s: float, tolerance: Mapping[str, float] | None = None
 ) -> FreeTruth:
-    """The truth of a scene that is let go, for so many steps of ``dt_s``. Raises CrankcheckError as
-    `analytic.free.release`."""
+    """Return the reference of a free scene, for ``steps`` steps of ``dt_s``. Raises CrankcheckError
+    as `analytic.free.release`."""
     return free_truth_until(scene, steps * dt_s, dt_s, tolerance)
 
 
 def free_truth_until(
     scene: Scene, lasts_s: float, dt_s: float, tolerance: Mapping[str, float] | None = None
 ) -> FreeTruth:
-    """As `free_truth`, for so long [s]; ``dt_s`` is 0 where no step is known, and the limit of the
-    phase is then the widest that there is, unless one is given."""
+    """Return `free_truth` for a duration [s]; ``dt_s`` is 0 where no step is known, and the limit
+    of the phase is then its cap, unless one is given."""
     motion = kept_motion(scene, lasts_s)
     peak = motion.peak_speed_rad_s or 1.0 / motion.until_s
     law = Released(
@@ -56,9 +56,9 @@ def free_truth_until(
 
 @dataclass(frozen=True)
 class FreeTruth(Truth):
-    """The reference of a scene that is let go; ``scene`` has the largest speed of its driver as
-    that of its start, which errors of rates are over. Samples count as long as what the truth may
-    be off by, over the sensitivity, is at most ``known_rad``."""
+    """The reference of a free scene; ``scene`` has the largest speed of its driver as the start's,
+    as the scale of errors of rates. Samples count as long as the uncertainty of the reference, over
+    the sensitivity, is at most ``known_rad``."""
 
     free: FreeMotion = field(kw_only=True)
     known_rad: float = field(kw_only=True)
@@ -82,15 +82,15 @@ class FreeTruth(Truth):
         return self.free.with_forces(self.at(time_s), bound=self.bound)
 
     def known(self, time_s: Array) -> int:
-        """How many of the first instants (T,) the truth is known well enough at to judge by it;
-        those within a step before the start or after the end are as well known as these."""
+        """Return the number of the first instants (T,) with a reference good enough to judge by;
+        instants within a step before the start or after the end are as well known as these."""
         within = np.clip(time_s, 0.0, self.free.until_s)
         unsure = self.free.error_rad(within) / self.free.sensitivity(within)
         lost = np.flatnonzero(~(unsure <= self.known_rad))
         return int(lost[0]) if lost.size else time_s.size
 
     def beside(self, run: Run) -> Beside | None:
-        """The run as far as the truth is known, beside it; None where it logged nothing."""
+        """Return the run beside the reference as far as that is known; None for an empty log."""
         motion = run.motion
         if motion is None or not motion.time_s.size:
             return None
@@ -100,8 +100,8 @@ class FreeTruth(Truth):
 
 
 class FreeReference(Protocol):
-    """What is asked of the motion that a run is held to (`analytic.free.free_motion.FreeMotion`,
-    which is one)."""
+    """Interface of the motion that is the reference of a run
+    (`analytic.free.free_motion.FreeMotion`, which implements it)."""
 
     @property
     def until_s(self) -> float: ...
@@ -124,11 +124,11 @@ class FreeReference(Protocol):
 
 @dataclass(frozen=True)
 class FreeBeside(Beside):
-    """A run as far as the truth of it is known; ``whole_run`` goes on to its own end.
+    """A run as far as its reference is known; ``whole_run`` goes on to its own end.
 
-    Errors at the same time are over the sensitivity of the motion where they are judged: by so
-    much as a small change of the start grows, the truth itself is uncertain to anybody who builds
-    the mechanism.
+    Judged errors at the same time are over the sensitivity of the motion: as a small change of the
+    start grows by so much, the reference itself is as uncertain to anybody who builds the
+    mechanism.
     """
 
     compared_by: ClassVar[tuple[str, ...]] = (".free_errors",)
@@ -137,7 +137,7 @@ class FreeBeside(Beside):
 
     @cached_property
     def at_crank(self) -> Motion:
-        """The truth in the position that the run's own coordinate has at each instant."""
+        """The reference at the position of the run's own coordinate at each instant."""
         return self.free.beside(self.motion)
 
     @cached_property
@@ -156,7 +156,7 @@ class FreeBeside(Beside):
 
     @property
     def no_geometry(self) -> str:
-        """Why the run does not say in which position it is, "" where it does."""
+        """Reason why the position of the run is undefined, "" where it is defined."""
         return (
             ""
             if np.all(np.isfinite(self.crank))
@@ -165,14 +165,14 @@ class FreeBeside(Beside):
 
     @property
     def tells_momentum(self) -> bool:
-        """Whether places and velocities of all bodies are to be asked for."""
+        """True if positions and velocities of all bodies are required."""
         return True
 
     def driver_at(self, time_s: Array, reference: Motion) -> Array:
         return reference.links[self.scene.driver.link].theta
 
     def judged(self, track: Track, time_s: Array) -> Track:
-        """The error at the same time over the sensitivity; joints are closed at any time."""
+        """Return the error at the same time over the sensitivity; gaps of joints unchanged."""
         if track.quantity == "gap":
             return track
         growth = self.free.sensitivity(time_s)
@@ -189,7 +189,7 @@ class FreeBeside(Beside):
 
     @property
     def left_out(self) -> int:
-        """How many samples are not judged, as the truth is not known well enough there."""
+        """Number of samples not judged, as the reference is too uncertain there."""
         logged = self.whole_run.motion
         return 0 if logged is None else logged.time_s.size - self.motion.time_s.size
 
@@ -200,27 +200,26 @@ class FreeBeside(Beside):
 
 
 BEYOND = 1.01
-"""How much longer than asked for is integrated, where loads over time say so much: some velocities
+"""Integrated duration over the requested one, where loads over time allow it: some velocities
 belong to half a step after a run."""
 LOOK = 1e-3
-"""The part of the scene's own duration that is integrated for what is at its start."""
+"""The part of the scene's own duration that is integrated for its start."""
 
 
 def kept_motion(scene: Scene, lasts_s: float) -> FreeMotion:
-    """The motion of a scene that is let go, for so long [s] at least. Raises CrankcheckError as
+    """Return the motion of a free scene, for at least so long [s]. Raises CrankcheckError as
     `analytic.free.release`."""
     return _released(as_bytes(scene), long_enough_s(scene, lasts_s))
 
 
 def released_state(scene: Scene) -> State:
-    """What a scene that is let go starts from: the same to the last bit however long it is left
-    free, with the accelerations that its masses and forces give it. Raises CrankcheckError as
-    `analytic.free.release`."""
+    """Return the start of a free scene: the same to the last bit for any duration, with the
+    accelerations by its masses and forces. Raises CrankcheckError as `analytic.free.release`."""
     return kept_motion(scene, LOOK * scene.driver.law.period_s).at(np.zeros(1), bound=False).state()
 
 
 def long_enough_s(scene: Scene, lasts_s: float) -> float:
-    """Until when a motion is integrated that a run of so long is compared with [s]."""
+    """Return the end of integration [s] for comparison with a run of this duration."""
     until_s = BEYOND * lasts_s
     ends = [
         load.characteristic.nearest(until_s) for load in scene.loads.values() if load.over == "time"
@@ -231,7 +230,7 @@ def long_enough_s(scene: Scene, lasts_s: float) -> float:
 
 @lru_cache(maxsize=4)
 def _released(pickled: bytes, until_s: float) -> FreeMotion:
-    """The motion of a scene, which may come from another process: kept by what it holds."""
+    """Return the motion of a scene, which may come from another process: kept by its content."""
     from analytic.free.release import release  # slow to import, and for free motion alone
 
     return release(pickle.loads(pickled), until_s)

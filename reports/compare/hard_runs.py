@@ -1,6 +1,5 @@
-"""Hard free runs: a chain of windows held to its closed form (`analytic.free.exact_motions`), and a
-mechanism that is thrown at its toggle.
-"""
+"""Hard free runs: a chain of windows compared with its closed form (`analytic.free.exact_motions`),
+and a mechanism that is thrown at its toggle."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,12 +20,12 @@ from sim.run import run
 
 @dataclass(frozen=True)
 class ChainErrors:
-    """How an engine held a chain, at the logged samples, shape (T,).
+    """Errors of an engine on a chain, at the logged samples, shape (T,).
 
-    ``place_m`` is the distance of B0 from where it should be [m], ``speed_m_s`` that of its
+    ``place_m`` is the distance of B0 from its true position [m], ``speed_m_s`` that of its
     velocity, and ``energy_j`` the energy less that of the start in the closed form [J], both at the
     instants of the velocities; ``lean_rad`` the largest angle between two rockers, or of a coupler
-    to the ground line [rad], all 0 in truth; ``gap_m`` the largest gap of a pin [m].
+    to the ground line [rad], 0 in the closed form; ``gap_m`` the largest gap of a pin [m].
     """
 
     chain: WindowChain
@@ -42,7 +41,7 @@ class ChainErrors:
     def energy_drift(self) -> float:
         """The largest change of the energy, over the 2 m g l P that rises and falls in a turn.
 
-        Of a chain without weight, over the energy of the start.
+        For a chain without weight, over the energy of the start.
         """
         turning = ChainMotion(self.chain)
         scale = turning.exchanged_j or _start_j(turning)
@@ -50,8 +49,8 @@ class ChainErrors:
 
     @property
     def left(self) -> Departure | None:
-        """Where a rod began to leave the others, if one came to stand at an angle to them while
-        the pins were closed; the rod, and the angle of the first rocker there."""
+        """Place where a rod began to leave the others, if one came to an angle to them while the
+        pins were closed; the rod, and the angle of the first rocker there."""
         closed = self.gap_m < CLOSED * self.chain.length_m
         away = np.flatnonzero(closed & ~(self.lean_rad < AWAY_RAD))
         if not away.size or self.run.motion is None:
@@ -63,7 +62,7 @@ class ChainErrors:
         return Departure(rod, float(self.time_s[index]), float(angle))
 
     def place_until(self, time_s: float) -> float:
-        """The largest error of B0 up to a time [m]; NaN if the run ended before it."""
+        """Return the largest error of B0 up to a time [m]; NaN if the run ended before it."""
         if self.time_s[-1] < time_s - 1e-9:
             return float("nan")
         return float(np.max(self.place_m[self.time_s <= time_s + 1e-9]))
@@ -81,7 +80,7 @@ def hold(
 ) -> ChainErrors:
     """Run a chain from upright, free, for ``duration_s`` in steps of ``dt_s``, and compare.
 
-    Logged is every ``every``-th step. Raises CrankcheckError, as `sim.run.run` does, and for a run
+    Every ``every``-th step is logged. Raises CrankcheckError, as `sim.run.run` does, and for a run
     that did not start.
     """
     start = ChainMotion(chain).motion(np.array([0.0])).state(0)
@@ -101,7 +100,7 @@ def hold(
 
 
 def compared(chain: WindowChain, done: Run) -> ChainErrors:
-    """The comparison of a free run of the chain. Raises CrankcheckError for one without a log."""
+    """Return the comparison of a free run of the chain. Raises CrankcheckError without a log."""
     if done.motion is None or done.energy is None:
         why = done.reason or f"it was run under the drive {done.drive}"
         raise CrankcheckError(f"{done.scene} in {done.engine}: no free motion to compare: {why}")
@@ -122,13 +121,13 @@ def compared(chain: WindowChain, done: Run) -> ChainErrors:
 
 
 def _start_j(turning: ChainMotion) -> float:
-    """The energy of the start [J]."""
+    """Return the energy of the start [J]."""
     theta, omega, _ = turning.at(np.array([0.0]))
     return float(turning.energy(theta, omega)[0])
 
 
 def _velocity_error(turning: ChainMotion, done: Run) -> Array:
-    """How far the velocity of B0 is from what it should be [m/s], (T,)."""
+    """Return the distance of the velocity of B0 from the true one [m/s], (T,)."""
     assert done.motion is not None
     time_s = done.motion.time_s if done.velocity_time_s is None else done.velocity_time_s
     theta, omega, _ = turning.at(time_s)
@@ -138,7 +137,7 @@ def _velocity_error(turning: ChainMotion, done: Run) -> Array:
 
 
 def _leaning(chain: WindowChain, motion: Motion, index: int) -> str:
-    """The rod that stands at the largest angle to those that it is parallel to in truth."""
+    """Return the rod at the largest angle to the rods parallel to it in the closed form."""
     angles = {name: float(motion.links[name].theta[index]) for name in chain.rockers()}
     middle = float(np.median(list(angles.values())))
     off = {name: abs(angle - middle) for name, angle in angles.items()}
@@ -147,7 +146,7 @@ def _leaning(chain: WindowChain, motion: Motion, index: int) -> str:
 
 
 def _lean(chain: WindowChain, motion: Motion) -> Array:
-    """The largest angle between rods that are parallel in truth [rad], (T,)."""
+    """Return the largest angle between rods that are parallel in the closed form [rad], (T,)."""
     rockers = np.stack([motion.links[name].theta for name in chain.rockers()])
     couplers = [np.abs(motion.links[name].theta) for name in chain.couplers()]
     spread: Array = np.max([np.ptp(rockers, axis=0), *couplers], axis=0)
@@ -156,17 +155,17 @@ def _lean(chain: WindowChain, motion: Motion) -> Array:
 
 Passage = Literal["over", "back", "undecided", "broken"]
 OVER = -0.5
-"""The part of its way from the toggle to the start, beyond it, at which a run has got over."""
+"""Part of its way from the toggle to the start, beyond the toggle, at which a run has got over."""
 NEAR = 0.5
-"""And before it, at which one that turns back has been near it."""
+"""The same before the toggle, within which a run that turns back has been near it."""
 
 
 @dataclass(frozen=True, eq=False)
 class TogglePassage:
-    """What a run did: ``outcome``, at the sample ``index`` (of the last where it did neither).
+    """Result of a run: ``outcome``, at the sample ``index`` (the last if neither over nor back).
 
-    ``open_rad`` (T,) is the angle that coupler and rocker have yet to turn until they are in line:
-    negative in the other assembly. ``nearest_rad`` is the least of it until the outcome.
+    ``open_rad`` (T,) is the remaining angle of coupler and rocker until they are in line: negative
+    in the other assembly. ``nearest_rad`` is its least value until the outcome.
     """
 
     outcome: Passage
@@ -179,11 +178,11 @@ class TogglePassage:
 
 
 def toggle_passage(barrier: ToggleBarrier, run: Run) -> TogglePassage:
-    """What a run does that was thrown at a toggle.
+    """Return the outcome of a run that was thrown at a toggle.
 
     A run is broken where it did not end as it should, or has a pin open by more than
-    `reports.compare.branch.CLOSED` of the longest link before it is decided; undecided where it
-    has come neither over nor back to its start by its end. It has to have logged its motion.
+    `reports.compare.branch.CLOSED` of the longest link before it is decided; undecided where it has
+    come neither over nor back to its start by its end. It has to have logged its motion.
     """
     motion = run.motion
     assert motion is not None

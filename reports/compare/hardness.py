@@ -1,8 +1,8 @@
-"""How hard a scene is on an engine, as pure numbers: its curvature, change points and loads, and
+"""Difficulty of a scene for an engine, as pure numbers: its curvature, change points and loads, and
 the bodies whose motion no integrator follows exactly.
 
-Driven exactly, a mechanism moves as it does whatever loads it; but a constraint that is soft gives
-way under them, and what a load over a displacement weighs hangs on where its slider is.
+Driven exactly, a mechanism moves alike under any load; but a soft constraint gives way under loads,
+and the effect of a load over a displacement depends on its slider's position.
 """
 
 import itertools
@@ -24,13 +24,13 @@ from reports.quantities.quantity import BodyKind
 
 
 def loading(scene: Scene, motion: Motion) -> float:
-    """The largest second difference, from sample to sample, of the acceleration that its loads
-    would give a body by itself, over those of the driver's speed on the longest link.
+    """Return the largest second difference, from sample to sample, of the acceleration that its
+    loads alone would give a body, over that of the driver's speed on the longest link.
 
-    The springs of soft constraints give way by a share of that acceleration, and where it grows
-    evenly they do so evenly: what they make of the bodies' accelerations is its second difference.
-    A body on a guide is not turned. 0 without loads, or where a table of one ends before the
-    motion, which then has no forces either.
+    The springs of soft constraints give way by a share of that acceleration, and evenly where it
+    grows evenly: their effect on the bodies' accelerations is its second difference. A body on a
+    guide is not turned. 0 without loads, or where a table of one ends before the motion, which then
+    has no forces either.
     """
     square, largest = scene.pace_rad_s**2, 0.0
     guided = {slider.link for slider in scene.sliders.values()}
@@ -48,8 +48,8 @@ def loading(scene: Scene, motion: Motion) -> float:
 
 
 def inertia_share(scene: Scene, force_n: float) -> float:
-    """What all masses take at the driver's speed on the longest link, as a share of a force, 1 at
-    most."""
+    """Return the force of inertia of all masses at the driver's speed on the longest link, as a
+    share of a force, at most 1."""
     masses = [link.mass_kg for link in scene.links.values()]
     masses += [slider.mass_kg for slider in scene.sliders.values()]
     push = sum(masses) * scene.longest_m * scene.pace_rad_s**2
@@ -57,8 +57,8 @@ def inertia_share(scene: Scene, force_n: float) -> float:
 
 
 def _push(scene: Scene, motion: Motion, body: str) -> tuple[NDArray[np.complex128], Array]:
-    """The force of all loads on a body [N], as x + iy, and their moment about its centre of mass
-    [N m], (T,). Raises CrankcheckError as `Load.magnitude`."""
+    """Return the force of all loads on a body [N], as x + iy, and their moment about its centre of
+    mass [N m], (T,). Raises CrankcheckError as `Load.magnitude`."""
     force = np.zeros(motion.time_s.shape, dtype=np.complex128)
     moment = np.zeros(motion.time_s.shape)
     turned = np.exp(1j * _angle(scene, motion, body))
@@ -80,7 +80,7 @@ def _push(scene: Scene, motion: Motion, body: str) -> tuple[NDArray[np.complex12
 
 
 def _angle(scene: Scene, motion: Motion, body: str) -> Array | float:
-    """The angle of a link or of a block, which is turned with its guide [rad]."""
+    """Return the angle of a link, or of a block, which is turned with its guide [rad]."""
     for slider in scene.sliders.values():
         if block_name(slider) == body:
             guide = motion.links.get(slider.on)
@@ -89,7 +89,7 @@ def _angle(scene: Scene, motion: Motion, body: str) -> Array | float:
 
 
 def _magnitude(scene: Scene, load: Load, motion: Motion) -> Array:
-    """The size of a load over a motion [N or N m]."""
+    """Return the size of a load over a motion [N or N m]."""
     slid = None if load.slider is None else motion.sliders[load.slider]
     x = motion.time_s
     if load.over == "angle":
@@ -104,7 +104,7 @@ def _largest(series: Array) -> float:
 
 
 def _mass(scene: Scene, body: str) -> float:
-    """The mass of a body [kg]; of one that has none, the least there is."""
+    """Return the mass of a body [kg]; for a massless body, the least mass of any other."""
     own = {name: link.mass_kg for name, link in scene.links.items()}
     own |= {name: slider.mass_kg for name, slider in blocks(scene).items()}
     heavy = [mass for mass in own.values() if mass > 0.0]
@@ -114,8 +114,8 @@ def _mass(scene: Scene, body: str) -> float:
 def load_slopes(
     scene: Scene, motion: Motion, force_n: float, torque_n_m: float
 ) -> dict[str, float]:
-    """How much the loads over displacements change with these, over the longest link: the
-    ``reaction``, as a share of the largest, and the ``torque``, by their power.
+    """Return the changes of the loads over displacements per longest link: ``reaction``, as a share
+    of the largest, and ``torque``, by their power.
 
     The slope at a sample is the steepest as far as the samples before and after it.
     """
@@ -132,7 +132,7 @@ def load_slopes(
 
 
 def _slope(load: Load, motion: Motion) -> Array:
-    """The slope of a load at every sample [N/m or N], 0 where it does not act."""
+    """Return the slope of a load at every sample [N/m or N], 0 where it does not act."""
     assert load.slider is not None
     slid = motion.sliders[load.slider]
     apart = np.abs(np.diff(slid.displacement))
@@ -143,7 +143,7 @@ def _slope(load: Load, motion: Motion) -> Array:
 
 
 def _speed(scene: Scene, load: Load, motion: Motion) -> Array:
-    """How fast what is loaded moves [m/s or rad/s]."""
+    """Return the speed of the loaded point or body [m/s or rad/s]."""
     if load.point is not None:
         return np.asarray(np.hypot(*motion.points[load.point].velocity.T))
     guides = {block_name(slider): slider.on for slider in scene.sliders.values()}
@@ -152,7 +152,7 @@ def _speed(scene: Scene, load: Load, motion: Motion) -> Array:
 
 
 def curvature(scene: Scene, reference: Motion) -> float:
-    """The largest pure acceleration of the reference, at least 1, where it is a number."""
+    """Return the largest finite pure acceleration of the reference, at least 1."""
     square = scene.pace_rad_s**2
     turning = (link.alpha / square for link in reference.links.values())
     moving = (
@@ -163,17 +163,17 @@ def curvature(scene: Scene, reference: Motion) -> float:
 
 
 WINDOW_RAD = 0.5
-"""Of the driver, on both sides of a change point."""
+"""Window of driver angles on both sides of a change point."""
 
 
 def near(crossings: Iterable[Crossing], driver_rad: Array, within_rad: float) -> Mask:
-    """Whether driver angles (T,) are nearer than this to one of some change points.
+    """Return a mask of driver angles (T,) nearer than this to one of some change points.
 
-    Rates are another matter. Within a step of the change point the joints do not hold the dyad in
-    one direction: a soft constraint leaves all of an acceleration open there. The error of place
-    that piled up, of second order, is made good in a step or some when they hold again: that is a
+    Rates need it. Within a step of the change point the joints do not hold the dyad in one
+    direction: a soft constraint leaves all of an acceleration open there. The position error that
+    piled up, of second order, is corrected in one or a few steps when they hold again: that is a
     velocity of first order, and an acceleration that does not shrink with the step. Rates in the
-    window are rows of their own, of kind "passage", and held to limits of their own
+    window are separate rows, of kind "passage", with separate limits
     (`reports.judge.tolerance.in_passage`).
 
     Measured for profile tuned at 180 to 1440 steps a turn on a parallelogram, a kite and an
@@ -188,15 +188,14 @@ def near(crossings: Iterable[Crossing], driver_rad: Array, within_rad: float) ->
 
 
 def conditioning(motion: Motion, driver_rad: Array) -> float:
-    """The smallest sine of a transmission angle, 1 where there is no dyad.
+    """Return the smallest sine of a transmission angle, 1 where there is no dyad.
 
-    Of a dyad in the window of its own change point no sine counts, unless the motion has no other:
-    then the largest does, as the one that is farthest from it.
+    A dyad in the window of its own change point does not count, unless the motion has no other
+    sample: then its largest sine counts, as the farthest from the change point.
 
     The sine of a dyad falls to 0 in a change point, and yet the smooth branch is regular there:
-    inertia carries an engine through, with the error of place that it has in the regular motion on
-    both sides. How hard the mechanism is on an engine is therefore read off outside `WINDOW_RAD` of
-    the driver.
+    inertia carries an engine through, with the position error of the regular motion on both sides.
+    The difficulty is therefore measured outside `WINDOW_RAD` of the driver.
     """
     smallest = 1.0
     for key, sine in motion.conditioning.items():
@@ -209,22 +208,22 @@ def conditioning(motion: Motion, driver_rad: Array) -> float:
 Series = dict[tuple[BodyKind, str], Array]
 LEAST_SAMPLES = 8
 LEAST_TURN_RAD = 0.2
-"""Over less of a turn of the driver no error comes to its size."""
+"""Turn of the driver below which no error comes to its full size."""
 EVEN = 1e-3
-"""A departure that is none: rounding is far below it, and errors that belong to it below those of
+"""Negligible departure: rounding is far below it, and the errors due to it are below those of
 rounding."""
 
 
 def uneven(scene: Scene, reference: Motion, driver_rad: Array) -> dict[tuple[BodyKind, str], float]:
-    """How far each body departs from moving evenly with the driver, without those that do not:
-    links in radians, sliders and points in longest links, 1 at most.
+    """Return the departure of each body from even motion with the driver, without even bodies:
+    links in radians, sliders and points in longest links, at most 1.
 
     ``driver_rad`` is the commanded angle of the driver at the samples of the reference, (T,).
 
-    What moves evenly with the driver comes out right to rounding however an engine steps: a link
-    that turns with it, a link of a parallelogram, a point on either. All else is off by what a step
-    leaves out, and the more, the further it is from moving evenly: from the driver's angle times a
-    number for links and sliders, from the ellipse that its pin could draw for points.
+    A body that moves evenly with the driver is right to rounding in any integrator: a link that
+    turns with it, a link of a parallelogram, a point on either. All others have the truncation
+    error of a step, which grows with the departure from even motion: from the driver's angle times
+    a number for links and sliders, from the ellipse that its pin could draw for points.
     """
     if driver_rad.size < LEAST_SAMPLES or np.ptp(driver_rad) < LEAST_TURN_RAD:
         return {}
@@ -247,8 +246,8 @@ def uneven(scene: Scene, reference: Motion, driver_rad: Array) -> dict[tuple[Bod
 def unevenly_turned(
     scene: Scene, uneven: Mapping[tuple[BodyKind, str], float]
 ) -> frozenset[tuple[BodyKind, str]]:
-    """Of the uneven bodies those whose rates are too: links, and what is carried by such a link or
-    slides on it. What rides on links that all turn evenly has the right speed in an engine."""
+    """Return the uneven bodies whose rates are uneven too: links, and bodies carried by such a link
+    or sliding on it. Bodies carried by evenly turning links have the right speed in an engine."""
     links = {name for kind, name in uneven if kind == "link"}
     carried = {point for name in links for point in scene.links[name].points}
     slides = {
@@ -261,7 +260,7 @@ def unevenly_turned(
 
 
 def _departures(series: Series, even: NDArray[np.inexact]) -> dict[tuple[BodyKind, str], float]:
-    """The largest distance of each series (T,) from what the columns ``even`` (T, n) add up to."""
+    """Return the largest distance of each series (T,) from the span of columns ``even`` (T, n)."""
     moved = np.stack(list(series.values()), axis=-1)
     # The normal equations of two or three columns: a hundredth of the time of a decomposition.
     across = even.conj().T

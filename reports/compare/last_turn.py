@@ -1,12 +1,12 @@
-"""The last turn of a run at a few instants: how it moved, and what it was off by, with sign; of a
-run that was let go, which has no turns, the whole.
+"""The last turn of a run at a few instants: its motion, and its errors, with sign; a free run,
+which has no turns, in full.
 
-What a drawing and a curve of error over crank angle need, at a hundredth of the whole log. Series
-by name: ``time_s``, ``driver_rad`` (commanded), ``drive`` [rad], ``gap`` (the largest of all pins
-and sliders) [m]; per link ``theta.LINK``, ``angle.LINK`` and ``geometric.angle.LINK`` [rad]; per
-slider ``displacement.NAME`` and ``geometric.displacement.NAME`` [m]; per point ``x.P``, ``y.P``
+This suffices for a drawing and a curve of error over crank angle, at a hundredth of the whole log.
+Series by name: ``time_s``, ``driver_rad`` (commanded), ``drive`` [rad], ``gap`` (the largest of all
+pins and sliders) [m]; per link ``theta.LINK``, ``angle.LINK`` and ``geometric.angle.LINK`` [rad];
+per slider ``displacement.NAME`` and ``geometric.displacement.NAME`` [m]; per point ``x.P``, ``y.P``
 [m]. Names with ``geometric.`` are against the reference at the logged crank angle, the others
-against it at the commanded time. What was let go has those of `free_series` as well.
+against it at the commanded time. Free motion has the series of `free_series` as well.
 """
 
 from collections.abc import Iterable, Mapping
@@ -30,7 +30,7 @@ SAMPLES_PER_TURN = 90
 
 
 def trace(truth: Truth, run: Run) -> Trace:
-    """The series of a run that logged something; empty where it logged nothing that is finite."""
+    """Return the series of a run; empty where it logged nothing that is finite."""
     scene = truth.scene
     if run.motion is None or run.motion.time_s.size < 2:
         return {}
@@ -60,7 +60,7 @@ def trace(truth: Truth, run: Run) -> Trace:
 
 
 def _instants(scene: Scene, run: Run) -> np.ndarray:
-    """Which samples are kept: the last turn, at equal parts of it as near as the steps allow."""
+    """Return the kept samples: the last turn, in parts as equal as the steps allow."""
     assert run.motion is not None
     times = run.motion.time_s
     step_s = run.dt_s * run.every
@@ -72,7 +72,7 @@ def _instants(scene: Scene, run: Run) -> np.ndarray:
 
 
 def _errors(placed: Iterable[Track], prefix: str) -> Mapping[str, Array]:
-    """The errors of links and sliders, which have a sign."""
+    """Return the errors of links and sliders, which have a sign."""
     return {
         f"{prefix}{track.quantity}.{track.body}": track.error
         for track in placed
@@ -81,16 +81,16 @@ def _errors(placed: Iterable[Track], prefix: str) -> Mapping[str, Array]:
 
 
 SAMPLES = 720
-"""Over a whole run: some fifty in a swing of a mechanism that lasts ten seconds."""
+"""Samples of a whole free run: some fifty in a swing of a mechanism that lasts ten seconds."""
 
 
 def free_series(beside: FreeBeside) -> Mapping[str, Array]:
-    """Series by name, (T,) each, of a run that was thinned out to the instants that are kept.
+    """Return series by name, (T,) each, of a run that was thinned out to the kept instants.
 
-    ``phase`` [rad] is what the driver is off by at the same time, ``growth`` the sensitivity,
-    ``omega`` the driver's logged angular velocity [rad/s]. Where the engine has an energy,
-    ``energy`` [J] is that, less the work of loads and dampers as the reference has it, and less its
-    value at the start; ``kinetic`` the true kinetic energy [J].
+    ``phase`` [rad] is the driver's error at the same time, ``growth`` the sensitivity, ``omega``
+    the driver's logged angular velocity [rad/s]. Where the engine has an energy, ``energy`` [J] is
+    that, less the work of loads and dampers by the reference, and less its value at the start;
+    ``kinetic`` the true kinetic energy [J].
     """
     run = beside.run
     series = {"phase": beside.drive, "growth": beside.growth}

@@ -1,7 +1,7 @@
-"""The truth of elastic links that are let go: the beam, and the exact chain, with all their swings.
+"""The reference of free motion with elastic links: the beam, and the exact chain, with all swings.
 
-Errors at the same time are judged over the sensitivity of the same mechanism with rigid links: by
-so much a small change of the start grows, and what swings beside it adds little to that.
+Errors at the same time are judged over the sensitivity of the same mechanism with rigid links: a
+small change of the start grows by so much, and the swings add little to that.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ from reports.quantities.by_kind import PHASE
 from sim.engine import Run
 
 MOST_EXACT = 32
-"""Segments whose exact chain is integrated: of 32 a second of the shipped pulse takes some ten."""
+"""Most segments of an integrated chain: with 32 a second of the shipped pulse takes some ten."""
 MOST_DOUBT = 0.05
-"""What the deflection of the beam may be off by, of the largest: samples beyond are not judged."""
+"""Uncertainty of the beam's deflection, over the largest, beyond which samples are not judged."""
 
 
 def released_elastic_truth(
@@ -59,9 +59,9 @@ def released_elastic_truth(
     dt_s: float,
     tolerance: Mapping[str, float] | None = None,
 ) -> ReleasedElasticTruth:
-    """The truth of a scene that is let go for so many steps of ``dt_s`` [s], its elastic links in
-    so many segments. Raises EngineError as `elastic_truth`, and CrankcheckError for a scene that
-    can not be let go."""
+    """Return the reference of a free scene for ``steps`` steps of ``dt_s`` [s], its elastic links
+    in ``count`` segments. Raises EngineError as `elastic_truth`, and CrankcheckError for a scene
+    without free motion."""
     limit = (tolerance or {}).get("phase", scene.tolerance.get("phase"))
     known_rad = LEAST_KNOWN * (limit or PHASE.criteria[0].tolerance.cap)
     return _truth(as_bytes(scene), count, springs, steps, dt_s, known_rad)
@@ -86,10 +86,10 @@ def _truth(
 
 @dataclass(frozen=True)
 class ReleasedElasticTruth(ChainTruth):
-    """``rigid`` is the truth of the same scene with rigid links, whose sensitivity errors are
-    judged over, and whose ``scene`` has the largest speed of the driver. Samples count as long as
-    what angles of the beam may be off by, over the sensitivity, is at most ``known_rad``, and its
-    deflection known to a part of the largest."""
+    """The reference of a free scene with elastic links. ``rigid`` is that with rigid links: errors
+    are judged over its sensitivity, and its ``scene`` has the largest speed of the driver. Samples
+    count as long as the uncertainty of the beam's angles, over the sensitivity, is at most
+    ``known_rad``, and its deflection known to a part of the largest."""
 
     rigid: FreeTruth = field(kw_only=True)
     known_rad: float = field(kw_only=True)
@@ -115,7 +115,7 @@ class ReleasedElasticTruth(ChainTruth):
 
     @cached_property
     def known_s(self) -> float:
-        """Until when the truth is known well enough to judge by."""
+        """Time until which the reference is known well enough to judge by."""
         theory, time_s = self.theory, self.theory.looks_s
         doubt = ElasticDoubt.between(theory.looked, theory.looked_other).so_far
         turned = np.max(list(doubt.theta_rad.values()), axis=0)
@@ -127,7 +127,7 @@ class ReleasedElasticTruth(ChainTruth):
 
     @property
     def _works(self) -> ReleasedElasticMotion:
-        """The motion whose energies an engine's are held to: that of its own chain, if it is
+        """The motion with the reference energies: that of the engine's own chain, if it is
         known."""
         motion = self.exact.motion if self.is_exact else self.beam
         assert isinstance(motion, ReleasedElasticMotion)
@@ -151,8 +151,8 @@ class ReleasedElasticTruth(ChainTruth):
 
 
 def at_any(motion: ReleasedElasticMotion, time_s: Array) -> Motion:
-    """A motion at times in ascending order [s], (T,), some of which may be within a step of its
-    start or its end."""
+    """Return a motion at times in ascending order [s], (T,), some of which may be within a step of
+    its start or its end."""
     early, late = time_s < 0.0, time_s > motion.until_s
     if not (early.any() or late.any()):
         return sampled(motion, time_s)
@@ -165,8 +165,8 @@ def at_any(motion: ReleasedElasticMotion, time_s: Array) -> Motion:
 
 @dataclass(frozen=True)
 class BentReference:
-    """What errors of a run whose links bend are judged over (`FreeReference`): the sensitivity of
-    the ``rigid`` mechanism, and the energies of the ``elastic`` one."""
+    """Reference quantities for a run whose links bend (`FreeReference`): the sensitivity of the
+    ``rigid`` mechanism, and the energies of the ``elastic`` one."""
 
     rigid: FreeMotion
     elastic: ReleasedElasticMotion
@@ -185,7 +185,7 @@ class BentReference:
         return self.rigid.sensitivity(np.clip(time_s, 0.0, self.rigid.until_s))
 
     def beside(self, logged: Motion) -> Motion:
-        """Raises ReachError: where links bend the driver's angle does not say where they are."""
+        """Raise ReachError: where links bend, the driver's angle does not fix their positions."""
         raise ReachError("where links bend the driver's angle does not say where the others are")
 
 

@@ -1,4 +1,4 @@
-"""Error series: what an engine logged less the reference, and how large that is."""
+"""Error series: the engine's log less the reference, and their sizes."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
@@ -18,9 +18,9 @@ from sim.engine import Run
 class Track:
     """One quantity of one body over time.
 
-    ``error`` is engine less reference [unit], (T,) or (T, 2); ``bound`` (T,) what the reference
-    may be wrong by; ``truth`` the reference of the place or rate that was logged; ``scale`` makes
-    a pure number of the error.
+    ``error`` is engine less reference [unit], (T,) or (T, 2); ``bound`` (T,) the uncertainty of the
+    reference; ``truth`` the reference of the logged position or rate; ``scale`` makes a pure number
+    of the error.
     """
 
     quantity: str
@@ -34,15 +34,15 @@ class Track:
 
     @property
     def magnitude(self) -> float:
-        """The largest number of the truth, which rounding is relative to."""
+        """The largest number of the reference, for relative rounding."""
         return float(np.max(np.abs(self.truth), initial=0.0))
 
 
 def tracks(scene: Scene, run: Run, reference: Motion, quantities: Iterable[str]) -> Iterator[Track]:
-    """Tracks of some quantities, of all bodies.
+    """Yield tracks of some quantities, of all bodies.
 
-    It is the reference that says which there are: what the engine's log lacks, or has another
-    number of samples of, is an error that is NaN throughout.
+    The reference determines the bodies: a series that the engine's log lacks, or has with another
+    number of samples, is an error that is NaN throughout.
     """
     for quantity in quantities:
         for measure in QUANTITIES[quantity].measures:
@@ -63,26 +63,26 @@ def tracks(scene: Scene, run: Run, reference: Motion, quantities: Iterable[str])
 
 
 def _error(engine: Array, right: Array, *, turns: bool) -> Array:
-    """Engine less reference: where the engine has nothing, one NaN for all."""
+    """Return engine less reference: where the engine has nothing, one NaN for all."""
     if np.isnan(engine[:1]).all() and np.isnan(engine).all():
         return _one(np.nan, right.shape)
     return angle_error(engine, right) if turns else engine - right
 
 
 def _one(number: float, shape: tuple[int, ...]) -> Array:
-    """A number as a series, which takes no memory: of a long log there are many."""
+    """Return a number as a series, which takes no memory: of a long log there are many."""
     return np.broadcast_to(np.float64(number), shape)
 
 
 def fitting(series: Array | None, like: Array) -> Array:
-    """The series, or NaN throughout where there is none of the shape of ``like``."""
+    """Return the series, or NaN throughout where there is none of the shape of ``like``."""
     if series is None or series.shape != like.shape:
         return np.full_like(like, np.nan)
     return series
 
 
 def lacking(motion: Motion, reference: Motion) -> list[str]:
-    """The links, sliders and points of the reference that the engine's motion has not got."""
+    """Return the links, sliders and points of the reference that the engine's motion lacks."""
     pairs: tuple[tuple[str, Mapping[str, object], Mapping[str, object]], ...] = (
         ("link", motion.links, reference.links),
         ("slider", motion.sliders, reference.sliders),
@@ -95,10 +95,10 @@ def lacking(motion: Motion, reference: Motion) -> list[str]:
 
 @dataclass(frozen=True)
 class TrackSize:
-    """How large an error series is, in the unit of the series.
+    """Size of an error series, in the unit of the series.
 
-    ``maximum`` is NaN as soon as one sample is not finite: a number that is missing is a failure,
-    not a sample to leave out. ``index`` is where the maximum stands, or the first such sample.
+    ``maximum`` is NaN as soon as one sample is not finite: a missing number is a failure, not a
+    sample to leave out. ``index`` is the place of the maximum, or the first such sample.
     """
 
     maximum: float
@@ -108,7 +108,7 @@ class TrackSize:
 
 
 def size(series: Array) -> TrackSize:
-    """Maximum, root mean square and last value of the magnitude of ``series`` (T,)."""
+    """Return maximum, root mean square and last value of the magnitude of ``series`` (T,)."""
     magnitude = np.abs(series)
     index = int(np.argmax(magnitude))  # the first NaN, where there is one
     largest = float(magnitude[index])
@@ -121,10 +121,10 @@ def size(series: Array) -> TrackSize:
 
 
 def angle_error(engine: Array, reference: Array) -> Array:
-    """Difference of two continuous angles [rad], less the whole turns that it starts with.
+    """Return the difference of two continuous angles [rad], less the whole turns at its start.
 
-    The engine may count turns from elsewhere; after the first sample a whole turn is an error, at
-    one sample alone as well.
+    The engine may count turns from elsewhere; after the first sample a whole turn is an error, even
+    at one sample alone.
     """
     error = engine - reference
     first = float(error[0]) / math.tau if error.size else 0.0
@@ -133,19 +133,19 @@ def angle_error(engine: Array, reference: Array) -> Array:
 
 
 def length(vectors: Array) -> Array:
-    """Euclidean length of each row of (T, 2); of a (T,) series its magnitude."""
+    """Return the Euclidean length of each row of (T, 2); of a (T,) series its magnitude."""
     return np.hypot(vectors[:, 0], vectors[:, 1]) if vectors.ndim == 2 else np.abs(vectors)
 
 
 def rate(error: Array, step_s: float) -> Array:
-    """First derivative by central differences; the two ends are dropped.
+    """Return the first derivative by central differences; the two ends are dropped.
 
     The derivative of the *error* is the difference of the two differenced motions: the truncation
-    of the formula, the same for engine and reference, cancels, and what is left is the engine's.
+    of the formula, the same for engine and reference, cancels, and the engine's error remains.
     """
     return np.asarray((error[2:] - error[:-2]) / (2.0 * step_s))
 
 
 def second_rate(error: Array, step_s: float) -> Array:
-    """Second derivative by central differences; the two ends are dropped."""
+    """Return the second derivative by central differences; the two ends are dropped."""
     return np.asarray((error[2:] - 2.0 * error[1:-1] + error[:-2]) / step_s**2)

@@ -1,5 +1,5 @@
-"""The errors of a run put together, from the parts that its kind gives and those of every kind; and
-those of its forces, at the instants that they act at."""
+"""Assembly of the errors of a run, from parts specific to its kind and parts of every kind; and the
+errors of its forces, at the instants at which they act."""
 
 from __future__ import annotations
 
@@ -43,16 +43,16 @@ from reports.quantities.quantity import BodyKind
 from sim.engine import Run
 
 UNSURE = 1e-5
-"""The most that a force of the reference may be wrong by, of its scale: where a load jumps between
-two samples that rounding can not tell apart, it is known to the jump."""
+"""Largest uncertainty of a reference force, over its scale: where a load jumps between two samples
+that rounding cannot separate, it is known to the jump."""
 OF_STEPS = 12
-"""Samples in which forces of steps come to their steady error. What half a step has left undone is
-over with the next; where iterations leave up to half of it from step to step, 2^-12 are left, under
-what soft constraints leave open."""
+"""Samples in which forces of steps come to their steady error. The defect of half a step is over
+with the next; where iterations leave up to half of it from step to step, 2^-12 are left, below the
+give of soft constraints."""
 
 
 def force_rows(beside: Beside) -> ForceErrors:
-    """The errors of forces, at the instants that they act at; none where none were asked for."""
+    """Return the errors of forces, at their own instants; none where none were requested."""
     scene, run = beside.scene, beside.run
     if not run.with_forces:
         return ForceErrors()
@@ -100,12 +100,12 @@ def force_rows(beside: Beside) -> ForceErrors:
 
 
 ROUNDING = 1e-9
-"""A share of a step that stamps may be off by."""
+"""Largest error of the stamps, as a share of a step."""
 
 
 @dataclass(frozen=True)
 class ForceErrors:
-    """What came of the forces of a run, in the words of `reports.compare.errors.Errors`."""
+    """Result of the comparison of forces, in the terms of `reports.compare.errors.Errors`."""
 
     rows: tuple[Error, ...] = ()
     not_reported: tuple[str, ...] = ()
@@ -113,12 +113,12 @@ class ForceErrors:
     facts: ForceFacts = field(default_factory=ForceFacts)
     incomplete: str = ""
     unsure: Mapping[tuple[str, str], float] = field(default_factory=dict)
-    """What the reference is wrong by, as a pure number, of forces that it knows at no sample."""
+    """Uncertainty of the reference, as a pure number, of forces that it knows at no sample."""
 
 
 def off_stamps(run: Run) -> str:
-    """Which forces are stamped farther than a step from the sample that they are logged with, ""
-    where none are: what acts at another time is no force of that sample."""
+    """Return a text on forces stamped farther than a step from their sample, "" where there are
+    none: a force at another time does not belong to that sample."""
     forces = acting(run)
     if forces is None or run.motion is None:
         return ""
@@ -134,8 +134,8 @@ def off_stamps(run: Run) -> str:
 
 
 def unbalanced(run: Run, largest_n: float) -> Unbalanced | None:
-    """The pin whose forces add up to most, over the largest reaction; what is no number is told
-    elsewhere."""
+    """Return the pin with the largest sum of forces, over the largest reaction; values that are not
+    finite are reported elsewhere."""
     forces = acting(run)
     sums = dict[str, float]()
     for point, bodies in (forces.pins if forces else {}).items():
@@ -147,8 +147,8 @@ def unbalanced(run: Run, largest_n: float) -> Unbalanced | None:
 
 
 def force_notes(run: Run, reference: Forces, dead: int, passed: int) -> tuple[str, ...]:
-    """What of the forces is not compared, or not judged, of samples in dead points (``dead``) and
-    near change points (``passed``), and why."""
+    """Return notes on forces that are not compared, or not judged, at samples in dead points
+    (``dead``) and near change points (``passed``), with the reasons."""
     logged = acting(run)
     notes = [reference.undetermined and f"no reactions: {reference.undetermined}"]
     if dead:
@@ -167,12 +167,12 @@ def force_notes(run: Run, reference: Forces, dead: int, passed: int) -> tuple[st
 
 
 NEAR = 3
-"""Samples to both sides of a jump: MuJoCo's friction, a soft constraint, holds a joint that would
+"""Samples on both sides of a jump: MuJoCo's friction, a soft constraint, stops a joint that should
 stand still within its time constant, which profile tuned has at three steps."""
 
 
 def near_jumps(scene: Scene, reference: Motion) -> Mask:
-    """The samples, (T,), beside those between which a force jumps, of a motion with its forces."""
+    """Return a mask of samples, (T,), beside a jump of a force, for a motion with its forces."""
     jumps = np.zeros(max(reference.time_s.size - 1, 0), dtype=np.bool_)
     friction = reference.forces.friction if reference.forces is not None else {}
     for series in friction.values():
@@ -194,7 +194,7 @@ def near_jumps(scene: Scene, reference: Motion) -> Mask:
 
 
 def _turns(series: Array) -> Mask:
-    """Whether a series changes its sign from a sample to the next, (T - 1,)."""
+    """Return a mask of sign changes from one sample to the next, (T - 1,)."""
     sign = np.sign(np.nan_to_num(series))
     return np.asarray(sign[1:] != sign[:-1])
 
@@ -202,8 +202,8 @@ def _turns(series: Array) -> Mask:
 @dataclass(frozen=True)
 class ComparedParts:
     """The parts of a comparison that differ from kind to kind: rows before those of the gaps and
-    ``conserved`` ones behind the rates, ``notes`` before those of forces, and facts as of
-    `SceneFacts`. ``borne`` is what came of the forces."""
+    ``conserved`` ones after the rates, ``notes`` before those of forces, and facts as of
+    `SceneFacts`. ``borne`` is the result for the forces."""
 
     placed: Iterable[Error]
     notes: tuple[str, ...]
@@ -218,7 +218,7 @@ class ComparedParts:
 
 
 def whole_errors(beside: Beside, at: Instants, parts: ComparedParts) -> Errors:
-    """All errors of a run; ``at`` are the instants of its places."""
+    """Return all errors of a run; ``at`` are the instants of its positions."""
     scene, run, borne = beside.scene, beside.run, parts.borne
     reported, not_reported = reported_rows(beside)
     jolt = jolts(scene, beside.whole)
@@ -258,11 +258,11 @@ def whole_errors(beside: Beside, at: Instants, parts: ComparedParts) -> Errors:
 
 
 TWICE = 4.0
-"""How much more is granted where the angle is added up twice."""
+"""Factor for an angle that is added up twice."""
 
 
 def summed(law: Law, dt_s: float, steps: int) -> float:
-    """The most that rounding makes of the driver's angle in so many steps of ``dt_s`` [rad].
+    """Return the largest effect of rounding on the driver's angle in ``steps`` steps [rad].
 
     At constant speed an engine adds ``speed * dt`` to the angle at every step (MuJoCo ``qpos += dt
     * qvel``, pymunk ``angle += omega * dt``). Each sum is rounded by at most eps/2 of the angle,
@@ -271,10 +271,10 @@ def summed(law: Law, dt_s: float, steps: int) -> float:
     reached, and the square root of the number of steps that chance would give is exceeded
     (measured, 10^3 to 10^6 steps: 0.1 to 0.18 of the worst case, whatever the step and the engine).
 
-    Any other law comes to MuJoCo as accelerations, worked out beforehand, and is added up twice.
-    Some roundings of the speed remain at every step, and a law that repeats itself repeats them:
-    the angle is off by their sum, which grows with the square of the number of steps as well
-    (measured: 2.3 times the above for 10^4 and 10^5 steps).
+    Any other law comes to MuJoCo as accelerations, computed beforehand, and is added up twice. Some
+    roundings of the speed remain at every step, and a law that repeats itself repeats them: the
+    angle is off by their sum, which grows with the square of the number of steps as well (measured:
+    2.3 times the above for 10^4 and 10^5 steps).
     """
     lasts_s = steps * dt_s
     farthest = law.offset_rad + lasts_s * law.fastest_until(lasts_s)
