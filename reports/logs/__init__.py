@@ -1,1 +1,1 @@
-"""A user's own log: what its columns mean, and what they say of a scene."""
+"""A user's own log: the meaning of its columns, and its readings of a scene."""

@@ -1,4 +1,4 @@
-"""A column of a log with what it means, and its numbers beside what they should be."""
+"""A column of a log with its meaning, and its numbers beside the reference."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ Moved = TypeVar("Moved", LinkMotion, PointMotion, SliderMotion, ElasticMotion)
 
 @dataclass(frozen=True)
 class Channel:
-    """What a column says: a kind of reading ``of`` a link, point or slider, in ``unit``.
+    """Meaning of a column: a kind of reading ``of`` a link, point or slider, in ``unit``.
 
     A reading in SI is ``sign * (number + offset) * unit``. An angle may be ``wrapped`` into one
-    turn, and be ``relative_to`` another link. A point that several bodies share may be that of the
-    body ``on``. The numbers belong to ``delay_s`` after the time that the row is stamped with
-    (or that stands in the column ``time`` of the same file, where it has several).
+    turn, and be ``relative_to`` another link. A point that several bodies share may be read ``on``
+    one of them. The numbers belong to ``delay_s`` after the time stamp of the row (or the time in
+    the column ``time`` of the same file, where it has several).
     """
 
     column: str
@@ -43,21 +43,21 @@ class Channel:
 
     @property
     def name(self) -> str:
-        """What messages call it: the body and the kind."""
+        """Name in messages: the kind and the body."""
         against = f" relative to {self.relative_to}" if self.relative_to else ""
         on = f" on {self.on}" if self.on else ""
         return f"{self.kind.name} of {self.of}{on}{against}"
 
     def expected(self, reference: Motion) -> Array:
-        """What the reference says (T,) [SI] of that kind, body and, if any, other link."""
+        """Return the reference (T,) [SI] of that kind and body, less the other link's if any."""
         series = self.kind.of(reference, self.of)
         if self.relative_to:
             series = series - self.kind.of(reference, self.relative_to)
         return series
 
     def error(self, readings: Array, expected: Array) -> Array:
-        """Readings less what was expected (T,) [SI]: of a wrapped angle less the nearest whole
-        turns at every sample, of another angle less those of the first sample."""
+        """Return readings less reference (T,) [SI]: for a wrapped angle less the nearest whole
+        turns at every sample, for another angle less those of the first sample."""
         error = readings - expected
         if not self.kind.turns:
             return error
@@ -67,28 +67,28 @@ class Channel:
 
 @dataclass(frozen=True)
 class Reading:
-    """The numbers of a channel in SI (T,), and the instants [s] that they belong to (T,)."""
+    """The numbers of a channel in SI (T,), and their instants [s] (T,)."""
 
     channel: Channel
     values: Array
     instants: Array
 
     def first(self, rows: int) -> Reading:
-        """That of the first rows alone."""
+        """Return the reading with its first rows alone."""
         return replace(self, values=self.values[:rows], instants=self.instants[:rows])
 
     def expected(self, truth: Truth) -> Array:
-        """What the truth says of it at its instants (T,). Raises CrankcheckError."""
+        """Return the reference of it at its instants (T,). Raises CrankcheckError."""
         return self.channel.expected(truth.at(self.instants))
 
     def error(self, truth: Truth) -> Array:
-        """How far it is from that (T,) [SI]."""
+        """Return its error (T,) [SI]."""
         return self.channel.error(self.values, self.expected(truth))
 
 
 @dataclass(frozen=True)
 class Gap:
-    """A column that says how far the bodies at a pin or slider are apart: in its ``unit``, and as
+    """A column with the distance of the bodies at a pin or slider: in its ``unit``, and as
     ``opening_m`` (T,)."""
 
     column: str
@@ -101,14 +101,13 @@ class Gap:
 class OwnLog:
     """A user's log, as its columns were understood: instants (T,) [s] and one reading a channel.
 
-    ``stamp`` is the column that the instants stand in, and its unit; ``zero_s`` is what was taken
-    from its times [s].
+    ``stamp`` is the column of the instants, and its unit; ``zero_s`` was subtracted from its times
+    [s].
 
     Several ``readings`` may be of one rate of a point, or of one link, each relative to another.
-    ``copies`` are readings of a point's place as further bodies have it, which the gap is taken of;
-    ``gaps`` are those that the log itself tells. ``unused`` names
-    columns that nothing was made of, with the reason. ``forces`` are read where they are asked for.
-    ``left_out`` rows after the last were cut off, as the truth of them is not known.
+    ``copies`` are readings of a point's position on further bodies, for the gap; ``gaps`` are
+    logged ones. ``unused`` names columns without a meaning, with the reason. ``forces`` are read on
+    request. ``left_out`` rows after the last were cut off, as their reference is not known.
     """
 
     source: str
@@ -124,7 +123,7 @@ class OwnLog:
     left_out: int = 0
 
     def first(self, rows: int) -> OwnLog:
-        """The log with its first rows alone; itself where these are all."""
+        """Return the log with its first rows alone; itself where these are all."""
         if rows >= self.time_s.size:
             return self
         return replace(
@@ -144,10 +143,10 @@ def logged_motion(
     error_of: Callable[[Reading], Array],
     orders: Sequence[Order] = (0, 1, 2),
 ) -> Motion:
-    """What a log says of places, or of rates of some ``orders``, as a motion; the rest is NaN.
+    """Return the positions of a log, or rates of some ``orders``, as a motion; the rest is NaN.
 
-    ``truth_of`` gives the truth at the instants of an order, ``error_of`` what a reading is off by
-    it: of a point of which the log has one coordinate, the other is right.
+    ``truth_of`` gives the reference at the instants of an order, ``error_of`` the error of a
+    reading: a coordinate of a point that the log lacks equals the reference.
     """
     bodies: dict[str, dict[str, dict[str, Array]]]
     bodies = {"links": {}, "points": {}, "sliders": {}, "elastic": {}}
@@ -168,8 +167,8 @@ def logged_motion(
 
 
 def _slots(log: OwnLog) -> dict[tuple[Kind, str], list[Reading]]:
-    """The readings by what of a motion they are of: one, but for rates of a point on several
-    bodies, and for angles of a link that are relative to others as well."""
+    """Return the readings by the series of a motion: one each, but several for rates of a point on
+    several bodies, and for angles of a link that are also relative to others."""
     slots: dict[tuple[Kind, str], list[Reading]] = {}
     for reading in log.readings:
         slots.setdefault((reading.channel.kind, reading.channel.of), []).append(reading)
@@ -177,9 +176,9 @@ def _slots(log: OwnLog) -> dict[tuple[Kind, str], list[Reading]]:
 
 
 def _largest(errors: Sequence[Array], order: Order) -> Array:
-    """What a place or rate is off by, of which there are several readings, so that no right one
-    hides a wrong one: of rates the largest at every sample; of places, which are differenced and
-    must not jump from one to another, those of the reading whose largest is."""
+    """Return the error of a position or rate with several readings, so that no right one hides a
+    wrong one: for rates the largest at every sample; for positions, which are differenced and must
+    not jump from one to another, that of the reading with the largest error."""
     if len(errors) == 1:
         return errors[0]
     if order == 0:
@@ -189,7 +188,7 @@ def _largest(errors: Sequence[Array], order: Order) -> Array:
 
 
 def _as_motion(time_s: Array, bodies: Mapping[str, Mapping[str, Mapping[str, Array]]]) -> Motion:
-    """What is known of bodies, as a motion; the rest is NaN."""
+    """Return the known series of bodies as a motion; the rest is NaN."""
     nothing = np.full(time_s.shape, np.nan)
     nowhere = np.full((time_s.size, 2), np.nan)
 

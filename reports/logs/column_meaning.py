@@ -1,4 +1,4 @@
-"""What a column is: what its name says, as the map corrects it; and its numbers in SI."""
+"""Meaning of a column: by its name, corrected by the map; and its numbers in SI."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -19,7 +19,7 @@ from reports.logs.names import SceneNames, meaning
 
 @dataclass(frozen=True)
 class GapColumn:
-    """A column that says how far the bodies at a pin or slider are apart."""
+    """A column with the distance of the bodies at a pin or slider."""
 
     column: str
     of: str
@@ -29,7 +29,7 @@ class GapColumn:
 def column_meaning(
     column: str, told: ChannelTable | None, named: SceneNames, times: Mapping[str, str]
 ) -> Channel | GapColumn | str:
-    """What a column is, or why nothing is made of it. Raises CrankcheckError."""
+    """Return the meaning of a column, or the reason for none. Raises CrankcheckError."""
     if told and told.ignore:
         return LEFT_OUT
     if told is None or told.of is None or told.kind is None:
@@ -55,7 +55,7 @@ def _channel(
     named: SceneNames,
     times: Mapping[str, str],
 ) -> Channel | GapColumn:
-    """A channel of what the name says and the map corrects. Raises CrankcheckError."""
+    """Return a channel by its name, corrected by the map. Raises CrankcheckError."""
     told = told or ChannelTable.model_construct(column=column)
     where = f"[[channel]] {column!r}"
     of = told.of or found.of
@@ -105,7 +105,7 @@ def _channel(
 def _check_roles(
     where: str, scene: Scene, body_kind: str, of: str, relative_to: str, on: str
 ) -> None:
-    """Refuse another link, or a body of a point, that is not there. Raises CrankcheckError."""
+    """Refuse another link, or a body of a point, that does not exist. Raises CrankcheckError."""
     if relative_to and (body_kind != "link" or relative_to not in scene.links or relative_to == of):
         others = [name for name in scene.links if name != of]
         hint = suggestion(relative_to, others, "use one of")
@@ -121,21 +121,21 @@ def _check_roles(
 
 
 MOST = 1e15
-"""The most of a reading [SI] that is no angle."""
+"""Largest magnitude of a reading [SI] that is no angle."""
 DIGITS = 2e-3
-"""What rounding may add to half a turn [rad]: that to 3.142."""
+"""Largest excess over half a turn by rounding [rad]: that of 3.142."""
 
 
 @dataclass(frozen=True)
 class Reader:
-    """What makes readings of columns: the instants of the rows, and those of other columns."""
+    """Reader of columns as readings: the instants of the rows, and those of other columns."""
 
     columns: Columns
     time_s: Array
     others: dict[str, Array]
 
     def reading(self, channel: Channel, told: ChannelTable | None) -> Reading:
-        """The numbers of a channel in SI, and their instants."""
+        """Return the numbers of a channel in SI, and their instants."""
         unit = UNITS[channel.kind.dimension][channel.unit]
         raw = self.columns.numbers(channel.column)
         with np.errstate(over="ignore"):  # which is refused
@@ -153,8 +153,8 @@ class Reader:
 
 
 def _refuse_huge(columns: Columns, of: Channel | GapColumn, values: Array) -> None:
-    """Refuse readings [SI] beyond all sense: of an angle its place within a turn would be lost.
-    Raises CrankcheckError."""
+    """Refuse absurdly large readings [SI]: an angle would lose its place within a turn. Raises
+    CrankcheckError."""
     angle = isinstance(of, Channel) and of.kind.turns
     most = MOST_TURNS * math.tau if angle else MOST
     row = int(np.argmax(np.abs(values) > most))
@@ -169,8 +169,8 @@ def _refuse_huge(columns: Columns, of: Channel | GapColumn, values: Array) -> No
 
 
 def _is_wrapped(angle_rad: Array) -> bool:
-    """Whether an angle, as it was logged, stays within a turn from -pi or from 0 on, and jumps by
-    more than half of one; within another turn it may have lost one."""
+    """True if an angle, as logged, stays within a turn from -pi or from 0 on, and jumps by more
+    than half of one; within another turn it may have lost one."""
     leaps = np.abs(np.diff(angle_rad)) > math.pi
     least, most = float(np.min(angle_rad)), float(np.max(angle_rad))
     within = (low - DIGITS <= least and most <= low + math.tau + DIGITS for low in (-math.pi, 0.0))
@@ -178,7 +178,7 @@ def _is_wrapped(angle_rad: Array) -> bool:
 
 
 def gaps_told(columns: Columns, gaps: Iterable[GapColumn]) -> tuple[Gap, ...]:
-    """The gaps that a log tells itself. Raises CrankcheckError for two of one pin."""
+    """Return the logged gaps. Raises CrankcheckError for two of one pin."""
     found: list[Gap] = []
     for gap in gaps:
         if gap.of in {each.of for each in found}:

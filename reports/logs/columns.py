@@ -24,11 +24,11 @@ MOST_BYTES = 600_000_000
 
 @dataclass(frozen=True)
 class Columns:
-    """A log as it stands in its file: columns by name, of whatever they hold.
+    """A log as in its file: columns by name, with any content.
 
-    ``first`` is what a reader would call the first row of numbers: its line in a file of text,
-    its row in a sheet, 0 in a frame; ``passed`` are the lines from there on, by number, that are no
-    rows. ``decimal`` is what stands before the decimals of numbers that are text.
+    ``first`` is the place of the first row of numbers to a reader: its line in a file of text, its
+    row in a sheet, 0 in a frame; ``passed`` are the lines from there on, by number, that are no
+    rows. ``decimal`` is the decimal mark of numbers that are text.
     """
 
     source: str
@@ -39,10 +39,10 @@ class Columns:
     decimal: str = "."
 
     def numbers(self, name: str) -> Array:
-        """A column as numbers, all of them finite.
+        """Return a column as numbers, all of them finite.
 
         Raises CrankcheckError for a cell that is empty, NaN, infinite or no number; the message has
-        its row. Durations and dates.
+        its row. Also for durations and dates.
         """
         values = np.asarray(self.raw[name])
         if values.dtype.kind in "mM":  # which numpy would count in nanoseconds
@@ -63,7 +63,7 @@ class Columns:
         return found
 
     def require(self, asked: Iterable[str], where: str) -> None:
-        """Refuse names that a map has, ``where``, and the log has not. Raises CrankcheckError."""
+        """Refuse names in a map, at ``where``, that the log lacks. Raises CrankcheckError."""
         for name in asked:
             if name not in self.raw:
                 hint = suggestion(name, self.raw, "it has") if len(self.raw) < 40 else ""
@@ -72,19 +72,19 @@ class Columns:
                 )
 
     def at(self, name: str, row: int) -> str:
-        """A cell in words."""
+        """Return the words for a cell."""
         line = self.first + row_line(self.passed, row)
         return f"{self.source}, row {line}, column {cut(name)!r}"
 
     def cell(self, name: str, row: int) -> str:
-        """What stands in a cell that is no finite number."""
+        """Return the content of a cell that is no finite number."""
         found = self.raw[name][row]
         if found is None or found is pd.NA or (isinstance(found, str) and not found.strip()):
             return "the cell is empty"
         return f"found {cut(str(found), 40)}"
 
     def _parsed(self, name: str, values: np.ndarray[Any, Any]) -> Array:
-        """Cells that are not all numbers, as numbers; NaN for what is empty."""
+        """Return cells that are not all numbers as numbers; NaN for empty ones."""
         found = np.empty(values.shape[0])
         for row, cell in enumerate(values.tolist()):
             if cell is None or cell is pd.NA or (isinstance(cell, str) and not cell.strip()):
@@ -108,17 +108,17 @@ def read_columns(
 ) -> Columns:
     """Read the columns of a log.
 
-    Raises CrankcheckError for no plain file, one of another kind or larger than is read, one that
-    is damaged or empty, two columns of one name.
+    Raises CrankcheckError for no plain file, one of another kind or too large, a damaged or empty
+    one, two columns of one name.
 
     Parameters
     ----------
     path : Path
         Text with a header (.csv, .tsv, .txt; the separator is found), .parquet or .xlsx.
     layout : Layout or None
-        What the user's map says of the file.
+        The format of the file by the user's map.
     wanted : Callable
-        Which columns of a text are read, by name; of the others there are the names alone.
+        Test of a name: other columns of a text are not read, and only named.
     """
     layout = layout or Layout()
     ending = path.suffix.lower()
@@ -148,13 +148,13 @@ def read_columns(
 
 
 def _named(columns: Columns, names: Sequence[str], path: Path) -> Columns:
-    """The columns with all names of a file, also those of what was not read."""
+    """Return the columns with all names of a file, including columns not read."""
     _refuse_twins(names, f"log {path}")
     return replace(columns, raw={name: columns.raw.get(name, ()) for name in names})
 
 
 def columns_of(frame: pd.DataFrame, source: str = "the frame") -> Columns:
-    """The columns of a pandas frame. Raises CrankcheckError for names that are twice there."""
+    """Return the columns of a pandas frame. Raises CrankcheckError for repeated names."""
     names = [str(name) for name in frame.columns]
     _refuse_twins(names, source)
     raw = {name: frame.iloc[:, at].to_numpy() for at, name in enumerate(names)}
@@ -162,8 +162,8 @@ def columns_of(frame: pd.DataFrame, source: str = "the frame") -> Columns:
 
 
 def _of_table(source: str, tables: list[pa.Table], first: int = 1) -> Columns:
-    """The columns of the one arrow table in a list, which is taken out of it: each column is let go
-    as soon as it is an array, as a long log would be in memory twice. Text stays text."""
+    """Return the columns of the one arrow table in a list, which is removed from it: each column is
+    freed as soon as it is an array, as a long log would be in memory twice. Text stays text."""
     table = tables.pop()
     rows, names = table.num_rows, [str(name) for name in table.column_names]
     if rows == 0:
@@ -175,7 +175,7 @@ def _of_table(source: str, tables: list[pa.Table], first: int = 1) -> Columns:
 
 
 def _values(column: pa.ChunkedArray) -> Any:
-    """Numbers as an array of them; what is null or of other kinds as objects."""
+    """Return numbers as an array; null values and other kinds as objects."""
     if pa.types.is_floating(column.type) or pa.types.is_integer(column.type):
         if column.null_count:
             return np.array(column.to_pylist(), dtype=object)
@@ -195,8 +195,7 @@ def _refuse_twins(names: Sequence[str], source: str) -> None:
 
 
 def _parquet(raw: bytes, wanted: Callable[[str], bool]) -> tuple[pa.Table, list[str]]:
-    """The wanted columns of a Parquet file, which have been counted before they are read, and the
-    names of all."""
+    """Return the wanted columns of a Parquet file, counted before they are read, and all names."""
     try:
         file = pq.ParquetFile(pa.BufferReader(raw))
         rows, names = file.metadata.num_rows, list(file.schema_arrow.names)
@@ -219,7 +218,7 @@ THOUSANDS = re.compile(r"[-+]?\d{1,3}(?:[ ,.'\u2019]\d{3})+(?:[.,]\d*)?")
 
 
 def written_number(text: str, decimal: str) -> float:
-    """The number that a text is, with that mark before its decimals. Raises ValueError for none."""
+    """Return a text as a number, with that decimal mark. Raises ValueError for none."""
     if decimal == ",":
         if "." in text:
             raise ValueError
@@ -230,7 +229,7 @@ def written_number(text: str, decimal: str) -> float:
 
 
 def cure_of(text: str, decimal: str) -> str:
-    """What would make a number of a text."""
+    """Return advice to make a text a number."""
     text = text.strip()
     if COMMA.fullmatch(text) and decimal == ".":
         return "write decimal points, or say decimal = ',' in [file] of the map"

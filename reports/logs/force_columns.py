@@ -1,10 +1,10 @@
-"""The forces of a user's own log, of columns that are called so.
+"""The forces of a user's own log, by the names of columns.
 
-``C_rod_fx_n`` is the force of pin C on the rod, along x of the ground; ``C_fx_n`` will do where two
-bodies meet, and is that on the second of them. ``C_slider_normal_n`` and ``C_slider_moment_n_m``
-are what the guide exerts, ``torque_n_m`` is the drive's on the driver, ``drive_force_n`` that on a
-slider. Dots and spaces stand for underscores, and the unit may be in brackets. ``force_time_s`` are
-the instants that forces act at, where they are others than those of the rows.
+``C_rod_fx_n`` is the force of pin C on the rod, along x of the ground; ``C_fx_n`` suffices where
+two bodies meet, and acts on the second of them. ``C_slider_normal_n`` and ``C_slider_moment_n_m``
+are reactions of the guide, ``torque_n_m`` is the drive's on the driver, ``drive_force_n`` that on a
+slider. Dots and spaces replace underscores, and the unit may be in brackets. ``force_time_s`` are
+the instants at which forces act, where they differ from those of the rows.
 """
 
 from __future__ import annotations
@@ -29,20 +29,20 @@ if TYPE_CHECKING:
 
 
 QUANTITIES = {"pin": "reaction", "push": "torque"}
-"""What a kind of column is judged as, where that is called otherwise."""
+"""Judged quantity of a kind of column, where the names differ."""
 
 
 @dataclass(frozen=True)
 class LogForces:
-    """The forces of a log, NaN for what it has not; the ``columns`` by quantity and body that they
-    were read from, and whether its first row has none, as where forces are those of steps."""
+    """The forces of a log, NaN where missing; the ``columns`` of origin by quantity and body, and
+    whether the first row has none, as for forces of steps."""
 
     forces: Forces
     columns: Mapping[tuple[str, str], tuple[str, ...]]
     of_steps: bool
 
     def first(self, rows: int) -> LogForces:
-        """Those of the first rows alone."""
+        """Return the forces of the first rows alone."""
         some = self.forces.each_series(lambda series: series[:rows])
         return replace(self, forces=replace(some, time_s=some.time_s[:rows]))
 
@@ -50,7 +50,7 @@ class LogForces:
 def log_forces(
     columns: Columns, scene: Scene, time_s: Array, acting_s: Array | None, ignored: set[str]
 ) -> LogForces:
-    """The forces that stand in the columns of a log.
+    """Return the forces in the columns of a log.
 
     Raises CrankcheckError for no column of forces, two of one, or cells that are no numbers.
 
@@ -59,7 +59,7 @@ def log_forces(
     time_s : Array
         The instants of the rows [s], (T,).
     acting_s : Array or None
-        Those that the forces act at, where they are others.
+        Instants at which the forces act, where they differ.
     ignored : set of str
         Columns that the user's map leaves out.
     """
@@ -96,7 +96,7 @@ def log_forces(
 
 
 def _found(columns: Columns, scene: Scene, ignored: set[str]) -> dict[Place, tuple[str, Array]]:
-    """The columns that are of forces, with their numbers in SI. Raises CrankcheckError."""
+    """Return the columns of forces, with their numbers in SI. Raises CrankcheckError."""
     places = force_places(scene)
     found: dict[Place, tuple[str, Array]] = {}
     for column in columns.raw:
@@ -124,8 +124,8 @@ def _found(columns: Columns, scene: Scene, ignored: set[str]) -> dict[Place, tup
 def _pin(
     point: str, bodies: tuple[str, ...], read: Mapping[Place, Array], nothing: Array
 ) -> dict[str, Array]:
-    """The forces of a pin; where two bodies meet, each component on the one is the opposite of that
-    on the other, where only this was logged."""
+    """Return the forces of a pin; where two bodies meet, a component logged on one body only is the
+    opposite on the other."""
 
     def component(body: str, axis: int) -> Array:
         own = read.get(("pin", point, body, axis))
@@ -138,7 +138,7 @@ def _pin(
 
 
 def _numbers(columns: Columns, name: str) -> Array:
-    """A column as numbers; the first cell may be empty."""
+    """Return a column as numbers; the first cell may be empty."""
     cell = columns.raw[name][0]
     empty = cell is None or (isinstance(cell, float | np.floating) and math.isnan(cell))
     if not (empty or (isinstance(cell, str) and not cell.strip())):
@@ -160,23 +160,23 @@ UNITS: Mapping[str, Mapping[str, float]] = {
         "lbf_ft": POUND * 12 * INCH,
     },
 }
-"""What one is in SI, by how it is spelled: in letters of any size, but for milli and mega."""
+"""Size of each unit in SI, by its spelling: in letters of any case, but for milli and mega."""
 TIMES = "force_time_s"
 Place = tuple[Literal["torque", "push", "pin", "normal", "moment"], str, str, int]
-"""What a column is of: kind, point or slider, body, and axis; a push is what drives a slider."""
+"""Content of a column: kind, point or slider, body, and axis; a push drives a slider."""
 MOMENTS = ("torque", "moment")
 LENGTH = "it is the length of a force, whose components are judged with --forces"
 FRICTION = "it is friction, which is not judged"
 
 
 def names_force(column: str, scene: Scene) -> bool:
-    """Whether a column is one of forces."""
+    """True if a column is one of forces."""
     return column == TIMES or force_meaning(column, force_places(scene)) is not None
 
 
 def shown_names(scene: Scene) -> list[str]:
-    """What columns of forces are best called, one name for each: of two bodies at a pin the
-    second's."""
+    """Return the preferred names of columns of forces, one for each: of two bodies at a pin for the
+    second."""
     names: dict[Place, str] = {}
     for name, place in force_places(scene).items():
         kind, of, body, _ = place
@@ -187,7 +187,7 @@ def shown_names(scene: Scene) -> list[str]:
 
 
 def force_places(scene: Scene) -> dict[str, Place]:
-    """What columns may be called, without their units."""
+    """Return the accepted names of columns, without their units."""
     drive = drive_place(scene)
     names = [f"drive_{scene.driver.effort}"]
     if drive[0] == "torque":
@@ -211,13 +211,13 @@ def force_places(scene: Scene) -> dict[str, Place]:
 
 
 def drive_place(scene: Scene) -> Place:
-    """What a column of the drive on the driver is of."""
+    """Return the content of a column of the drive on the driver."""
     return "torque" if scene.driver.slider is None else "push", scene.driver.name, "", 0
 
 
 def force_meaning(column: str, places: Mapping[str, Place]) -> tuple[Place, float] | None:
-    """What a column is of, and what one of its numbers is in SI, NaN where that may be milli or
-    mega; None for none."""
+    """Return the content of a column, and the size of its unit in SI, NaN where that may be milli
+    or mega; None for other columns."""
     for stem, kind, unit in _stems(column):
         place = places.get(stem)
         if place and (place[0] in MOMENTS) == (kind == "moment"):
@@ -227,8 +227,8 @@ def force_meaning(column: str, places: Mapping[str, Place]) -> tuple[Place, floa
 
 
 def _stems(column: str) -> Iterator[tuple[str, str, str]]:
-    """What a name may be without its unit, of which kind the unit is, and how that is spelled, ""
-    for none."""
+    """Yield the possible names of a column without its unit, with the kind of unit and its
+    spelling, "" for none."""
     bare = re.sub(r"\s*[\[(]([^\[\]()]*)[\])]\s*$", r"_\1", column)
     words = re.sub(r"[\s._·*]+", "_", bare.strip()).strip("_")
     for kind, units in UNITS.items():
@@ -240,14 +240,14 @@ def _stems(column: str) -> Iterator[tuple[str, str, str]]:
 
 
 def why_not_judged(column: str, scene: Scene) -> str:
-    """Why a column is not judged that says what belongs to forces, and is none: a length, friction,
-    a body that is not there; "" for another."""
+    """Return the reason why a column named like a force is not judged: a length, friction, a
+    missing body; "" for other columns."""
     reasons = _others(scene)
     return next((reasons[stem] for stem, _, _ in _stems(column) if stem in reasons), "")
 
 
 def _others(scene: Scene) -> dict[str, str]:
-    """What columns may be called beside forces, without units, and why each is not judged."""
+    """Return names of columns beside forces, without units, with the reason against judging."""
     every = [*scene.ground, *scene.pins, *(slider.point for slider in scene.sliders.values())]
     met: dict[str, tuple[str, ...]] = dict.fromkeys(every, ()) | dict(joined_at(scene))
     bodies = [GROUND, *scene.links, *(name for meet in met.values() for name in meet)]
@@ -268,5 +268,5 @@ def _others(scene: Scene) -> dict[str, str]:
 
 
 def _vector(stem: str) -> tuple[str, str, str]:
-    """What components and length of a force are called."""
+    """Return the names of components and length of a force."""
     return f"{stem}_fx", f"{stem}_fy", f"{stem}_f"

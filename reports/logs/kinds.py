@@ -1,4 +1,4 @@
-"""What a column of a log can be: of which bodies, in which units, and where a motion has it."""
+"""The kinds of columns of a log: their bodies, their units, and their place in a motion."""
 
 import math
 import re
@@ -40,7 +40,7 @@ UNITS: Mapping[Dimension, Mapping[str, float]] = {
 
 
 def si(dimension: Dimension) -> str:
-    """The SI unit of a dimension."""
+    """Return the SI unit of a dimension."""
     return next(iter(UNITS[dimension]))
 
 
@@ -64,7 +64,7 @@ DIMENSION: dict[str, Dimension] = {
 
 
 def _key(text: str) -> str:
-    """A spelling without what differs from writer to writer: rad/s^2, rad_s2 and rad s-2 alike."""
+    """Return a spelling without differences of style: rad/s^2, rad_s2 and rad s-2 alike."""
     text = (
         text.strip()
         .lower()
@@ -85,12 +85,12 @@ _SPELLED = {_key(unit): unit for unit in DIMENSION} | {
 
 
 def spelled_unit(text: str) -> str:
-    """The unit that a text spells, "" for none."""
+    """Return the unit that a text spells, "" for none."""
     return _SPELLED.get(_key(text), "")
 
 
 def without_unit(column: str) -> tuple[str, str]:
-    """A name without the unit in brackets at its end, and that unit."""
+    """Return a name without the unit in brackets at its end, and that unit."""
     hit = re.search(r"\s*[\[(]([^\[\]()]*)[\])]\s*$", column)
     if hit and (unit := spelled_unit(hit[1])):
         return column[: hit.start()], unit
@@ -98,7 +98,7 @@ def without_unit(column: str) -> tuple[str, str]:
 
 
 def trailing_unit(words: list[str]) -> tuple[str, list[str]]:
-    """The unit that the last words spell, and the words before it. A lone `s` is a displacement."""
+    """Return the unit that the last words spell, and the others. A lone `s` is a displacement."""
     if words and not spelled_unit(words[-1]):
         word, _, unit = words[-1].partition("/")
         if word and spelled_unit(unit):
@@ -113,7 +113,7 @@ def trailing_unit(words: list[str]) -> tuple[str, list[str]]:
 
 
 def one_unit(column: str, unit: str) -> str:
-    """The unit of a name that may tell it twice. Raises CrankcheckError where they differ."""
+    """Return the unit of a name that may have two. Raises CrankcheckError where they differ."""
     bracket = without_unit(column)[1]
     if unit and bracket and unit != bracket:
         raise CrankcheckError(
@@ -124,7 +124,7 @@ def one_unit(column: str, unit: str) -> str:
 
 
 def refuse_other_dimension(column: str, unit: str, dimension: str) -> None:
-    """Refuse a unit of something else. Raises CrankcheckError."""
+    """Refuse a unit of another dimension. Raises CrankcheckError."""
     if unit and DIMENSION[unit] != dimension:
         raise CrankcheckError(
             f"column {cut(column)!r}: {unit} is a unit of {DIMENSION[unit]}, and its name says "
@@ -133,28 +133,28 @@ def refuse_other_dimension(column: str, unit: str, dimension: str) -> None:
 
 
 LoggedKind = MovingKind | Literal["elastic"]
-"""What may be logged of: an elastic link is a link, and bends and stretches besides."""
+"""Kinds of logged bodies: an elastic link is a link, and bends and stretches besides."""
 
 
 _JUDGED: Mapping[str, MovingKind] = {
     **{kind: kind for kind in get_args(MovingKind)},
     "elastic": "link",
 }
-"""The kind of body that quantities of one are of."""
+"""The kind of body of the quantities of a logged kind."""
 
 
 def plural(body_kind: str) -> str:
-    """What a motion calls the bodies of a kind."""
+    """Return the name of the bodies of a kind in a motion."""
     return {"elastic": "elastic"}.get(body_kind, f"{body_kind}s")
 
 
 @dataclass(frozen=True)
 class Kind:
-    """One kind of reading: ``field`` of the motion of bodies of ``body_kind``, of vectors the
+    """One kind of reading: ``field`` of the motion of bodies of ``body_kind``, for vectors the
     component ``axis``, None where it is a number.
 
-    ``quantity`` is the entry of `reports.quantities` that it is judged as; ``order`` 0 is a place,
-    1 and 2 are its rates.
+    ``quantity`` is its entry in `reports.quantities`; ``order`` 0 is a position, 1 and 2 are its
+    rates.
     """
 
     name: str
@@ -167,26 +167,26 @@ class Kind:
 
     @property
     def turns(self) -> bool:
-        """Whether it is an angle, of which whole turns may be lost."""
+        """True if it is an angle, which may lose whole turns."""
         return self.dimension == "angle"
 
     @property
     def judged_of(self) -> MovingKind:
-        """The kind of body that its quantity is of."""
+        """The kind of body of its quantity."""
         return _JUDGED[self.body_kind]
 
     @property
     def bodies(self) -> str:
-        """What a motion calls the bodies of its kind."""
+        """The name of the bodies of its kind in a motion."""
         return plural(self.body_kind)
 
     def of(self, motion: Motion, name: str) -> Array:
-        """The series (T,) of a body in a motion."""
+        """Return the series (T,) of a body in a motion."""
         series: Array = getattr(getattr(motion, self.bodies)[name], self.field)
         return series if self.axis is None else series[:, self.axis]
 
     def bound(self, bound: Bound, name: str) -> Array:
-        """What the reference may be wrong by (T,)."""
+        """Return the uncertainty of the reference (T,)."""
         series: Array = getattr(getattr(bound, self.bodies)[name], self.field)
         return series
 
@@ -231,13 +231,13 @@ OWN: Mapping[tuple[LoggedKind, str], str] = {
     **{("point", f"{rate}{letter}"): f"{rate}{letter}_{unit}"
        for rate, unit in (("", "m"), ("v", "m_s"), ("a", "m_s2")) for letter in "xy"},
 }  # fmt: skip
-"""What we call columns ourselves, after the name of the body (`reports.describe.motion_tables`)."""
+"""Our own names of columns, after the name of the body (`reports.describe.motion_tables`)."""
 LENGTH = "it is the length of a vector, whose components are judged"
 
 
 @dataclass(frozen=True)
 class Meaning:
-    """What the name of a column says; "" and None for what it leaves open."""
+    """Meaning of the name of a column; "" and None for open parts."""
 
     of: str
     kind: Kind | None
@@ -248,8 +248,8 @@ class Meaning:
 
 
 def own_meanings(bodies: Mapping[str, tuple[LoggedKind, ...]]) -> Mapping[str, Meaning | str]:
-    """What our own columns of ``bodies`` say, whatever those are called, by name: a later body's
-    where two have one."""
+    """Return the meanings of our own columns of ``bodies``, by name; where two bodies give the same
+    name, of the later one."""
     found: dict[str, Meaning | str] = {}
     for body, kinds in bodies.items():
         said: dict[str, Meaning | str] = {

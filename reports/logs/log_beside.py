@@ -1,9 +1,9 @@
-"""A user's log beside the truth: what it holds, and no more, is compared as a run of an engine is.
+"""A user's log beside the reference: its content is compared like a run of an engine.
 
-The log's readings may be wrapped, relative to another link, or belong to other instants. So what
-each is off by is worked out first (`reports.logs.channel`), and put on what the truth says of the
-places and rates of the bodies themselves: of a point of which the log has one coordinate, the other
-is right, and so of a force.
+The log's readings may be wrapped, relative to another link, or belong to other instants. So their
+errors are computed first (`reports.logs.channel`), and added to the reference positions and rates
+of the bodies themselves: a coordinate of a point, or of a force, that the log lacks equals the
+reference.
 """
 
 from collections.abc import Sequence
@@ -25,22 +25,22 @@ from reports.way.way import way_of
 from sim.engine import Run
 
 EVEN = 1e-6
-"""Steps that differ by less of themselves, as printed times do, are the same."""
+"""Relative difference below which steps are equal, as for printed times."""
 MANY = 200_000
 """Samples beyond which memory counts: tracks are not kept, and the errors at the logged angle of
-the driver left out, as a second truth of that size takes as much as all else."""
+the driver left out, as a second reference of that size takes as much as all else."""
 
 
 @dataclass(frozen=True)
 class AtCrank(Truth):
-    """The truth at the logged angles of the driver, where the log has them: its places. Rates are
-    those of the scene's law, which says how hard the scene is."""
+    """The reference at the logged angles of the driver, where the log has them: its positions.
+    Rates are by the scene's law, as the measure of its difficulty."""
 
     time_s: Array | None = None
     crank_rad: Array | None = None
 
     def at(self, time_s: Array) -> Motion:
-        """The reference at the instants of the rows, those of no other are known."""
+        """Return the reference at instants of the rows; other angles are interpolated."""
         assert self.time_s is not None
         assert self.crank_rad is not None
         instants = time_s.tobytes()
@@ -64,10 +64,10 @@ class AtCrank(Truth):
 
 @dataclass(frozen=True)
 class LogBeside(Beside):
-    """A log beside the truth: tracks of what it holds, and of no more.
+    """A log beside the reference: tracks of its own content alone.
 
-    ``step_s`` is the step that was told of it, 0 for none: without one there is no start, and
-    nothing is differenced. Where the truth is that `AtCrank`, there is ``geometry_alone``.
+    ``step_s`` is the stated step, 0 for none: without one there is no start, and nothing is
+    differenced. A reference `AtCrank` has ``geometry_alone``.
     """
 
     step_s: float = 0.0
@@ -119,19 +119,19 @@ class LogBeside(Beside):
 
 
 class LogSide(Protocol):
-    """What logs of a kind of scene are compared as."""
+    """Comparison of logs of a kind of scene."""
 
     def beside(self, log: OwnLog, truth: Truth, run: Run) -> LogBeside:
-        """The log beside the truth, and the run that it amounts to."""
+        """Return the log beside the reference, and the equivalent run."""
         ...
 
     def judged_as(self, scene: Scene, channel: Channel) -> tuple[str, ...]:
-        """The quantities that a column is judged as."""
+        """Return the quantities for which a column is judged."""
         ...
 
 
 def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside:
-    """The log beside the truth, and the run that it amounts to. Raises CrankcheckError."""
+    """Return the log beside the reference, and the equivalent run. Raises CrankcheckError."""
     scene, way = log.scene, way_of(log.scene)
     instants = {order: _instants(log, order) for order in (0, 1, 2)}
     moved = logged_motion(
@@ -166,7 +166,7 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
 
 
 def _instants(log: OwnLog, order: Order) -> Array:
-    """The instants that rates of an order are compared at: their own, where all share them."""
+    """Return the instants of comparison of rates of an order: their own, where all share them."""
     own = [each.instants for each in log.readings if each.channel.kind.order == order]
     if order and own and all(np.array_equal(each, own[0]) for each in own):
         return own[0]
@@ -174,7 +174,7 @@ def _instants(log: OwnLog, order: Order) -> Array:
 
 
 def _gaps(log: OwnLog) -> dict[str, Array]:
-    """How far the copies of a point are from the one that is judged [m], the widest at each row."""
+    """Return the largest distance of a point's copies from the judged one [m], at each row."""
     main = {(each.channel.kind, each.channel.of): each for each in log.readings}
     square: dict[tuple[str, str], Array] = {}
     for copy in log.copies:
@@ -188,8 +188,8 @@ def _gaps(log: OwnLog) -> dict[str, Array]:
 
 
 def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
-    """What of the scene's places, rates and, where they were asked for, forces the log does not
-    hold, quantity by quantity."""
+    """Return the scene's positions, rates and, where requested, forces that the log lacks, quantity
+    by quantity."""
     held, there = list[tuple[str, str]](), list[tuple[str, str]]()
     way = way_of(log.scene)
     roles = way.roles_of(with_forces=beside.run.with_forces)
@@ -211,7 +211,7 @@ def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
 
 
 def readings_of(log: OwnLog, quantity: str, body: str) -> tuple[Reading, ...]:
-    """The readings that a quantity of a body is judged by."""
+    """Return the readings by which a quantity of a body is judged."""
     side = cast(LogSide, way_of(log.scene).part("log"))
     return tuple(
         each
@@ -221,8 +221,8 @@ def readings_of(log: OwnLog, quantity: str, body: str) -> tuple[Reading, ...]:
 
 
 def whole_pins(logged: Forces, truth: Truth) -> Forces:
-    """Forces with pins of which the log has one component: of these the other is right.
-    Raises CrankcheckError where the scene has no reference."""
+    """Return forces in which a component of a pin that the log lacks equals the reference. Raises
+    CrankcheckError where the scene has no reference."""
     lacks = {
         (point, body): np.all(np.isnan(force), axis=0)
         for point, bodies in logged.pins.items()

@@ -1,4 +1,4 @@
-"""A map: the TOML file in which a user says what the columns of his log mean.
+"""A map: the TOML file with the user's meanings of the columns of a log.
 
 ::
 
@@ -14,10 +14,10 @@
     of = "rocker"              # a link, point or slider of the scene
     kind = "angle"
     unit = "deg"
-    sign = -1                  # turned about the other way
+    sign = -1                  # turned the other way
     relative_to = "coupler"    # a joint's sensor
 
-What it does not say of a column is taken from the column's name.
+Entries missing for a column are taken from the column's name.
 """
 
 import json
@@ -38,14 +38,14 @@ Truth = Annotated[bool, Field(strict=True)]
 Name = Annotated[str, Field(min_length=1, max_length=400)]
 KIND_NAMES = (*dict.fromkeys(name for _, name in KINDS), "gap")
 LEFT_OUT = "the map leaves it out"
-"""Why a column is not used that a map has ignored."""
+"""Reason for a column that a map ignores."""
 HEAD = (
     "# What the columns of the log mean: `crankcheck judge SCENE LOG --map` and this file.",
     "# kinds: angle, angular velocity, angular acceleration of a link; x, y, vx, vy, ax, ay of",
     "# a point; displacement, speed, acceleration of a slider; gap of a pin or slider.",
     "# A reading is sign * (number + offset); ignore = true leaves a column out.",
 )
-"""What stands on top of a map that is written."""
+"""Head of a written map."""
 
 
 class MapTable(BaseModel):
@@ -55,7 +55,7 @@ class MapTable(BaseModel):
 
 
 class FileTable(MapTable):
-    """How the file is written; ``holes = "meant"`` lets an even log have some."""
+    """Format of the file; ``holes = "meant"`` permits some in an even log."""
 
     separator: Literal["", ",", ";", "\t", " "] = ""
     decimal: Literal[".", ","] = "."
@@ -73,7 +73,7 @@ class TimeTable(MapTable):
 
 
 class ChannelTable(MapTable):
-    """What a column means; what is left out is taken from its name."""
+    """Meaning of a column; omitted entries are taken from its name."""
 
     column: Name
     ignore: Truth = False
@@ -98,7 +98,7 @@ class Map(MapTable):
 
     @property
     def layout(self) -> Layout:
-        """What it says of the file."""
+        """The format of the file by the map."""
         return Layout(self.file.separator, self.file.decimal, self.file.sheet)
 
 
@@ -112,8 +112,8 @@ def read_map(path: Path) -> Map:
 
 
 def map_of(raw: Mapping[str, object], place: str) -> Map:
-    """A map of such tables; ``place`` names them in messages. Raises CrankcheckError with every
-    fault."""
+    """Return a map of such tables; ``place`` names them in messages. Raises CrankcheckError with
+    every fault."""
     try:
         map_ = Map.model_validate(raw)
     except ValidationError as error:
@@ -125,7 +125,7 @@ def map_of(raw: Mapping[str, object], place: str) -> Map:
 
 
 def _check_words(map_: Map, place: str) -> None:
-    """Refuse units and kinds that there are not, and columns that are told twice.
+    """Refuse unknown units and kinds, and repeated columns.
 
     Raises CrankcheckError with every fault.
     """
@@ -150,8 +150,8 @@ def _check_words(map_: Map, place: str) -> None:
 
 
 def map_text(log: OwnLog, file: FileTable) -> str:
-    """The map of a log as its columns were understood, with what was not as remarks, and what the
-    map that it was read by says of the file."""
+    """Return the map of a log as understood, with the other columns as remarks, and the entries of
+    the original map on the file."""
     lines = [
         *HEAD,
         "",
@@ -176,20 +176,20 @@ def map_text(log: OwnLog, file: FileTable) -> str:
 
 
 def form_lines(column: str, reason: str) -> Sequence[str]:
-    """A form for a column that nothing is made of, for that reason, as remarks."""
+    """Return a form for a column without meaning, for that reason, as remarks."""
     head = [f"# {' '.join(reason.split())}", "# [[channel]]", f"# column = {toml_text(column)}"]
     return [*head, '# of = ""', '# kind = ""', '# unit = ""']
 
 
 def file_lines(file: FileTable) -> Sequence[str]:
-    """What a map says of the file as lines of TOML, none where it says nothing."""
+    """Return the entries of a map on the file as lines of TOML, none where it has none."""
     told = file.model_dump(exclude_defaults=True)
     head = ["[file]", *(f"{key} = {toml_text(value)}" for key, value in told.items()), ""]
     return head if told else []
 
 
 def told_lines(told: ChannelTable) -> Sequence[str]:
-    """What a map says of a column, as lines of TOML."""
+    """Return the entries of a map on a column, as lines of TOML."""
     lines = ["[[channel]]"]
     for key, value in told.model_dump(exclude_defaults=True).items():
         if isinstance(value, bool):
@@ -200,7 +200,7 @@ def told_lines(told: ChannelTable) -> Sequence[str]:
 
 
 def _channel(channel: Channel) -> Sequence[str]:
-    """A channel as lines of TOML, without what is as it is by default."""
+    """Return a channel as lines of TOML, without defaults."""
     lines = [
         f"column = {toml_text(channel.column)}",
         f"of = {toml_text(channel.of)}",
@@ -221,12 +221,12 @@ def _channel(channel: Channel) -> Sequence[str]:
 
 
 def toml_text(value: str) -> str:
-    """A basic string of TOML; JSON escapes what that does."""
+    """Return a basic string of TOML; JSON has the same escapes."""
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _fault(loc: tuple[int | str, ...], kind: str, message: str, found: object) -> str:
-    """One fault in a line: key, what was found, what would work."""
+    """Return one fault in a line: key, finding, remedy."""
     key = ".".join(str(part + 1) if isinstance(part, int) else part for part in loc)
     if kind == "missing":
         return f"{key}: missing; add it"

@@ -1,4 +1,4 @@
-"""Columns become readings: by their names, and by what the user's map says of them."""
+"""Conversion of columns to readings: by their names, and by the user's map."""
 
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -36,18 +36,18 @@ A_FORCE = "a force, which is judged with --forces"
 def understood(
     columns: Columns, scene: Scene, map_: Map | None = None, *, forces: bool = False
 ) -> OwnLog:
-    """The log of a scene, its ``forces`` as well where that is asked.
+    """Return the log of a scene, with its ``forces`` on request.
 
-    Raises CrankcheckError for no column of times, or one that goes back; nothing that is of the
-    scene; two columns for one quantity; units that contradict their kind; cells that are no
-    numbers; a map that names what is not there.
+    Raises CrankcheckError for no column of times, or one that goes back; no column of the scene;
+    two columns for one quantity; units that contradict their kind; cells that are no numbers; a map
+    with unknown names.
 
     Parameters
     ----------
     columns : Columns
-        What stands in the file.
+        The content of the file.
     map_ : Map or None
-        What the user says of columns, in place of their names.
+        The user's meanings of columns, in place of their names.
     """
     map_ = map_ or Map()
     times = time_columns(columns, map_)
@@ -93,7 +93,7 @@ def understood(
 
 
 def wanted(scene: Scene, map_: Map, *, forces: bool = False) -> Callable[[str], bool]:
-    """Whether a column of that name is worth reading: others are only named."""
+    """Return a test of the names of columns that are worth reading: others are only named."""
     named = SceneNames(scene)
     told = {one.column: one for one in map_.channel}
 
@@ -116,7 +116,7 @@ def wanted(scene: Scene, map_: Map, *, forces: bool = False) -> Callable[[str], 
 def _by_meaning(
     columns: Columns, scene: Scene, told: Mapping[str, ChannelTable], times: Mapping[str, str]
 ) -> tuple[list[Channel], list[GapColumn], list[tuple[str, str]]]:
-    """The columns that are of the scene, and the others with the reason. Raises CrankcheckError."""
+    """Return the columns of the scene, and the others with the reason. Raises CrankcheckError."""
     named = SceneNames(scene)
     channels: list[Channel] = []
     gaps: list[GapColumn] = []
@@ -136,7 +136,7 @@ def _by_meaning(
 
 
 def _nothing(columns: Columns, scene: Scene, unused: Sequence[tuple[str, str]]) -> str:
-    """The message of a log in which nothing is of the scene."""
+    """Return the message for a log without columns of the scene."""
     bodies = few([*scene.links, *scene.pins, *scene.sliders], 12)
     why = f" ({cut(unused[0][0])!r}: {unused[0][1]})" if unused else ""
     return (
@@ -149,8 +149,8 @@ def _nothing(columns: Columns, scene: Scene, unused: Sequence[tuple[str, str]]) 
 def without_lengths(
     channels: Sequence[Channel], told: Container[str]
 ) -> tuple[list[Channel], list[tuple[str, str]]]:
-    """The channels without lengths of vectors, which are those that a map does not tell of, of a
-    slider's point whose components are there, beside the slider's own."""
+    """Return the channels without lengths of vectors: channels, absent from the map, of a slider's
+    point whose components are logged beside the slider's own."""
     parts = {(each.of, each.kind.order) for each in channels if each.kind.body_kind == "point"}
     sliders = [each for each in channels if each.kind.body_kind == "slider"]
     own = {(each.of, each.kind.order) for each in sliders if "slider" in each.column.lower()}
@@ -168,8 +168,8 @@ def without_lengths(
 def judged_channels(
     channels: Sequence[Channel], scene: Scene
 ) -> tuple[list[Channel], list[Channel], list[tuple[str, str]]]:
-    """The channels to be judged, those of further copies of a point's place, which a gap is taken
-    of, and what is not judged with the reason. Raises CrankcheckError for two columns of one
+    """Return the channels to be judged, those of further copies of a point's position, for a gap,
+    and the other columns with the reason. Raises CrankcheckError for two columns of one
     quantity."""
     first: dict[tuple[object, ...], Channel] = {}
     main: list[Channel] = []
@@ -197,10 +197,10 @@ def judged_channels(
 
 
 def blank_map(columns: Columns, scene: Scene, map_: Map) -> tuple[str, str] | None:
-    """A form of the map of a log, all its columns in it, with what is to be filled in yet.
+    """Return a form of the map of a log with all its columns, and the entries still missing.
 
-    None where the names, and the map that it is read by, tell the times and something of the scene:
-    what is wrong then is another fault, and where the map names a column that is not there.
+    None where names and map give the times and a column of the scene, as the fault is another one
+    then, and where the map names a missing column.
     """
     told = {one.column: one for one in map_.channel}
     if not {*told, map_.time.column or next(iter(columns.raw))} <= set(columns.raw):
@@ -239,7 +239,7 @@ def blank_map(columns: Columns, scene: Scene, map_: Map) -> tuple[str, str] | No
 
 
 def _times(names: Iterable[str], left_out: Iterable[str]) -> set[str]:
-    """The columns that are of times by their names; one that contradicts itself is none."""
+    """Return the columns of times by their names; a contradictory name is none."""
     found: set[str] = set()
     for name in set(names).difference(left_out):
         try:
@@ -251,7 +251,7 @@ def _times(names: Iterable[str], left_out: Iterable[str]) -> set[str]:
 
 
 def _time_lines(map_: Map, times: set[str], names: Iterable[str]) -> Sequence[str]:
-    """The table of times; with remarks for what is to be filled in."""
+    """Return the table of times; with remarks for missing entries."""
     told = map_.time.model_dump(exclude_defaults=True)
     lines = ["[time]", *(f"{key} = {toml_text(value)}" for key, value in told.items())]
     if not times:
@@ -261,7 +261,7 @@ def _time_lines(map_: Map, times: set[str], names: Iterable[str]) -> Sequence[st
 
 
 def _why_not(name: str, named: SceneNames) -> str:
-    """Why nothing is made of a column."""
+    """Return the reason why a column has no meaning."""
     try:
         found = meaning(name, named)
     except CrankcheckError as error:

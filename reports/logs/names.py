@@ -1,6 +1,6 @@
-"""What the name of a column says: of which body it is, of which kind, in which unit.
+"""Meaning of the name of a column: its body, its kind, its unit.
 
-Our own grammar comes first, whatever bodies are called; then that of strangers' names.
+Our own grammar comes first, whatever the names of bodies; then that of other programs' names.
 """
 
 from __future__ import annotations
@@ -30,17 +30,17 @@ from reports.logs.kinds import (
 FILLERS = {"angular", "linear", "of", "the", "link", "body", "point", "joint", "pin", "slider",
            "block", "log", "sensor", "at", "on", "in", "signal", "value"}  # fmt: skip
 AFTER = {"on", "of", "at"}
-"""Words after which a body has stood."""
+"""Words that follow a body's name."""
 MODEL = re.compile(r"^[./]?model_?\d*(?=[./])", re.IGNORECASE)
-"""What Adams begins all names with, and Gazebo."""
+"""Beginning of all names in Adams, and in Gazebo."""
 RELATIVE = {"rel", "relative", "wrt", "to", "less", "minus"}
 
 
 def meaning(column: str, named: SceneNames, told: str = "") -> Meaning | str:
-    """What a column's name says, or why nothing is made of it. A unit that is ``told`` takes the
-    place of that in the name.
+    """Return the meaning of a column's name, or the reason for none. A unit ``told`` by the map
+    replaces that in the name.
 
-    Raises CrankcheckError for units that contradict each other, or what they are units of.
+    Raises CrankcheckError for units that contradict each other, or their kind.
     """
     if own := named.own.get(column):
         if isinstance(own, str) or not told:
@@ -73,7 +73,7 @@ def meaning(column: str, named: SceneNames, told: str = "") -> Meaning | str:
 
 
 def _roles(bodies: Sequence[str], named: SceneNames, *, relative: bool) -> tuple[str, str, str]:
-    """Of which body a column is, relative to which link, and on which body; "" for nothing told."""
+    """Return the body of a column, its relative link, and the body that carries it; "" if open."""
     bodies = list(dict.fromkeys(bodies))
     if len(bodies) == 1:
         return bodies[0] if bodies[0] != GROUND else "", "", ""
@@ -108,7 +108,7 @@ AXES = {f"{prefix}{axis}": (order, at) for at, axis in enumerate("xy") for order
 def kind_of_words(
     kinds: Sequence[LoggedKind], words: Sequence[str], unit: str, *, slider: bool
 ) -> Kind | str:
-    """The kind of reading that words and a unit name, or why none."""
+    """Return the kind of reading that words and a unit name, or the reason for none."""
     dimension = DIMENSION.get(unit)
     if "elastic" in kinds and ("elastic", " ".join(words)) in KINDS:
         return KINDS["elastic", " ".join(words)]
@@ -139,7 +139,7 @@ def kind_of_words(
 
 
 def _order(words: Sequence[str], names: Sequence[set[str]]) -> int | None:
-    """Which derivative some words name; None where they name none, or several."""
+    """Return the derivative that some words name; None where they name none, or several."""
     orders = {n for word in words for n, known in enumerate(names) if word in known}
     known = set().union(*names)
     if len(orders) == 2 and 0 in orders and not PLACES.isdisjoint(names[0]):
@@ -148,7 +148,7 @@ def _order(words: Sequence[str], names: Sequence[set[str]]) -> int | None:
 
 
 def _axis(words: Sequence[str]) -> tuple[int, int] | None:
-    """Derivative and axis of a point's component; None where the words name none."""
+    """Return derivative and axis of a point's component; None where the words name none."""
     axes = [word for word in words if word in AXES]
     if len(axes) != 1:
         return None
@@ -166,7 +166,7 @@ def _axis(words: Sequence[str]) -> tuple[int, int] | None:
 
 
 def _unknown(words: Sequence[str], kind: str, unit: str) -> str:
-    """Why nothing is made of a column of a body."""
+    """Return the reason why a column of a body has no meaning."""
     told: Mapping[str, str] = {
         "link": "angle, angular velocity or angular acceleration",
         "point": "x, y, vx, vy, ax or ay",
@@ -180,12 +180,12 @@ def _unknown(words: Sequence[str], kind: str, unit: str) -> str:
 
 DRIVERS = {"driver", "input", "motor"}
 SHORT = 2
-"""Names of bodies up to this length are told apart by case: `a` is an acceleration, `A` a point."""
+"""Names of bodies up to this length depend on case: `a` is an acceleration, `A` a point."""
 
 
 @dataclass(frozen=True)
 class SceneNames:
-    """The bodies of a scene, as the names of columns may have them."""
+    """The bodies of a scene, in the forms that names of columns may have."""
 
     scene: Scene
 
@@ -201,11 +201,11 @@ class SceneNames:
 
     @cached_property
     def own(self) -> Mapping[str, Meaning | str]:
-        """What the columns say that we write ourselves, by name."""
+        """The meanings of the columns that we write ourselves, by name."""
         return own_meanings({body: self.kinds_of(body) for body in self.bodies})
 
     def kinds_of(self, name: str) -> tuple[LoggedKind, ...]:
-        """What has that name: often a slider and its point have the same."""
+        """Return the kinds of bodies of that name: often a slider and its point have the same."""
         there: Iterable[tuple[LoggedKind, bool]] = (
             ("link", name in self.scene.links),
             ("point", name in self.points),
@@ -215,8 +215,8 @@ class SceneNames:
         return tuple(kind for kind, holds in there if holds)
 
     def found(self, text: str) -> tuple[list[str], list[str]]:
-        """The bodies that a text names, in its order, and the words left, in lower case: `xC` and
-        `rockerAngle` too."""
+        """Return the bodies that a text names, in its order, and the other words, in lower case:
+        `xC` and `rockerAngle` too."""
         bodies, words = self._apart(text)
         if not bodies:
             bodies, words = self._apart(self._parted(text))
@@ -226,19 +226,19 @@ class SceneNames:
         return bodies, words
 
     def _in_its_case(self, text: str) -> str:
-        """The body that is spelled so, or else the only one in other letters; "" for several."""
+        """Return the body of that spelling, or the only one in other letters; "" for several."""
         alike = [name for name in self.bodies if name.lower() == text.lower()]
         return text if text in alike else alike[0] if len(alike) == 1 else ""
 
     def _parted(self, text: str) -> str:
-        """A text with a space before each capital in a word, and between a point and its axis."""
+        """Return a text with spaces before capitals in words, and between a point and its axis."""
         text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)
         points = "|".join(re.escape(name) for name in self.bodies if name in self.points)
         text = re.sub(rf"(?<![A-Za-z0-9])({points})([va]?[xy])(?![A-Za-z0-9])", r"\1 \2", text)
         return re.sub(rf"(?<![A-Za-z0-9])([va]?[xy])({points})(?![A-Za-z0-9])", r"\1 \2", text)
 
     def _apart(self, text: str) -> tuple[list[str], list[str]]:
-        """The bodies of a text, and its other words."""
+        """Return the bodies of a text, and its other words."""
         places: list[tuple[int, str]] = []
         for name in self.bodies:
             flags = 0 if len(name) <= SHORT else re.IGNORECASE

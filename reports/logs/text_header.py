@@ -1,4 +1,4 @@
-"""What stands above the rows of a text: separator, names of the columns, and their units."""
+"""The head of a text above its rows: separator, names of the columns, and their units."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -18,7 +18,7 @@ from reports.logs.text_lines import (
 )
 
 EXCEL = re.compile(r"sep=(.)", re.IGNORECASE)
-"""The line that tells Excel the separator."""
+"""The line that sets the separator in Excel."""
 UNITLESS = ("", "-", "1", "none")
 TITLE = "put # before a title that stands above the header"
 IsRow = Callable[[str], bool]
@@ -26,8 +26,8 @@ IsRow = Callable[[str], bool]
 
 @dataclass(frozen=True)
 class Header:
-    """The names of the columns with the units that stand below them, what separates them, and the
-    first line of numbers; ``ends`` where all lines end in a separator, behind which is nothing."""
+    """The names of the columns with the units below them, the separator, and the first line of
+    numbers; ``ends`` where all lines end in an extra separator."""
 
     names: Sequence[str]
     separator: str
@@ -36,16 +36,16 @@ class Header:
 
 
 def marked_rows(names: Sequence[str], separator: str, wanted: Callable[[str], bool]) -> IsRow:
-    """What tells of a line that begins as a remark whether it is a row: of as many fields as there
-    are names, the first of them such as #1, of which nothing is made."""
+    """Return a test of lines that begin as a remark: a row has as many fields as there are names,
+    the first in an unwanted column, such as #1."""
     if not names or wanted(names[0]):
         return lambda line: False
     return lambda line: len(fields_of(line, separator)) == len(names)
 
 
 def header_of(text: Beginning, separator: str, wanted: Callable[[str], bool]) -> Header:
-    """The header of a text, whose ``separator`` is "" where it is to be found. Raises
-    UnreadableError for one that names nothing, and where no row follows."""
+    """Return the header of a text; a ``separator`` "" is found here. Raises UnreadableError for a
+    header without names, and where no row follows."""
     lines = text.lines
     at = _required(text, 0, "empty but for remarks")
     if told := EXCEL.fullmatch(lines[at]):
@@ -76,7 +76,7 @@ def header_of(text: Beginning, separator: str, wanted: Callable[[str], bool]) ->
 
 
 def with_units(names: Sequence[str], units: Sequence[str]) -> list[str]:
-    """Names with the units that a row below them tells, if any."""
+    """Return names with the units in a row below them, if any."""
     if not units:
         return list(names)
     pairs = zip(names, units, strict=True)
@@ -84,8 +84,8 @@ def with_units(names: Sequence[str], units: Sequence[str]) -> list[str]:
 
 
 def units_below(fields: Sequence[str], columns: int) -> list[str]:
-    """The units of a row that holds words alone, some of them units that are known: "" for a column
-    without, none for another row."""
+    """Return the units of a row of words alone, some of them known units: "" for a column without,
+    none for another row."""
     bare = [field.strip("[]() ") for field in fields]
     words = [field for field in bare if field not in UNITLESS]
     if len(bare) != columns or not any(map(spelled_unit, words)) or any(map(is_number, words)):
@@ -94,7 +94,7 @@ def units_below(fields: Sequence[str], columns: int) -> list[str]:
 
 
 def _next(lines: Sequence[str], at: int, is_row: IsRow = lambda line: False) -> int | None:
-    """The first line from there on that is neither blank nor a remark."""
+    """Return the first line from there on that is neither blank nor a remark."""
     for n in range(at, len(lines)):
         if lines[n].strip() and (not is_remark(lines[n]) or is_row(lines[n])):
             return n
@@ -102,7 +102,7 @@ def _next(lines: Sequence[str], at: int, is_row: IsRow = lambda line: False) -> 
 
 
 def _required(text: Beginning, at: int, found: str, is_row: IsRow = lambda line: False) -> int:
-    """The next line of the log from there on. Raises UnreadableError where there is none."""
+    """Return the next line of the log from there on. Raises UnreadableError where there is none."""
     below = _next(text.lines, at, is_row)
     if below is None and not text.whole:
         raise UnreadableError(
@@ -115,19 +115,19 @@ def _required(text: Beginning, at: int, found: str, is_row: IsRow = lambda line:
 
 
 def _remarks(lines: Sequence[str]) -> list[str]:
-    """What the remarks of some lines say, the last one first."""
+    """Return the text of the remarks of some lines, the last one first."""
     return [line.lstrip("#%/ \t") for line in reversed(lines) if is_remark(line)]
 
 
 def _are_units(fields: Sequence[str]) -> bool:
-    """Whether fields are units, or say that there is none."""
+    """True if fields are units, or signs for none."""
     bare = [field.strip("[]() ") for field in fields]
     return any(map(spelled_unit, bare)) and all(f in UNITLESS or spelled_unit(f) for f in bare)
 
 
 def _header_in_remarks(lines: Sequence[str], at: int, separator: str) -> tuple[str, str] | None:
-    """The last remark above numbers that has a name for each, as numpy writes a header, and the
-    units in a remark below it, "" for none; None for no such remark."""
+    """Return the last remark above numbers that has a name for each, as numpy writes a header, and
+    the units in a remark below it, "" for none; None for no such remark."""
     units = ""
     for text in _remarks(lines[:at]):
         mark = separator or separator_of(text, lines[at])
@@ -143,7 +143,7 @@ def _header_in_remarks(lines: Sequence[str], at: int, separator: str) -> tuple[s
 
 
 def _units_remark(lines: Sequence[str], columns: int, separator: str) -> str:
-    """The remark between the header and the rows that tells the units, "" for none."""
+    """Return the remark between the header and the rows that has the units, "" for none."""
     for text in _remarks(lines):
         fields = fields_of(text, separator)
         if len(fields) == columns and _are_units(fields):
@@ -152,7 +152,7 @@ def _units_remark(lines: Sequence[str], columns: int, separator: str) -> str:
 
 
 def _check_names(header: str, names: Sequence[str], at: int, separator: str) -> None:
-    """Refuse a header that names nothing. Raises UnreadableError."""
+    """Refuse a header without names. Raises UnreadableError."""
     if are_numbers(names):
         raise UnreadableError(
             f"line {at + 1} holds numbers and no names; put a header above them, such as "
@@ -169,7 +169,7 @@ def _check_names(header: str, names: Sequence[str], at: int, separator: str) -> 
 
 
 def _check_words(lines: Sequence[str], at: int, below: int, separator: str) -> None:
-    """Refuse a second line of names, and numbers that only spaces keep apart. Raises
+    """Refuse a second line of names, and numbers with only spaces between. Raises
     UnreadableError."""
     fields = [field for field in fields_of(lines[below], separator) if field]
     if fields and all(field[0].isalpha() and not is_number(field) for field in fields):

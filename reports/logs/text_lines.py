@@ -1,4 +1,4 @@
-"""The lines of a text and their fields, and the most of a log that is read."""
+"""The lines of a text and their fields, and the largest readable log."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -10,7 +10,7 @@ from models.array import Array
 from models.files.inputs import UnreadableError
 
 LOOK = 200_000
-"""Bytes at the beginning in which the header, and the first row, must stand."""
+"""Bytes at the beginning that must hold the header and the first row."""
 REMARKS = ("#", "%", "//")
 PASSED = re.compile(rb"\n[ \t]*(?:\r*(?=\n|\Z)|(?:#|%|//)[^\n]*)")
 """A line that is blank or a remark, with the line end before it."""
@@ -18,7 +18,7 @@ PASSED = re.compile(rb"\n[ \t]*(?:\r*(?=\n|\Z)|(?:#|%|//)[^\n]*)")
 
 @dataclass(frozen=True)
 class Beginning:
-    """The first lines of a text, the byte that each begins at, and whether they are all of it."""
+    """The first lines of a text, the first byte of each, and whether they are all of it."""
 
     lines: Sequence[str]
     offsets: Sequence[int]
@@ -27,26 +27,25 @@ class Beginning:
 
 @dataclass(frozen=True)
 class Body:
-    """The text of the rows, and of the lines between them, by number from the first row on, those
-    that were passed over."""
+    """The text of the rows, and the numbers of skipped lines, from the first row on."""
 
     text: memoryview
     passed: Array
 
 
 def row_line(passed: Array, row: int) -> int:
-    """The line of a row, both counted from the first row on, where some lines are ``passed``."""
+    """Return the line of a row, both counted from the first row; some lines are ``passed``."""
     rows_before = passed - np.arange(passed.size)
     return row + int(np.searchsorted(rows_before, row, side="right"))
 
 
 def is_remark(line: str) -> bool:
-    """Whether a line is a remark."""
+    """True if a line is a remark."""
     return line.lstrip().startswith(REMARKS)
 
 
 def beginning(raw: bytes) -> Beginning:
-    """The first lines of a text. Raises UnreadableError for no text."""
+    """Return the first lines of a text. Raises UnreadableError for no text."""
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
         raise UnreadableError("UTF-16 text; save the file as UTF-8")
     mark = 3 if raw.startswith(b"\xef\xbb\xbf") else 0
@@ -73,9 +72,9 @@ def beginning(raw: bytes) -> Beginning:
 
 
 def body(raw: bytes, start: int, is_row: Callable[[str], bool]) -> Body:
-    """The rows of a text from a byte on, without lines that are blank or remarks.
+    """Return the rows of a text from a byte on, without lines that are blank or remarks.
 
-    A line within a quoted field is no remark, and none that ``is_row`` takes for a row.
+    A line within a quoted field is no remark, nor is a row by ``is_row``.
     """
     passed: list[int] = []
     kept: list[memoryview] = []
@@ -111,8 +110,8 @@ SPACED = re.compile(
 
 
 def separator_of(header: str, row: str) -> str:
-    """What stands between the fields: the first of tab, semicolon, comma and space that the header
-    has, outside of brackets and quotes; spaces where ``row`` has as many fields between them."""
+    """Return the separator of the fields: the first of tab, semicolon, comma and space in the
+    header, outside of brackets and quotes; spaces where ``row`` has as many fields between them."""
     bare = re.sub(r'"[^"]*"|\[[^\]]*\]|\([^)]*\)', "x", header).strip()
     for separator in SEPARATORS:
         # Names with spaces in a file of one column, or of a separator that comes next.
@@ -124,7 +123,7 @@ def separator_of(header: str, row: str) -> str:
 
 
 def fields_of(line: str, separator: str) -> list[str]:
-    """The fields of a line, quotes taken off."""
+    """Return the fields of a line, without quotes."""
     if separator == " ":
         return [_unquoted(field) for field in SPACED.findall(line)]
     mark = re.escape(separator)
@@ -133,19 +132,19 @@ def fields_of(line: str, separator: str) -> list[str]:
 
 
 def _unquoted(field: str) -> str:
-    """A field without its quotes; those in it are written twice."""
+    """Return a field without its quotes; those in it are written twice."""
     if len(field) > 1 and field[0] == field[-1] and field[0] in "\"'":
         return field[1:-1].replace(field[0] * 2, field[0])
     return field
 
 
 def is_number(field: str) -> bool:
-    """Whether a field is a number, with a decimal point or comma."""
+    """True if a field is a number, with a decimal point or comma."""
     return bool(NUMBER.fullmatch(field) or COMMA.fullmatch(field))
 
 
 def are_numbers(fields: Sequence[str]) -> bool:
-    """Whether no field that is not blank is a name."""
+    """True if all fields are blank or numbers."""
     return all(is_number(field) for field in fields if field)
 
 
@@ -153,11 +152,11 @@ MOST_ROWS = 2_000_000
 """Ten hours of samples at 60 Hz, half an hour at 1 kHz; judging them takes seconds."""
 MOST_COLUMNS = 2_000
 MOST_NUMBERS = 80_000_000
-"""Of columns that something is made of."""
+"""Numbers in columns with a meaning."""
 
 
 def refuse_columns(columns: int) -> None:
-    """Raise UnreadableError for more columns than are looked at."""
+    """Raise UnreadableError for more columns than are examined."""
     if columns > MOST_COLUMNS:
         raise UnreadableError(
             f"{columns} columns; at most {MOST_COLUMNS} are read: leave out what is not of the "
@@ -166,7 +165,7 @@ def refuse_columns(columns: int) -> None:
 
 
 def refuse_rows(rows: int, columns: int) -> None:
-    """Raise UnreadableError for more rows, of so many columns that are read, than that."""
+    """Raise UnreadableError for more rows, or more numbers in the columns read, than allowed."""
     if rows > MOST_ROWS:
         raise UnreadableError(
             f"{rows} rows; at most {MOST_ROWS} are read: cut the log, or keep every n-th row"

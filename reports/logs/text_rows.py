@@ -1,4 +1,4 @@
-"""The rows of a text below its header: what stands in them is read as numbers."""
+"""The rows of a text below its header, read as numbers."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -24,22 +24,22 @@ from reports.logs.text_lines import (
 )
 
 DIGITS = re.compile(r"[-+]?\d+(e[-+]?\d+)?", re.IGNORECASE)
-"""What is left of a number on either side of its decimal comma."""
+"""Part of a number on either side of its decimal comma."""
 HEXADECIMAL = re.compile(rb"0[xX]")
-"""What arrow takes for a whole number."""
+"""A prefix that arrow takes for a whole number."""
 
 
 @dataclass(frozen=True)
 class RowReader:
-    """What reads the rows of a text: those ``below`` its header, of which ``fields`` are the
-    first, with decimals behind a point or comma."""
+    """Reader of the rows of a text: the lines ``below`` its header, with decimals after a point or
+    comma."""
 
     header: Header
     below: Body
     decimal: str
 
     def table(self, fields: Sequence[str], wanted: Callable[[str], bool]) -> pa.Table:
-        """The columns that are wanted, as numbers where all of their cells are, as text else.
+        """Return the wanted columns, as numbers where all of their cells are, as text else.
 
         Raises UnreadableError for rows that do not fit the header, and for too many.
         """
@@ -73,7 +73,7 @@ class RowReader:
                     )
 
     def _read(self, types: Mapping[str, pa.DataType]) -> pa.Table:
-        """The rows of the columns that have ``types``. Raises UnreadableError."""
+        """Return the rows of the columns that have ``types``. Raises UnreadableError."""
         text = self.below.text
         if self.header.separator == " ":
             clean = re.sub(rb"[ \t]+", b" ", re.sub(rb"(?m)^[ \t]+|[ \t\r]+$", b"", bytes(text)))
@@ -120,8 +120,8 @@ class RowReader:
             raise UnreadableError(f"{why}; every row has as many fields as the header") from None
 
     def _without_last(self, table: pa.Table) -> pa.Table:
-        """The table without the column behind the separator that ends all lines. Raises
-        UnreadableError where something stands in it."""
+        """Return the table without the column after the separator that ends all lines. Raises
+        UnreadableError where it is not empty."""
         last = table.column("")
         if last.null_count < table.num_rows:
             cells = last.to_pylist()
@@ -134,7 +134,7 @@ class RowReader:
         return table.drop_columns([""])
 
     def _line(self, row: int) -> int:
-        """What a reader would call a row: its line in the file."""
+        """Return the place of a row to a reader: its line in the file."""
         return self.header.first + 1 + row_line(self.below.passed, row)
 
 
@@ -155,7 +155,7 @@ def _refuse_first(found: int, names: int, at: int, separator: str, *, ends: bool
 
 
 def _count(body: memoryview) -> int:
-    """The number of lines."""
+    """Return the number of lines."""
     count, step = 0, 1 << 24
     for first in range(0, len(body), step):
         count += bytes(body[first : first + step]).count(b"\n")
@@ -164,7 +164,7 @@ def _count(body: memoryview) -> int:
 
 @dataclass(frozen=True)
 class Layout:
-    """What a map says of a file: "" where it is to be found."""
+    """Format of a file by its map: "" where it is to be found."""
 
     separator: str = ""
     decimal: str = "."
@@ -173,8 +173,8 @@ class Layout:
 
 @dataclass(frozen=True)
 class TextTable:
-    """The table of a text, all names of its header, the line that its first row stands in, and of
-    the lines from there on those that are no rows."""
+    """The table of a text, all names of its header, the line of its first row, and the lines from
+    there on that are no rows."""
 
     table: pa.Table
     names: Sequence[str]
@@ -188,7 +188,7 @@ def text_columns(
     wanted: Callable[[str], bool] = lambda name: True,
 ) -> TextTable:
     """Read the ``wanted`` columns of a text with a header; lines that are blank or remarks are
-    passed over wherever they stand. Raises UnreadableError for what is no such text."""
+    skipped anywhere. Raises UnreadableError for other texts."""
     start = beginning(raw)
     header = header_of(start, layout.separator, wanted)
     names = header.names

@@ -1,4 +1,4 @@
-"""The columns of times: which they are, in which unit, and the instants in them."""
+"""The columns of times: their choice, their unit, and the instants in them."""
 
 import re
 
@@ -17,8 +17,8 @@ TIMES = {"time", "t", "timestamp", "time stamp", "times", "sim time", "simtime",
 
 
 def time_of(column: str, told: str = "") -> tuple[str, str] | None:
-    """Of a column of times: whose (``time``, ``velocity time``, ``acceleration time``), and the
-    unit, which may be ``told``; None for another column. Raises CrankcheckError for two units."""
+    """Return kind (``time``, ``velocity time``, ``acceleration time``) and unit, perhaps ``told``,
+    of a column of times; None for others. Raises CrankcheckError for two units."""
     text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", without_unit(column)[0])
     words = [word.lower() for word in re.split(r"[^A-Za-z0-9µμ]+", text) if word]
     unit = ""
@@ -34,7 +34,7 @@ def time_of(column: str, told: str = "") -> tuple[str, str] | None:
 
 
 def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
-    """The columns of times, by whose they are: those of all rows are called ``time``.
+    """Return the columns of times, by kind: that of all rows is ``time``.
 
     Raises CrankcheckError for none, and for two.
     """
@@ -63,14 +63,14 @@ def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
 
 
 def unit_of_time(column: str, map_: Map) -> str:
-    """The unit of the times of all rows."""
+    """Return the unit of the times of all rows."""
     told = time_of(column, map_.time.unit or "")
     return map_.time.unit or (told[1] if told else si("time"))
 
 
 def further_instants(columns: Columns, column: str, zero_s: float, scene: Scene) -> Array:
-    """The instants in a further column of times [s]. Raises CrankcheckError for those that go back,
-    and for some that are far from the start."""
+    """Return the instants in a further column of times [s]. Raises CrankcheckError for times that
+    go back, or far from the start."""
     told = time_of(column)
     time_s = columns.numbers(column) * UNITS["time"][told[1] if told else si("time")]
     refuse_back(columns, column, time_s)
@@ -79,23 +79,23 @@ def further_instants(columns: Columns, column: str, zero_s: float, scene: Scene)
 
 
 EVEN = 0.02
-"""Intervals that differ by less of themselves are the same."""
+"""Relative difference below which intervals are equal."""
 MOSTLY = 0.9
-"""The share of the intervals of an even log that are the same."""
+"""The share of equal intervals in an even log."""
 HOLE = 1.9
-"""An interval longer than so many of the others leaves out samples."""
+"""Ratio of an interval to the usual one from which on samples are missing."""
 
 
 def instants(columns: Columns, column: str, unit: str, *, holes: bool = False) -> Array:
-    """The times of all rows [s], (T,).
+    """Return the times of all rows [s], (T,).
 
-    Raises CrankcheckError for fewer than 2 rows; times that go back or stand still; a hole in a log
-    that is even else.
+    Raises CrankcheckError for fewer than 2 rows; times that go back or stand still; a hole in an
+    otherwise even log.
 
     Parameters
     ----------
     holes : bool
-        A log that is even but for some left-out samples is meant so.
+        True if missing samples in an even log are intended.
     """
     time_s = columns.numbers(column) * UNITS["time"][unit]
     if time_s.size < 2:

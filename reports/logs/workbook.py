@@ -1,4 +1,4 @@
-"""A log that is a sheet of a workbook: its header, the units below it, and its cells."""
+"""A log in a sheet of a workbook: its header, the units below it, and its cells."""
 
 import io
 import warnings
@@ -16,14 +16,14 @@ from reports.logs.text_header import units_below, with_units
 from reports.logs.text_lines import are_numbers, refuse_columns, refuse_rows
 
 MOST_SHEET_BYTES = 400_000_000
-"""Of a workbook when it is unpacked."""
+"""Limit of an unpacked workbook."""
 MOST_CELLS = 20_000_000
-"""Of a sheet, from the first to the last."""
+"""Limit of a sheet, from the first cell to the last."""
 
 
 @dataclass(frozen=True)
 class SheetTable:
-    """The columns of a sheet, and the row that its first numbers stand in."""
+    """The columns of a sheet, and the row of its first numbers."""
 
     names: Sequence[str]
     columns: Sequence[Any]
@@ -31,8 +31,8 @@ class SheetTable:
 
 
 def sheet_columns(raw: bytes, asked: str) -> SheetTable:
-    """Read the sheet of a workbook that is ``asked`` for, or the first. Raises UnreadableError for
-    what is no workbook, and no log in it."""
+    """Read the ``asked`` sheet of a workbook, or the first. Raises UnreadableError for no workbook,
+    and for no log in it."""
     try:
         with zipfile.ZipFile(io.BytesIO(raw)) as packed:
             unpacked = sum(each.file_size for each in packed.infolist())
@@ -64,9 +64,9 @@ def sheet_columns(raw: bytes, asked: str) -> SheetTable:
 
 
 def _rows(sheet: Any) -> list[Sequence[object]]:
-    """The rows of a sheet, each up to its last cell that is not empty. Raises UnreadableError where
-    cells are far apart: a table is as long and wide as the last of them, whatever the file says of
-    its size."""
+    """Return the rows of a sheet, each up to its last cell that is not empty. Raises
+    UnreadableError where cells are far apart: a table is as long and wide as the last of them,
+    whatever size the file states."""
     sheet.reset_dimensions()
     rows: list[Sequence[object]] = []
     for row in sheet.iter_rows(values_only=True):
@@ -86,8 +86,8 @@ def _rows(sheet: Any) -> list[Sequence[object]]:
 
 
 def _of_rows(rows: list[Sequence[object]]) -> SheetTable:
-    """The columns of a sheet whose first row that is not empty is the header. Raises
-    UnreadableError, whose message goes on after the name of the sheet."""
+    """Return the columns of a sheet whose first row that is not empty is the header. Raises
+    UnreadableError, whose message continues after the name of the sheet."""
     at = next((n for n, row in enumerate(rows) if row), None)
     if at is None:
         raise UnreadableError(" is empty; a log has a header and rows of numbers")
@@ -116,11 +116,11 @@ def _of_rows(rows: list[Sequence[object]]) -> SheetTable:
 
 
 def _words(row: Sequence[object], wide: int) -> list[str]:
-    """The cells of a row as text."""
+    """Return the cells of a row as text."""
     found = ["" if cell is None else str(cell).strip() for cell in row]
     return found + [""] * (wide - len(found))
 
 
 def plain(cell: object) -> object:
-    """A cell; what is neither a number nor text as the text that shows it."""
+    """Return a cell; as text if it is neither a number nor text."""
     return cell if cell is None or isinstance(cell, str | int | float | bool) else str(cell)
