@@ -26,15 +26,15 @@ from sim.registry import engine
 from sim.run import run, setup
 
 CellRunner = Callable[..., Run]
-"""What runs a cell: it takes what `sim.run.run` takes."""
+"""Runner of a cell: it takes the arguments of `sim.run.run`."""
 
 
 @dataclass(frozen=True)
 class Cell:
-    """What to run: ``steps`` of ``dt_s`` from the scene's start; a cell that is not ``gated`` is
+    """Run request: ``steps`` of ``dt_s`` from the scene's start; a cell that is not ``gated`` is
     shown and judged, and does not count for the exit code. ``settings`` override the profile.
-    ``with_forces`` asks for the reactions and the driving torque as well. Each elastic link is
-    given to the engine as so many ``segments``, with ``springs`` of a kind between them."""
+    ``with_forces`` requests the reactions and the driving torque as well. The engine gets each
+    elastic link as so many ``segments``, with ``springs`` of a kind between them."""
 
     scene: Scene
     engine: str
@@ -52,28 +52,28 @@ class Cell:
 
     @property
     def turns(self) -> float:
-        """How long it is: in turns of the driver, of what is let go in seconds."""
+        """Length of the run: in turns of the driver, for free motion in seconds."""
         return self.steps * self.dt_s / self.way.turn_s(self.scene)
 
     @property
     def steps_per_turn(self) -> float:
-        """Steps in a turn, or in a second of what is let go: scenes of the same step stand side by
-        side, however long each is left free."""
+        """Steps in a turn, or in a second of free motion: scenes of the same step are comparable,
+        whatever the length of their free motion."""
         return self.way.turn_s(self.scene) / self.dt_s
 
     @property
     def way(self) -> Way:
-        """How a run of this kind is run and compared."""
+        """The way to run and compare a run of this kind."""
         return way_of(self.scene, self.drive)
 
     @property
     def given_as(self) -> GivenAs:
-        """What elastic links are given to the engine as."""
+        """The form of elastic links for the engine."""
         return GivenAs(self.segments, self.springs)
 
     @property
     def truth(self) -> Truth:
-        """What it is held to. Raises CrankcheckError for a scene that can not be let go."""
+        """The reference. Raises CrankcheckError for a scene without free motion."""
         return self.way.truth(self.planned)
 
     @property
@@ -84,17 +84,17 @@ class Cell:
 
     @property
     def shown_truth(self) -> Truth:
-        """The same without bounds, which cost time and are not drawn."""
+        """The reference without bounds, which cost time and are not drawn."""
         return Truth(self.scene, bound=False) if self.way.closed_form else self.truth
 
     @property
     def given(self) -> Scene:
-        """The scene that an engine is given: of elastic links, the segments."""
+        """The scene for the engine: with segments for elastic links."""
         return self.way.given(self.scene, self.given_as)
 
     @property
     def every(self) -> int:
-        """How many steps are taken from sample to sample."""
+        """Number of steps from sample to sample."""
         return self.way.every(self.steps, self.steps_per_turn)
 
     @property
@@ -104,7 +104,7 @@ class Cell:
 
 @dataclass(frozen=True, kw_only=True)
 class Checked(Evidence):
-    """A cell with what came of it, and the time that it took [s]; the trajectories are gone."""
+    """A cell with its results, and its duration [s]; the trajectories are gone."""
 
     cell: Cell
     version: str = ""
@@ -136,10 +136,10 @@ def check(cell: Cell) -> Checked:
 def examined(
     cell: Cell, runner: CellRunner | None = None, adapter: Engine | None = None
 ) -> tuple[Checked, Run | None]:
-    """As `check`, and the run at the full step, None where there is none.
+    """Return `check`, and the run at the full step, None where there is none.
 
-    ``runner`` takes the place of `sim.run.run`: with a fault in it, that is seen or is not.
-    ``adapter`` takes the place of the engine of that name: one that runs a model of its own.
+    ``runner`` replaces `sim.run.run`: to see whether a fault in it is detected. ``adapter``
+    replaces the engine of that name: for an engine with a model of its own.
     """
     began = time.perf_counter()
     found, done = _examined(cell, runner or run, adapter)
@@ -147,7 +147,7 @@ def examined(
 
 
 def _examined(cell: Cell, runner: CellRunner, adapter: Engine | None) -> tuple[Checked, Run | None]:
-    """As `examined`, but for the time."""
+    """Return `examined`, but for the time."""
     try:
         truth = cell.truth  # before the run: the truth of another scene is let go
         own = adapter or engine(cell.engine)
@@ -161,12 +161,12 @@ def _examined(cell: Cell, runner: CellRunner, adapter: Engine | None) -> tuple[C
 
 
 def check_run(cell: Cell, done: Run) -> Checked:
-    """As `check`, of a run that was made before, at no other step."""
+    """Return `check` for an earlier run, at no other step."""
     return _judged(cell, cell.truth, done, None)
 
 
 def _judged(cell: Cell, truth: Truth, done: Run, runs: _Runs | None) -> Checked:
-    """A run at the full step, compared and judged; finer ones are of ``runs``, if there are any."""
+    """Compare and judge a run at the full step; ``runs`` make the finer ones, if any."""
     try:
         errors = compare(truth.beside(done))
     except CrankcheckError as error:
@@ -206,7 +206,7 @@ def _judged(cell: Cell, truth: Truth, done: Run, runs: _Runs | None) -> Checked:
 
 @dataclass(frozen=True)
 class _Runs:
-    """The runs of a cell from one state, and what they say of themselves that was not asked for."""
+    """The runs of a cell from one state, and their differences from the request."""
 
     cell: Cell
     truth: Truth
@@ -218,7 +218,7 @@ class _Runs:
     unasked: list[str] = field(default_factory=list)
 
     def run(self, finer: int) -> Run:
-        """The cell with its step cut into ``finer`` parts, logged at the same instants."""
+        """Run the cell with its step divided by ``finer``, logged at the same instants."""
         cell, given = self.cell, self.given_scene
         names = self.given or cell.engine, cell.profile
         options: dict[str, Any] = {
@@ -239,7 +239,7 @@ class _Runs:
 
 
 def left_words(departure: Departure) -> str:
-    """A departure in words."""
+    """Return a departure in words."""
     at = place_in_words(departure.driver_rad, departure.driver_unit, ".1f")
     return (
         f"{departure.link} left its branch at driver {at}, "
@@ -248,6 +248,6 @@ def left_words(departure: Departure) -> str:
 
 
 def unfinished(cell: Cell, status: str, reason: str) -> Checked:
-    """A cell that has no run: a row with a reason."""
+    """Return a cell that has no run: a row with a reason."""
     evidence = Evidence(status, reason, 0.0, None, {})
     return Checked(**vars(evidence), cell=cell, findings=judge(evidence))

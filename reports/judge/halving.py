@@ -1,4 +1,4 @@
-"""What an error does when the step is halved: two finer runs of a cell, and what they show."""
+"""Convergence of an error when the step is halved: two finer runs of a cell, and their result."""
 
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -20,15 +20,15 @@ ELASTIC = ("segments", "deflection")
 PLACES, FORCES = ("phase", *named("place")), named("force")
 HALVINGS = 2
 EXACT_DRIVE = 1e-9
-"""A drive error [rad] up to which the crank is where it should be, but for rounding; long runs add
-to it what their sums may be off by (`reports.compare.whole_errors`)."""
+"""Drive error [rad] up to which the crank is right but for rounding; long runs add the error of
+their sums (`reports.compare.whole_errors`)."""
 BEHIND_DRIVE = 5.0
-"""How far behind the rounding of the crank that of the other links may be."""
+"""Ratio of the other links' rounding to that of the crank, at most."""
 
 
 @dataclass(frozen=True)
 class Followed:
-    """What became of the largest error of place, and of the forces, where there are any."""
+    """Convergence of the largest position error, and of the forces, where there are any."""
 
     places: Convergence | None = None
     forces: Convergence | None = None
@@ -43,16 +43,16 @@ def followed(
     placing: Placing = "integrated",
     order: int = 2,
 ) -> Followed:
-    """The largest error of place, and of the forces, at ``dt_s``, its half and its quarter.
+    """Follow the largest errors of position and of forces at ``dt_s``, its half and its quarter.
 
     The quantity that is worst at the full step is followed, at the same instants throughout.
 
     Parameters
     ----------
     truth : Truth
-        Of the run at the full step: what was solved for it serves the finer ones.
+        The reference of the run at the full step: its solutions serve the finer ones.
     rerun : Callable[[int], Run]
-        The run with its step cut into so many parts, logged at the instants of the full step.
+        The run with its step divided by a number, logged at the instants of the full step.
     placing, order : Placing, int
         The engine's, see `sim.engine.Engine`.
     """
@@ -110,7 +110,7 @@ def followed(
 def _finer(
     truth: Truth, dt_s: float, parts: int, rerun: Callable[[int], Run]
 ) -> tuple[list[Error], str]:
-    """Errors of place and gaps of a finer run, and how it did not end well: "" where it did."""
+    """Return errors of position and gaps of a finer run, and its fault: "" where it ended well."""
     at = f"at dt {dt_s / parts:.3g} s"
     try:
         done = rerun(parts)
@@ -135,9 +135,9 @@ def _over(
     quantities: Sequence[str],
     rounding: float,
 ) -> str:
-    """Which errors of a finer run are over the limits of its step, the worst of each quantity.
+    """Return the errors of a finer run over the limits of its step, the worst of each quantity.
 
-    What is over its limit at the full step fails its own rule, and is not told again.
+    An error over its limit at the full step fails its own rule, and is not repeated.
     """
     before = limits(scene, errors, tolerance)
     finer = _at_step(errors, parts, errors.of_scene.summed_rad * parts)
@@ -156,7 +156,7 @@ def _over(
 
 
 def _at_step(errors: Errors, parts: int, summed_rad: float) -> Errors:
-    """The same with its step cut into parts."""
+    """Return the same errors at the step divided by ``parts``."""
     step_rad = errors.of_scene.step_rad / parts
     finer = replace(errors.of_scene, step_rad=step_rad, summed_rad=summed_rad)
     return replace(errors, of_scene=finer)
@@ -169,7 +169,7 @@ def _copied(
     runs: Sequence[Sequence[Error]],
     order: int,
 ) -> list[str]:
-    """Which of the finer runs are none of their own: one before them, or the reference.
+    """Return the finer runs that are copies: of one before them, or of the reference.
 
     A shorter step rounds otherwise, if nothing else: the errors of bodies that do not move evenly
     with the driver are never the same to the last bit.
@@ -196,19 +196,19 @@ def _copied(
 
 
 def _rounding(drive: Error | None, exact: float) -> float:
-    """The error of place that rounding explains: a prescribed crank is off by nothing else, and by
-    no more than ``exact``."""
+    """Return the position error that rounding explains: a prescribed crank has no other, and at
+    most ``exact``."""
     of_crank = drive.pure if drive is not None and drive.pure <= exact else 0.0
     return max(AT_ROUNDING, BEHIND_DRIVE * of_crank)
 
 
 def worst_place(errors: Errors) -> Error | None:
-    """The largest total error of angle, displacement or position, as pure numbers; where links
-    bend, that of the deflection against the exact chain."""
+    """Return the largest total error of angle, displacement or position, as pure numbers; where
+    links bend, that of the deflection against the exact chain."""
     groups = (_worst_of(errors.rows, names) for names in errors.of_links.followed)
     return next((worst for worst in groups if worst), None)
 
 
 def _worst_of(rows: Iterable[Error], quantities: Collection[str]) -> Error | None:
-    """The largest total error of some quantities, as pure numbers."""
+    """Return the largest total error of some quantities, as pure numbers."""
     return largest(row for row in rows if row.quantity in quantities and row.kind == "total")

@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 
 ColumnsOf = Callable[[Checked], dict[str, object]]
-"""What cells of a kind have besides (part `columns` of a way)."""
+"""Additional columns of cells of a kind (part `columns` of a way)."""
 Column = tuple[str, str, BodyKind, Source, ErrorKind]
 
 
 def _columns() -> Iterator[Column]:
-    """The error columns of the frame of cells: name, and the rows that it is the maximum of."""
+    """Yield the error columns of the frame of cells: name, and key of the rows for its maximum."""
     for name, entry in QUANTITIES.items():
         more: list[tuple[Source, ErrorKind]] = [("reported", "geometric")] * (entry.role == "place")
         more += [("differenced", "total") for each in entry.criteria if each.tolerance.differenced]
@@ -37,11 +37,11 @@ def _columns() -> Iterator[Column]:
 
 ERROR_COLUMNS = tuple(_columns())
 AS_THEY_ARE = ["quantity", "body_kind", "body", "source", "kind", "unit", "maximum", "rms", "final"]
-"""The first columns of the frame of errors: what an error has of that name."""
+"""The first columns of the frame of errors: attributes of an error of that name."""
 
 
 def error_rows(checked: Checked) -> list[dict[str, object]]:
-    """One row per quantity, body, source and kind of a cell."""
+    """Return one row per quantity, body, source and kind of a cell."""
     if checked.errors is None:
         return []
     own = identity(checked)
@@ -49,7 +49,7 @@ def error_rows(checked: Checked) -> list[dict[str, object]]:
 
 
 def error_row(error: Error, limits: Mapping[str, Limit] | None = None) -> dict[str, object]:
-    """One error as a flat row; with limits, that which it is held to."""
+    """Return one error as a flat row; with limits, also its own."""
     limit = None
     if limits is not None:
         in_force = limits.get(error.tolerance) if error.kind == "total" else None
@@ -66,7 +66,7 @@ def error_row(error: Error, limits: Mapping[str, Limit] | None = None) -> dict[s
 
 
 def cell_row(checked: Checked) -> dict[str, object]:
-    """One cell as a flat row; what there is no number for is None."""
+    """Return one cell as a flat row; missing numbers are None."""
     row = identity(checked) | {
         "gated": checked.cell.gated,
         "verdict": checked.verdict,
@@ -103,7 +103,7 @@ def cell_row(checked: Checked) -> dict[str, object]:
 
 
 def _force_convergence(checked: Checked) -> dict[str, object]:
-    """The worst force, and what it does when the step is halved."""
+    """Return the worst force, and its convergence when the step is halved."""
     seen = checked.force_convergence
     forces = largest(
         each
@@ -119,13 +119,13 @@ def _force_convergence(checked: Checked) -> dict[str, object]:
 
 
 def _worst(*pure: object) -> float | None:
-    """The largest of some pure errors; one that is not finite is larger than any."""
+    """Return the largest of some pure errors; one that is not finite is larger than any."""
     numbers = [each for each in pure if isinstance(each, float)]
     return max(numbers, key=lambda each: each if math.isfinite(each) else math.inf, default=None)
 
 
 def identity(checked: Checked) -> dict[str, object]:
-    """What names a cell."""
+    """Return the identity of a cell."""
     cell = checked.cell
     return {
         "scene": cell.scene.name,
@@ -140,14 +140,14 @@ def identity(checked: Checked) -> dict[str, object]:
 
 
 def error_frame(checked: Iterable[Checked]) -> pd.DataFrame:
-    """One row per scene, engine, profile, step, quantity, body, source and kind."""
+    """Return one row per scene, engine, profile, step, quantity, body, source and kind."""
     import pandas as pd
 
     return pd.DataFrame([row for one in checked for row in error_rows(one)])
 
 
 def cell_frame(checked: Sequence[Checked]) -> pd.DataFrame:
-    """One row per cell, failures included with their status and reason."""
+    """Return one row per cell, failures included with their status and reason."""
     import pandas as pd
 
     return pd.DataFrame([cell_row(one) for one in checked])

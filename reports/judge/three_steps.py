@@ -1,8 +1,8 @@
-"""What an error does when the step is halved, in words and numbers.
+"""Convergence of an error when the step is halved, in words and numbers.
 
-Three steps are the least that can tell a floor from a slope: from errors e1, e2, e3 at dt, dt/2,
-dt/4 the model floor + C dt^p gives 2^p = (e1 - e2) / (e2 - e3) and the floor e3 - (e2 - e3) /
-(2^p - 1).
+Three steps are the least that separate a floor from a slope: from errors e1, e2, e3 at dt, dt/2,
+dt/4 the model floor + C dt^p gives 2^p = (e1 - e2) / (e2 - e3) and the floor e3 - (e2 - e3) / (2^p
+- 1).
 """
 
 import math
@@ -29,12 +29,12 @@ STAYS, GROWS = 0.6, 2.0
 
 @dataclass(frozen=True)
 class Convergence:
-    """The largest position-like error [``unit``] at each step, and what follows from it.
+    """The largest position-like error [``unit``] at each step, and its trend.
 
     ``order`` is the mean slope over the steps, NaN where there is none; ``floor`` the error that
-    remains for dt to 0, NaN where none is seen. Of the finer runs ``faults`` says how they did not
-    end well, ``over`` which of their errors are over the limit of that step, and ``copied`` which
-    of their numbers come from another run, or from the reference.
+    remains for dt to 0, NaN where none is seen. For the finer runs ``faults`` are bad endings,
+    ``over`` errors over the limit of that step, and ``copied`` numbers from another run, or from
+    the reference.
     """
 
     dt_s: tuple[float, ...]
@@ -74,12 +74,12 @@ def convergence(
     known: float = 0.0,
     solved: float = 0.0,
 ) -> Convergence:
-    """Read three errors at dt, dt/2, dt/4 (see the module); ``rounding`` is what needs no step.
+    """Read three errors at dt, dt/2, dt/4 (see the module); ``rounding`` needs no step.
 
-    Where errors of several kinds may cancel at one of the steps, as those of a phase, a floor is
-    one only where the last halving leaves most of the error. An error up to ``known`` is no
-    engine's: the truth itself, or what it is compared with. One up to ``solved`` that does not
-    shrink is as near as the engine solves its joints.
+    Where errors of several kinds may cancel at one of the steps, as those of a phase, a floor
+    counts only where the last halving leaves most of the error. An error up to ``known`` is no
+    engine's: it is the reference's own, or the model's. One up to ``solved`` that does not shrink
+    is as near as the engine solves its joints.
 
     Raises ValueError for not exactly three steps.
     """
@@ -101,7 +101,7 @@ def convergence(
 
 
 def _read(e1: float, e2: float, e3: float, rounding: float) -> tuple[Trend, float, float]:
-    """Trend, order and floor of three errors, each step half the one before."""
+    """Return trend, order and floor of three errors, each step half the one before."""
     if not all(math.isfinite(e) for e in (e1, e2, e3)):
         return "diverges", math.nan, math.nan
     if max(e2, e3) <= rounding:
@@ -118,8 +118,8 @@ def _read(e1: float, e2: float, e3: float, rounding: float) -> tuple[Trend, floa
 
 
 def _floor(e1: float, e2: float, e3: float) -> float:
-    """The limit for dt to 0 of floor + C dt^p through three errors; the last one where the errors
-    do not fall like that."""
+    """Return the limit for dt to 0 of floor + C dt^p through three errors; the last one where the
+    errors do not fall like that."""
     first, second = e1 - e2, e2 - e3
     if second <= 0.0 or first <= second:
         return e3

@@ -1,7 +1,6 @@
 """Tolerances: one per quantity, for every engine alike, as pure numbers, each with its reason.
 
-A default is a budget that follows from the step and from the scene, as the theory of the error
-says::
+A default is a budget by the step and the scene, from the theory of the error::
 
     min(cap, (coefficient * step^order + summed) * curvature^power / conditioning
              + (share * curvature + load_share * loading) * step^s
@@ -9,60 +8,60 @@ says::
 
 ``step`` is the driver's turn in one time step [rad], ``curvature`` the largest pure acceleration of
 the reference (at least 1), ``conditioning`` its smallest sine of a transmission angle, and
-``share`` what a soft constraint may leave open of an acceleration (s = 0), and so of a velocity (s
-= 1), at every step; k is how often the quantity was differenced. ``summed`` is what rounding may
-make of the driver's angle by the end of the run [rad] (`reports.compare.whole_errors`), which the
-mechanism passes on as it does the driver's motion: the one part that grows with the number of
-steps.
+``share`` the part that a soft constraint may leave open of an acceleration (s = 0), and so of a
+velocity (s = 1), at every step; k is the number of differentiations. ``summed`` is the rounding of
+the driver's angle by the end of the run [rad] (`reports.compare.whole_errors`), which the mechanism
+transmits like the driver's motion: the one part that grows with the number of steps.
 
-For places and gaps ``curvature / conditioning`` is at least twice the largest ``jolt``, half of
-a + omega^2 r at a distance r from the centre of a body: that much, times step^2, an engine that
-solves for impulses sets bodies off to close its joints (`reports.judge.rules.limits`).
+For positions and gaps ``curvature / conditioning`` is at least twice the largest ``jolt``, half of
+a + omega^2 r at a distance r from the centre of a body: an engine that solves for impulses
+displaces bodies by that times step^2 to close its joints (`reports.judge.rules.limits`).
 
-A change point that the motion goes through is left out of ``conditioning``, with half a radian of
-the driver on both sides (`reports.compare.hardness`). Rates there are held to limits of their
-own (`in_passage`): what it takes to make good an error of place, within its limit, in one step.
+A change point on the way is left out of ``conditioning``, with half a radian of the driver on both
+sides (`reports.compare.hardness`). Rates there have separate limits (`in_passage`): the rate that
+corrects a position error, within its limit, in one step.
 
-What was let go is ever further off the longer it lasts, by ``lasting * travel * step^3 *
-curvature^1.5`` more: impulses and springs that close joints take energy at every step, and what
-that makes of the phase adds up to that. ``travel`` [rad] is what the driver turns through, each
-part of it weighed with the square of its speed over the largest: it is fast for a small part of a
-swing alone. And a speed that is off by a share of step^2 makes a phase that is off by ``drifting``
-of what the driver turns through, which counts where the sensitivity does not grow as fast: a motor
-that keeps the speed. Where the joints push hard at the start, in which engines open them by the arc
-of a step, they take a share of the energy: the phase is off by ``opening`` of that, too.
+Errors of free motion grow with its length, by ``lasting * travel * step^3 * curvature^1.5``:
+impulses and springs that close joints take energy at every step, and their effects on the phase add
+up to that. ``travel`` [rad] is the driver's turning, each part weighed with the square of its speed
+over the largest: it is fast for a small part of a swing alone. And a speed error of a share of
+step^2 makes a phase error of ``drifting`` of the driver's turning, which counts where the
+sensitivity does not grow as fast: with a motor that keeps the speed. Where the joints push hard at
+the start, in which engines open them by the arc of a step, they take a share of the energy: this
+adds ``opening`` of that to the phase error.
 
-The energy itself is off by ``arc`` times what the arcs of steps may make of its means, and ``late``
-times what impulses that come a step late may have lost (`analytic.forces.late_impulses`), weighed
-with the masses, as no acceleration of a light link says. On the shipped scenes pymunk has up to 0.6
-of it; over the step and the curvature alone its drifts went from 0.02 to 19 times one limit.
+The energy itself is off by ``arc`` times the possible effect of the arcs of steps on its means, and
+``late`` times the possible loss by impulses that come a step late
+(`analytic.forces.late_impulses`), weighed with the masses, as no acceleration of a light link
+shows. On the shipped scenes pymunk has up to 0.6 of it; over the step and the curvature alone its
+drifts went from 0.02 to 19 times one limit.
 
 Where links bend, rates have as many joints in a row as there are segments, each with a part of its
 own: their budget grows with the root of that number. The deflection of the links, a share of its
-largest, has the budget of places over that (``bends``), and what the swings of the springs are off
-by (`ElasticFacts.deflecting`); all that is held to the beam, what the exact chain of as many
-segments is off it by (`reports.compare.elastic`), as that is no engine's fault. A beam of an
-engine's own has no joints within: its deflection is off by that share of itself by which what bends
-it is. Of exudyn it is a quarter of all that on the shipped scenes.
+largest, has the budget of positions over that (``bends``), and the error of the swings of the
+springs (`ElasticFacts.deflecting`); all quantities compared with the beam have the exact chain's
+own difference from it in addition (`reports.compare.elastic`), as that is no engine's fault. A beam
+of an engine's own has no joints within: its deflection error is the relative error of the bending
+loads. For exudyn it is a quarter of all that on the shipped scenes.
 
 Forces are shares of the largest of the reference, in which the masses cancel: no ratio of these is
 in their budget, but in that of the start (`reports.judge.rules.limits`).
 
-Loads add two parts, and none where there are none (`reports.compare.hardness`). A soft constraint
-gives way by ``share`` of the acceleration that a load would give its body, times the square of its
-time constant, some steps; where that bends, by ``loading`` from step to step, accelerations are
-off. And a load that rises over a displacement by ``slope`` is another where its slider is off by
-``place``: by what it was seen to be, and by no more than its limit.
+Loads add two parts, and none without loads (`reports.compare.hardness`). A soft constraint gives
+way by ``share`` of the acceleration that a load would give its body, times the square of its time
+constant, some steps; where that bends, by ``loading`` from step to step, accelerations are off. And
+a load that rises over a displacement by ``slope`` changes where its slider is off by ``place``: the
+observed error, and at most its limit.
 
 A motor between two moving bodies is closed by a step as their pins are: its drive has a tenth of
-the budget of places, and not that of rounding alone.
+the budget of positions, and not that of rounding alone.
 
-``cap`` is what anyone would call wrong, whatever the theory grants: near a singular position the
-budget grows without end, and an engine on the other branch must not pass.
+``cap`` is a plainly wrong result, whatever the theory grants: near a singular position the budget
+grows without end, and an engine on the other branch must not pass.
 
 The coefficients are measured, at 90 to 1440 steps a turn on every shipped scene, and leave the
-worst engine of profile tuned a factor of two. A number given by the scene or on the command line
-is taken as it stands.
+worst engine of profile tuned a factor of two. A number given by the scene or on the command line is
+taken unchanged.
 """
 
 import math
@@ -78,12 +77,12 @@ from reports.quantities.places import WITHIN_A_STEP
 from reports.quantities.quantity import Tolerance
 
 CLOSED_BY_A_MOTOR = 0.1
-"""Of the budget of places: what a motor between two moving bodies may leave open."""
+"""Share of the budget of positions that a motor between two moving bodies may leave open."""
 FORCES = frozenset(named("force"))
 
 
 def default(tolerance: Tolerance, errors: Errors) -> float:
-    """The limit for a run with this step and this scene."""
+    """Return the limit for a run with this step and this scene."""
     scene, motion, links = errors.of_scene, errors.of_motion, errors.of_links
     step, curvature = scene.step_rad, scene.curvature
     bend = curvature**tolerance.power
@@ -109,7 +108,7 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
 
 
 def _felt(tolerance: Tolerance, errors: Errors) -> float:
-    """What loads are off by where their sliders are off, as a share of the largest force."""
+    """Return the error of loads due to that of their sliders, as a share of the largest force."""
     slope = errors.of_forces.load_slopes.get(tolerance.slope, 0.0)
     if not slope:
         return 0.0
@@ -119,7 +118,7 @@ def _felt(tolerance: Tolerance, errors: Errors) -> float:
 
 
 def beyond_engine(name: str, errors: Errors) -> float:
-    """Model error of what the engine was given of the links, as a pure number of a quantity."""
+    """Return the model error of an engine's links, as a pure number of a quantity."""
     links = errors.of_links
     own, segments = links.beyond(name), links.limits.get("segments")
     if name in FORCES and segments:  # what bends by another share pushes by as much more
@@ -128,14 +127,14 @@ def beyond_engine(name: str, errors: Errors) -> float:
 
 
 def passing(tolerance: Tolerance, errors: Errors) -> float:
-    """The limit of a rate near a change point, where places are made good within a step."""
+    """Return the limit of a rate near a change point: positions are corrected within a step."""
     made_good = default(WITHIN_A_STEP, errors) / errors.of_scene.step_rad**tolerance.rate
     return max(default(tolerance, errors), made_good)
 
 
 @dataclass(frozen=True)
 class Limit:
-    """The limit in force for one quantity, and where it comes from."""
+    """The limit in force for one quantity, and its origin."""
 
     number: float
     origin: str
@@ -144,7 +143,7 @@ class Limit:
 def limits(
     scene: Scene, errors: Errors, overrides: Mapping[str, float], option: str = "--tol"
 ) -> dict[str, Limit]:
-    """The limit per tolerance name: command line before scene before default."""
+    """Return the limit per tolerance name: command line before scene before default."""
     chosen = {}
     for name, tolerance in errors.limits.items():
         if name in overrides:
@@ -160,9 +159,9 @@ def limits(
 
 
 def in_passage(name: str, limit: Limit, errors: Errors) -> Limit:
-    """The limit for a rate near a change point; one that was given stands there too. Forces have
-    none: where a dyad is singular its joints may push against each other as they like, and the
-    motion is the same."""
+    """Return the limit for a rate near a change point; a given one also applies there. Forces have
+    none: where a dyad is singular its joints may push against each other arbitrarily, without
+    effect on the motion."""
     if limit.origin != "default":
         return limit
     if name in FORCES:
@@ -171,9 +170,9 @@ def in_passage(name: str, limit: Limit, errors: Errors) -> Limit:
 
 
 def parse(texts: Iterable[str], option: str = "--tol", every: str = "") -> dict[str, float]:
-    """`angle=1e-4` and the like, also several in one text with commas between.
+    """Parse `angle=1e-4` and the like, also several in one text with commas between.
 
-    ``every`` is the name that a number by itself is kept under, where it may stand so.
+    ``every`` is the key of a number by itself, where that is permitted.
 
     Raises CrankcheckError for a text that is not NAME=NUMBER, a name that is no quantity, a number
     that is not positive.
@@ -190,7 +189,7 @@ def parse(texts: Iterable[str], option: str = "--tol", every: str = "") -> dict[
 
 
 def check_names(scene: Scene) -> None:
-    """Refuse a scene whose [tolerance] names something that is no quantity."""
+    """Refuse a scene whose [tolerance] names an unknown quantity."""
     for name in scene.tolerance:
         _quantity(name, f"scene {scene.name}, [tolerance] {name}")
 
@@ -222,7 +221,7 @@ def refuse_of_other_kinds(
 
 
 def _quantity(name: str, place: str) -> str:
-    """The name, or a CrankcheckError that suggests the near ones."""
+    """Return the name; raise CrankcheckError with similar names for an unknown one."""
     if name in EVERY:
         return name
     hint = suggestion(name, EVERY, "use one of", 2, 0.6)
@@ -230,7 +229,7 @@ def _quantity(name: str, place: str) -> str:
 
 
 def _positive(number: str, place: str) -> float:
-    """A finite number above 0."""
+    """Return a finite number above 0."""
     try:
         value = float(number)
     except ValueError:

@@ -1,4 +1,4 @@
-"""The rules, by ID. A verdict is what they say of a cell, nothing else."""
+"""The rules, by ID. A verdict on a cell consists of their findings alone."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -39,11 +39,11 @@ PLACES, RATES = ("CC103", "CC104", "CC105", "CC113"), ("CC106", "CC107", "CC108"
 ELASTIC = ("CC131", "CC132", "CC133")
 FORCES = ("CC120", "CC121", "CC122", "CC123")
 TUNABLE = ("CC101", "CC110", *PLACES)
-"""Failures that come from what an engine is set to; those of rates and forces follow from them."""
+"""Failures due to an engine's settings; failures of rates and forces follow from them."""
 
 
 def judge(evidence: Evidence, rules: Iterable[Rule] | None = None) -> tuple[Finding, ...]:
-    """What every rule, or some, with something to look at says of a cell, and what would help."""
+    """Return the findings of every rule, or some, that applies to a cell, with their cures."""
     chosen = RULES.values() if rules is None else rules
     findings = (rule.check(evidence) for rule in chosen)
     return tuple(
@@ -54,9 +54,9 @@ def judge(evidence: Evidence, rules: Iterable[Rule] | None = None) -> tuple[Find
 
 
 def _cure(finding: Finding, evidence: Evidence) -> str:
-    """The cure of a rule for this profile, and what came of trying.
+    """Return the cure of a rule for this profile, with the result of a trial.
 
-    Where a run did not end well the status alone is to be mended: the rest follows from it.
+    Where a run did not end well only the status needs a cure: the rest follows from it.
     """
     if evidence.status != "ok" and finding.rule != "CC101":
         return ""

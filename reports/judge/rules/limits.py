@@ -1,4 +1,4 @@
-"""CC116 and the rules that hold a quantity to its limit, one for each criterion of quantities."""
+"""CC116 and the rules that compare a quantity with its limit, one for each criterion."""
 
 import math
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ class Within(Criterion):
     quantity: str
 
     def check(self, evidence: Evidence) -> Finding | None:
-        """Rates near a change point are held to theirs, and what takes the larger share is told."""
+        """Compare with the limits, separate near a change point; report the larger share."""
         errors, tolerance = evidence.errors, tolerance_name(self.quantity, self.source)
         limit = evidence.limits.get(tolerance)
         if errors is None or limit is None:
@@ -42,7 +42,7 @@ class Within(Criterion):
 
 
 def _part(error: Error, limit: Limit) -> float:
-    """What an error takes of a limit; infinite for one that is not finite."""
+    """Return an error as a part of a limit; infinite for one that is not finite."""
     return error.pure / limit.number if error.finite else math.inf
 
 
@@ -86,12 +86,12 @@ class StartWithin:
 
 
 def start_limit(tolerance: str, evidence: Evidence, errors: Errors) -> float:
-    """What a rate of the first samples is held to, as a pure number."""
+    """Return the limit of a rate of the first samples, as a pure number."""
     return _settled(tolerance, evidence, errors) + allowance(tolerance, errors, evidence.placing)
 
 
 def _settled(tolerance: str, evidence: Evidence, errors: Errors) -> float:
-    """The limit that later samples are held to, near a change point if the start is."""
+    """Return the limit of later samples, near a change point if the start is."""
     limit = evidence.limits[tolerance]
     return (
         in_passage(tolerance, limit, errors) if errors.of_scene.starts_in_passage else limit
@@ -99,65 +99,64 @@ def _settled(tolerance: str, evidence: Evidence, errors: Errors) -> float:
 
 
 ROOM = 2.0
-"""What ringing may add: 1.6 of the jolt was seen where iterations left a fifth of an error from
-step to step, and 1.1 where they left next to none."""
+"""Factor for ringing: 1.6 of the jolt was seen where iterations left a fifth of an error from step
+to step, and 1.1 where they left next to none."""
 OPEN = 1e-4
-"""What MuJoCo's stiffest documented impedance (0.9999) leaves of an acceleration."""
+"""Part of an acceleration that MuJoCo's stiffest documented impedance (0.9999) leaves."""
 CHANGE = 1.4
-"""What a start with joints closed in their places may leave of the change of the accelerations in a
-step: twice what was seen."""
+"""Part of the change of the accelerations in a step that may remain after a start with joints
+closed in their places: twice the observed one."""
 ARM = 2.0
-"""What arms and masses make of the accelerations of a start, in forces: 1.6 was seen."""
+"""Ratio of force errors to acceleration errors at a start, by arms and masses: 1.6 was seen."""
 ELEMENTS = 4.0
-"""Of the acceleration that elements are pushed with: twice what was seen."""
+"""Factor on the error of the elements' acceleration at the start: twice the observed one."""
 CAP = 0.1
-"""The most that the velocities may jump by, over the driver's speed."""
+"""Largest jump of the velocities, over the driver's speed."""
 
 
 def allowance(tolerance: str, errors: Errors, placing: Placing = "integrated") -> float:
-    """What the first samples of an engine that comes by places as ``placing`` says may be off by on
-    top of the limit ``tolerance``, as a pure number.
+    """Return the additional error allowed in the first samples, on top of the limit ``tolerance``,
+    as a pure number, for an engine of this ``placing``.
 
-    An impulse engine starts with velocities that belong half a step away from where its joints want
-    them. The first solution makes up for that at once, by the jolt times the step
-    (`analytic.forces.late_impulses`); from step to step it goes on as an error of place of jolt *
+    An impulse engine starts with velocities that are half a step away from those that its joints
+    need. The first solution corrects that at once, by the jolt times the step
+    (`analytic.forces.late_impulses`); from step to step it continues as a position error of jolt *
     step^2 (`reports.judge.tolerance`). The jump is over with the next sample, or rings off where
     iterations leave a part of it. Differenced over two steps it is half as large; differenced
     twice, it is an acceleration of the jolt itself, at every step.
 
     Measured for profile tuned at 90 to 1440 steps a turn on every shipped scene, and on a thousand
     random ones (tests/reports/judge/test_random.py), as multiples of ``step * jolt``, ``step * jolt
-    / 2`` and ``jolt``: pymunk up to 1.1 where its iterations come to an end, and up to 1.6 where
-    they leave a fifth of an error from one step to the next, which rings. MuJoCo under 0.05.
+    / 2`` and ``jolt``: pymunk up to 1.1 where its iterations converge, and up to 1.6 where they
+    leave a fifth of an error from one step to the next, which rings. MuJoCo under 0.05.
 
     A soft constraint starts with its spring at rest: until that has given way, the accelerations
     are off by the part that the impedance leaves open, (1 - 0.9999) of the acceleration with which
     the bodies would part if the loop were open. That is about the curvature where their masses are
-    alike; a light body that holds a heavy one would part with it by the ratio of their masses
-    faster.
+    alike; a light body that holds a heavy one would part with it faster by the ratio of their
+    masses.
 
     An implicit engine that closes its joints in their places at the end of each step starts with
-    accelerations that go with the rates at its start, and needs in its first step those that go
-    with the places at its end: they are off by a part of what they change by in a step, which its
-    damping takes away. The change over a step is about ``step * curvature^1.5``, the curvature and
-    its frequency; exudyn was seen to be off by up to 0.69 of that with profile tuned, at 90 to 720
-    steps a turn on every shipped scene, and by up to 3.8 as shipped, where it rings for sixty
-    steps.
+    accelerations for the rates at its start, and needs in its first step those for the places at
+    its end: they are off by a part of their change in a step, which its damping removes. The change
+    over a step is about ``step * curvature^1.5``, the curvature and its frequency; exudyn was seen
+    to be off by up to 0.69 of that with profile tuned, at 90 to 720 steps a turn on every shipped
+    scene, and by up to 3.8 as shipped, where it rings for sixty steps.
 
-    What an impulse solver makes up for at its start is half a step's change of momentum: the forces
-    of its first step are off by half of those that there are, at every step, and those of the
-    second by as much to the other side. Where iterations leave half of it, it rings off within a
-    dozen steps, and these alone are the start (`reports.compare.compare.OF_STEPS`). Seen of pymunk,
-    as multiples of half the largest force at the start: up to 1.26, at 90 and 720 steps a turn on
+    The correction of an impulse solver at its start is half a step's change of momentum: the forces
+    of its first step are off by half of themselves, at every step, and those of the second by as
+    much to the other side. Where iterations leave half of it, it rings off within a dozen steps,
+    and these alone are the start (`reports.compare.compare.OF_STEPS`). Observed for pymunk, as
+    multiples of half the largest force at the start: up to 1.26, at 90 and 720 steps a turn on
     every shipped scene.
 
-    Elements of a beam that stand where the true line does are stretched, as a cubic can not bend
-    without stretching somewhere, and set off by what that pushes their ends with
-    (`models.scene.elastic.Beam.pushed`): of fourbar-elastic 0.13 of the driver's speed squared
+    Elements of a beam placed on the true line are stretched, as a cubic cannot bend without
+    stretching somewhere, and start with the acceleration of that push on their ends
+    (`models.scene.elastic.Beam.pushed`): for fourbar-elastic 0.13 of the driver's speed squared
     with 2 of them and 0.009 with 4, at every step, until that is damped.
 
-    The caps are what anyone would call wrong, whatever the theory grants: a tenth of the driver's
-    speed within a step.
+    The caps are plainly wrong results, whatever the theory grants: a tenth of the driver's speed
+    within a step.
     """
     numbers = errors.limits[tolerance]
     scene, pushed = errors.of_scene, ELEMENTS * errors.of_links.pushed

@@ -1,5 +1,5 @@
-"""CC101, CC109, CC115, CC117, CC119, CC124, CC126: the run is the one asked for, came to its end,
-and its log is whole, made of numbers, holds what is required, and does not contradict itself."""
+"""CC101, CC109, CC115, CC117, CC119, CC124, CC126: the run is as requested, came to its end, and
+its log is complete, made of numbers, holds all required parts, and is consistent."""
 
 from reports.judge.rules.rule import Evidence, Finding, Level
 
@@ -106,7 +106,7 @@ class Required:
 
 
 ROUNDING = 1e-9
-"""A share of the largest reaction that sums of a few forces are never rounded by."""
+"""A share of the largest reaction above any rounding of sums of a few forces."""
 
 
 class PinsBalance:

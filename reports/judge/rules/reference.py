@@ -1,5 +1,5 @@
-"""CC111, CC112, CC134: the reference is another computation than the engine's, and sure enough;
-of elastic links, whether the engine, the segments or the truth is what is off."""
+"""CC111, CC112, CC134: the reference is another computation than the engine's, and certain enough;
+for elastic links, the main error is attributed to the engine, the segments or the reference."""
 
 import math
 import sys
@@ -14,7 +14,7 @@ from sim.engine import Placing
 
 LEAST_SAMPLES = 8
 SHARE = 0.1
-"""The reference may be wrong by this share of the limit it is used for."""
+"""Largest uncertainty of the reference, as a share of its limit."""
 
 
 class TwoComputations:
@@ -95,8 +95,8 @@ class ReferenceCertain:
 
 
 def _bounds(errors: Errors) -> Iterator[tuple[str, str, float]]:
-    """Tolerance, body and pure bound: of the reference at every sample, whatever the engine
-    reports, and of what the errors were worked out from."""
+    """Yield tolerance, body and pure bound: for the reference at every sample, whatever the engine
+    reports, and for the inputs of the errors."""
     for (quantity, body), bound in errors.uncertain.items():
         yield quantity, body, bound
     for row in errors.rows:
@@ -105,51 +105,51 @@ def _bounds(errors: Errors) -> Iterator[tuple[str, str, float]]:
 
 
 LEAST = 5e-5
-"""A nineteenth of the least multiple that was seen."""
+"""A nineteenth of the least observed multiple."""
 PLACES, RATES = named("place"), named("derived")
 FORCES = tuple(name for name in named("force") if name != "moment")
 """A block that is pinned at its point bears no moment, in an engine as in the reference."""
 WHOLE = ("total", "geometric")
 """Errors of the run, but for its start and change points, where an engine may have hardly moved."""
 ROUNDING = sys.float_info.epsilon
-"""A rate that is off by this share of its scale, at most, is the next number or the same."""
+"""A rate that is off by at most this share of its scale is the next number or the same."""
 
 BENT = ("deflection", "segments")
 SAME_BEND = 1e-11
-"""Of the largest deflection: rounding; the nearest engine was off by 5e-7."""
+"""Share of the largest deflection due to rounding; the nearest engine was off by 5e-7."""
 STRAIGHT = 1e8
-"""The longest link over the largest deflection, of links that do not bend for anybody."""
+"""The longest link over the largest deflection, for practically rigid links."""
 UNROUNDED = 1e-9
-"""An acceleration that is off by more is so by more than rounding."""
+"""Error of an acceleration above rounding."""
 
 
 def too_good(errors: Errors, placing: Placing, order: int) -> list[Error]:
-    """The errors that are too small for their body and step, the smallest first.
+    """Return the errors that are too small for their body and step, the smallest first.
 
-    An engine whose places are integrated is off by a multiple of step^order at every body that does
-    not move evenly with the driver (`reports.compare.hardness`): in its places, total and
+    An engine that integrates positions has an error of a multiple of step^order at every body that
+    does not move evenly with the driver (`reports.compare.hardness`): in its positions, total and
     geometric, in its rates, in the widest gap of its joints, and in the worst of its forces. On
     every shipped scene and 150 random ones, at 45 to 5760 steps a turn, the least was 9e-4 of that
-    times how unevenly the body moves. What was taken from the reference, however it was rounded
-    afterwards, is off by nothing, or by no more than the crank is.
+    times the unevenness of the body. Numbers copied from the reference, however rounded afterwards,
+    have no error, or none above the crank's.
 
-    An engine that solves its joints in each step may have places that are exact. Its rates are
-    numbers of their own nevertheless: over a whole run some of them are rounded in another way. Its
-    forces go with its accelerations: where these are off, so are those, by at least 0.1 of what all
-    masses make of that, at 90 to 720 steps a turn on every shipped scene.
+    An engine that solves its joints in each step may have exact positions. Its rates are separate
+    numbers nevertheless: over a whole run some of them are rounded in another way. Its forces
+    depend on its accelerations: where these are off, so are the forces, by at least 0.1 of the
+    inertia of all masses at that error, at 90 to 720 steps a turn on every shipped scene.
     """
     found = _nearer(errors, order) if placing == "integrated" else _the_same(errors)
     return sorted([*found, *_bent_the_same(errors)], key=lambda row: row.pure)
 
 
 def highest_order(errors: Errors, order: int) -> int:
-    """Of the step, what an engine of some ``order`` may be off by."""
+    """Return the order of the step of the errors of an engine of some ``order``."""
     return max(order, errors.of_motion.least_order)
 
 
 def _nearer(errors: Errors, order: int) -> Iterator[Error]:
-    """Errors that no step of that size leaves of what is integrated; of gaps the widest alone, as
-    an engine may hold some of its joints exactly."""
+    """Yield errors smaller than any integrator leaves at this step; of gaps the widest alone, as an
+    engine may hold some of its joints exactly."""
     scene = errors.of_scene
     least = LEAST * scene.step_rad ** highest_order(errors, order)
     for row in errors.rows:
@@ -166,7 +166,7 @@ def _nearer(errors: Errors, order: int) -> Iterator[Error]:
 
 
 def _bent_the_same(errors: Errors) -> Iterator[Error]:
-    """Deflections that are those of a theory to rounding: no engine's steps and joints are."""
+    """Yield deflections that equal a theory to rounding: no engine's steps and joints do."""
     if errors.of_links.slender >= STRAIGHT:
         return
     for row in errors.rows:
@@ -175,7 +175,7 @@ def _bent_the_same(errors: Errors) -> Iterator[Error]:
 
 
 def _the_same(errors: Errors) -> Iterator[Error]:
-    """The largest error of the rates of each body that has them all from the reference."""
+    """Yield the largest rate error of each body with all rates from the reference."""
     borne = largest(row for row in errors.rows if row.quantity in FORCES)
     moved = errors.worst("acceleration")
     off = moved.pure if moved and moved.pure > UNROUNDED else 0.0
@@ -192,7 +192,7 @@ def _the_same(errors: Errors) -> Iterator[Error]:
 
 
 UNSURE = 0.05
-"""A doubt of the beam, of the largest deflection, that is told as advice: next to a resonance."""
+"""Least doubt of the beam, over the largest deflection, for advice: next to a resonance."""
 
 
 class TruthEnds:
@@ -229,8 +229,8 @@ class TruthEnds:
 
 
 def engine_share(errors: Errors, links: ElasticFacts) -> float:
-    """What the engine itself is off by, of the largest deflection: beside the exact chain, or what
-    is left of its error beside the beam."""
+    """Return the engine's own error, over the largest deflection: against the exact chain, or the
+    rest of its error against the beam."""
     exact, beam = errors.worst("segments"), errors.worst("deflection")
     if exact is not None:
         return exact.pure

@@ -1,4 +1,4 @@
-"""What a rule is, what it sees, and what it says."""
+"""The rules' interface: a rule, its evidence, and its finding."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,16 +16,15 @@ Level = Literal["pass", "advice", "fail"]
 
 @dataclass(frozen=True)
 class Evidence:
-    """All that is known of one cell: how the run ended, its errors, the limits in force.
+    """All facts of one cell: how the run ended, its errors, the limits in force.
 
-    ``errors`` is None where nothing was logged, ``convergence`` (of places) where it was not asked
-    for, as ``force_convergence`` where no forces were; a
-    cell that is not ``gated`` is shown only. ``profile`` is that of the engine, "" where there is
-    none to be changed for another. ``placing`` and ``order`` are the engine's
-    (`sim.engine.Engine`); ``unasked`` says what of the run, and of the finer ones, is not as it was
-    asked for, None where there is no run. ``remedy`` says what came of other settings, where they
-    were tried (`reports.verify.advised`). ``absent`` is what a log was required to hold and
-    does not, None where nothing was required.
+    ``errors`` is None where nothing was logged, ``convergence`` (of positions) where it was not
+    requested, like ``force_convergence``; a cell that is not ``gated`` is shown only. ``profile``
+    is that of the engine, "" where there is none to change. ``placing`` and ``order`` are the
+    engine's (`sim.engine.Engine`); ``unasked`` are the differences of the run, and of the finer
+    ones, from the request, None where there is no run. ``remedy`` is the result of other settings,
+    where they were tried (`reports.verify.advised`). ``absent`` are required parts that a log
+    lacks, None where none are required.
     """
 
     status: str
@@ -46,9 +45,9 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Finding:
-    """What one rule says of one cell: in words, and as a number against its limit.
+    """Finding of one rule on one cell: in words, and as a number against its limit.
 
-    ``cure`` is what would help this cell, "" where nothing has to.
+    ``cure`` is the remedy for this cell, "" where none is needed.
     """
 
     rule: str
@@ -60,7 +59,7 @@ class Finding:
 
 
 class Rule(Protocol):
-    """One check with an ID, a title, why it matters, and what to do when it fails."""
+    """One check with an ID, a title, its reason, and a cure for its failure."""
 
     @property
     def id(self) -> str: ...
@@ -75,12 +74,12 @@ class Rule(Protocol):
     def cure(self) -> str: ...
 
     def check(self, evidence: Evidence) -> Finding | None:
-        """The finding, or None where the rule has nothing to look at."""
+        """Return the finding, or None where the rule does not apply."""
         ...
 
 
 def measure(error: Error) -> str:
-    """The size of an error in its unit, and over its scale where that is another number."""
+    """Return the size of an error in its unit, and over its scale where that is another number."""
     if error.quantity == "drive" and error.driver_unit == "m":
         return f"{error.pure:.3g} L"
     size = f"{error.maximum:.3g} {error.unit}"
@@ -88,12 +87,12 @@ def measure(error: Error) -> str:
 
 
 def share(error: Error) -> str:
-    """What the pure number of an error is a multiple of."""
+    """Return the unit of the pure number of an error."""
     return QUANTITIES[error.quantity].of(error.body_kind).share
 
 
 def place(error: Error) -> str:
-    """An error in words: body, size, and where it is largest."""
+    """Return an error in words: body, size, and where it is largest."""
     driver = place_in_words(error.driver_at_maximum_rad, error.driver_unit, ".1f")
     return (
         f"{error.body_kind} {error.body}: {measure(error)} at t = {error.time_of_maximum_s:.4g} s, "

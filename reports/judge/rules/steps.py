@@ -1,4 +1,4 @@
-"""CC110, CC118, CC125: the error shrinks with the step, and goes on from sample to sample."""
+"""CC110, CC118, CC125: the error shrinks with the step, and is continuous from sample to sample."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from reports.quantities import named
 FINE = ("shrinks", "at rounding", "as solved", "as the truth")
 BAD = ("grows", "diverges")
 SOFT = 1e-4
-"""What MuJoCo's stiffest documented impedance (0.9999) leaves open of a force."""
+"""Part of a force that MuJoCo's stiffest documented impedance (0.9999) leaves open."""
 
 
 class ErrorShrinks:
@@ -43,7 +43,7 @@ class ForcesShrink:
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
-        """A floor under what a soft constraint leaves open is no news."""
+        """Pass a floor below the part that a soft constraint leaves open."""
         finding = _seen(self.id, evidence.force_convergence, evidence)
         if finding and finding.level == "advice" and (finding.number or 0.0) <= SOFT:
             return replace(finding, level="pass")
@@ -51,7 +51,7 @@ class ForcesShrink:
 
 
 def _seen(rule: str, convergence: Convergence | None, evidence: Evidence) -> Finding | None:
-    """What is seen of three steps: a floor is worth knowing, and growing a failure."""
+    """Return the finding on three steps: a floor is advice, growth a failure."""
     if convergence is None:
         return None
     steps = ", ".join(
@@ -70,12 +70,12 @@ def _seen(rule: str, convergence: Convergence | None, evidence: Evidence) -> Fin
 DENSE_RAD = 0.04
 """The longest step, of about 160 a turn, at which an error is followed closely enough."""
 CLEAR = 10.0 * AT_ROUNDING
-"""A pure error that is not made of rounding within the engine."""
+"""Least pure error above rounding within the engine."""
 UNSURE = 100.0
-"""How far over what the reference may be wrong by an error has to be as well."""
+"""Least ratio of an error to the uncertainty of the reference."""
 MOST = 1.0
-"""The most that the second difference of an error may be of the error itself. Of independent
-numbers it is over 2; of runs that hold, on every shipped scene and 60 random ones, under 0.05."""
+"""Largest ratio of the second difference of an error to the error. For independent numbers it is
+over 2; for runs that hold, on every shipped scene and 60 random ones, under 0.05."""
 
 
 class ErrorSmooth:
@@ -105,7 +105,7 @@ class ErrorSmooth:
 
 
 def _roughest(errors: Errors) -> tuple[float, str] | None:
-    """The largest second difference over the error that it is of, and that error in words."""
+    """Return the largest second difference over its error, and that error in words."""
     bent = {
         (row.body_kind, row.body): row.pure * errors.of_scene.step_rad**2
         for row in errors.rows
