@@ -1,4 +1,4 @@
-"""What moves the truth that a log is held to: the scene's driver, or what the log says of it."""
+"""The drive of a log's reference: the scene's driver, or the driver's motion in the log."""
 
 import math
 from collections.abc import Sequence
@@ -20,26 +20,26 @@ LogDrive = Literal["scene", "fitted", "logged"]
 """The scene's law; constant speed, fitted to the log; or the crank's angle at each row, for the
 geometry alone."""
 STARTS = 24
-"""Angles of the start that are tried, where the log does not hold the driver's."""
+"""Angles of the start that are tried, where the log lacks the driver's."""
 FIRST = 400
-"""Samples, all over the log, that they are tried on."""
+"""Samples, all over the log, on which they are tried."""
 FINALISTS = 6
 """Guesses that are followed to their least squares."""
 STILL = 1e-6
-"""A crank that turns by less in all [rad] stands still."""
+"""Turn of a crank below which it stands still [rad]."""
 EXPLAINED = 0.05
-"""The root mean square of what a fit may leave [rad, longest links]."""
+"""Largest root mean square of the residual of a fit [rad, longest links]."""
 ROUNDS = 30
 CLOSE = 1e-13
-"""A change of both parameters, as a share, that is none."""
+"""Negligible change of both parameters, as a share."""
 NUDGE = 1e-6
 
 
 @dataclass(frozen=True)
 class DriveFit:
-    """Speed [rad/s] and start angle [rad] of the driver as a log has them, and one standard error
-    of each; ``by`` says what they were fitted to. Where it does not explain the log, no other speed
-    that was tried did."""
+    """Speed [rad/s] and start angle [rad] of the driver by a log, and one standard error of each;
+    ``by`` names the data of the fit. If it does not explain the log, no other speed that was tried
+    did."""
 
     speed_rad_s: float
     start_rad: float
@@ -59,7 +59,7 @@ def refuse_geometry_alone(drive: LogDrive, *, forces: bool) -> None:
 
 
 def chosen_drive(text: str) -> LogDrive:
-    """The drive of that name. Raises CrankcheckError for another."""
+    """Return the drive of that name. Raises CrankcheckError for another."""
     for name in get_args(LogDrive):
         if text == name:
             return name  # type: ignore[no-any-return]  # get_args has lost what they are
@@ -67,7 +67,7 @@ def chosen_drive(text: str) -> LogDrive:
 
 
 def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
-    """The truth, and the fit that moves it.
+    """Return the reference, and the fit of its drive.
 
     Raises CrankcheckError for a drive that the log, or the scene's law, does not allow; a crank
     that leaves its range.
@@ -97,8 +97,8 @@ def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
 
 
 def _compared(log: OwnLog) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
-    """The links, None for all, and the points that a log is compared with: those that move, and of
-    a long log what is in it, as the truth takes most of the memory."""
+    """Return the links, None for all, and the points for comparison: moving ones, and for a long
+    log those in it, as the reference takes most of the memory."""
     scene = log.scene
     every = dict.fromkeys([*scene.pins, *(slider.point for slider in scene.sliders.values())])
     moving = tuple(name for name in every if name not in scene.ground)
@@ -116,7 +116,7 @@ def _compared(log: OwnLog) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
 
 
 def crank_reading(log: OwnLog) -> Reading | None:
-    """The reading of the driver's angle, if there is one."""
+    """Return the reading of the driver's angle, if there is one."""
     return next(
         (
             each
@@ -130,14 +130,14 @@ def crank_reading(log: OwnLog) -> Reading | None:
 
 
 def moved(scene: Scene, speed_rad_s: float, start_rad: float) -> Scene:
-    """The scene with its driver at a constant speed, from a start angle on."""
+    """Return the scene with its driver at a constant speed from a start angle."""
     law = ConstantSpeed(start_rad=start_rad, speed_rad_s=speed_rad_s)
     return replace(scene, driver=replace(scene.driver, law=law))
 
 
 def _continuous(log: OwnLog, crank: Reading) -> Array:
-    """The angle of the crank, without the jumps of one that is wrapped: it goes on as the scene's
-    driver does, so that samples may be far apart."""
+    """Return the angle of the crank, without the jumps of a wrapped one: it continues like the
+    scene's driver, so that samples may be far apart."""
     if not crank.channel.wrapped:
         return crank.values
     led = log.scene.driver.law.at(crank.instants)[0]
@@ -145,7 +145,7 @@ def _continuous(log: OwnLog, crank: Reading) -> Array:
 
 
 def _of_crank(log: OwnLog, crank: Reading) -> DriveFit:
-    """Speed and start by a straight line through the angles. Raises CrankcheckError."""
+    """Return speed and start by a straight line through the angles. Raises CrankcheckError."""
     time_s, angle = crank.instants, _continuous(log, crank)
     mean = float(np.mean(time_s))
     centred = time_s - mean
@@ -166,13 +166,13 @@ def _of_crank(log: OwnLog, crank: Reading) -> DriveFit:
 
 
 def _near(start_rad: float, scene: Scene) -> float:
-    """A start angle within half a turn of the scene's."""
+    """Return a start angle within half a turn of the scene's."""
     told = float(scene.driver.law.at(np.zeros(1))[0][0])
     return told + math.remainder(start_rad - told, math.tau)
 
 
 def _of_places(log: OwnLog) -> DriveFit:
-    """Speed and start by least squares over all places. Raises CrankcheckError."""
+    """Return speed and start by least squares over all positions. Raises CrankcheckError."""
     places = [each for each in log.readings if each.channel.kind.order == 0]
     if not places:
         raise CrankcheckError(
@@ -210,7 +210,7 @@ def _of_places(log: OwnLog) -> DriveFit:
 def _least(
     scene: Scene, readings: Sequence[Reading], guess: tuple[float, float]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Speed and start of the least squares, by Gauss and Newton, with one standard error each."""
+    """Return speed and start of the least squares, by Gauss and Newton, with standard errors."""
     last_s = max(float(np.max(np.abs(each.instants))) for each in readings)
     steps = np.array([NUDGE / max(last_s, 1e-9), NUDGE])
     rest = _rest(scene, readings, guess)
@@ -246,7 +246,7 @@ def _least(
 def _rest(
     scene: Scene, readings: Sequence[Reading], parameters: tuple[float, float]
 ) -> Array | None:
-    """All errors as pure numbers, one after the other; None where there is no such motion."""
+    """Return all errors as pure numbers, one after the other; None if there is no such motion."""
     try:
         truth = Truth(moved(scene, *parameters), bound=False)
         return np.concatenate([
@@ -262,20 +262,20 @@ def _size(rest: Array | None) -> float:
 
 
 HARMONICS = 3
-"""Of the motion of a linkage, which tell its period."""
+"""Harmonics of the motion of a linkage that show its period."""
 BEST = 8
-"""Frequencies that come into question."""
+"""Number of candidate frequencies."""
 APART = 0.1
-"""Neighbours of a frequency that are less than this over the time of the log away are that one."""
+"""Frequencies closer than this over the duration of the log count as one."""
 MOST = 3000
-"""Frequencies that are looked at."""
+"""Number of frequencies that are examined."""
 FACTORS = (1.0, 0.5, 0.7, 1.5, 2.0)
-"""Of the scene's own speed, where the log is too short to come back."""
+"""Factors on the scene's own speed, where the log is too short to repeat."""
 
 
 def speeds(readings: Sequence[Reading], usual_rad_s: float) -> list[float]:
-    """Speeds of both signs [rad/s], those that repeat the readings best first, then some near the
-    scene's own."""
+    """Return speeds of both signs [rad/s], first those that repeat the readings best, then some
+    near the scene's own."""
     found = [usual_rad_s * factor for factor in FACTORS]
     periodic = _frequencies(readings)
     chosen = dict.fromkeys([*periodic, *(abs(each) for each in found)])
@@ -284,7 +284,7 @@ def speeds(readings: Sequence[Reading], usual_rad_s: float) -> list[float]:
 
 
 def _frequencies(readings: Sequence[Reading]) -> list[float]:
-    """The circular frequencies of a few harmonics that leave least of the readings [rad/s]."""
+    """Return the circular frequencies with the least residual of a few harmonics [rad/s]."""
     time_s = readings[0].instants
     lasts = float(np.ptp(time_s))
     fastest = math.pi / float(np.median(np.diff(time_s))) / 2.0
@@ -302,13 +302,13 @@ def _frequencies(readings: Sequence[Reading]) -> list[float]:
 
 
 def _stacked(readings: Sequence[Reading]) -> Array:
-    """The signals of all readings, (T, n)."""
+    """Return the signals of all readings, (T, n)."""
     every = [each for reading in readings for each in _signals(reading)]
     return np.stack(every, axis=-1) if every else np.zeros((readings[0].values.size, 0))
 
 
 def _signals(reading: Reading) -> list[Array]:
-    """A reading as numbers that come back, each about its mean and of size 1."""
+    """Return a reading as periodic numbers, each about its mean and of size 1."""
     kind = reading.channel.kind
     parts = [np.cos(reading.values), np.sin(reading.values)] if kind.turns else [reading.values]
     parts = [part - np.mean(part) for part in parts]
@@ -316,7 +316,7 @@ def _signals(reading: Reading) -> list[Array]:
 
 
 def _left(time_s: Array, signals: Array, frequency: float) -> float:
-    """What harmonics of a frequency leave of signals (T, n)."""
+    """Return the residual of signals (T, n) after harmonics of a frequency."""
     if signals.shape[-1] == 0:
         return math.inf
     turns = frequency * np.outer(time_s - time_s[0], np.arange(1, HARMONICS + 1))

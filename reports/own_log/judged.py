@@ -1,4 +1,4 @@
-"""Judge a user's own log: what it holds, against the closed form, within what he asks for."""
+"""Judge a user's own log: its content, against the closed form, within the requested limits."""
 
 import math
 from collections.abc import Sequence
@@ -42,16 +42,16 @@ ITSELF = (
 STEPPED = ("CC116", "CC118")
 """Rules that need a step; the others of `_RULES` need none."""
 NOT_OF_LOGS = ("CC110", "CC111", "CC115", "CC117")
-"""A log was not asked for, is not run again, and may well be a closed form."""
+"""Rules for runs: a log was not requested, is not run again, and may well be a closed form."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedLog(Evidence):
-    """A log with what came of it.
+    """A log with its results.
 
-    ``beside`` is what was compared, ``fit`` what moves its truth where that was fitted. ``causes``
-    explain what is out of tolerance, and delays that are within it; ``not_judged`` is what the
-    scene has and the log has not; ``notes`` are worth knowing.
+    ``beside`` is the comparison, ``fit`` the fitted drive of its reference, if any. ``causes``
+    explain errors out of tolerance, and delays within it; ``not_judged`` are parts of the scene
+    that the log lacks; ``notes`` are further facts.
     """
 
     log: OwnLog
@@ -70,7 +70,7 @@ class JudgedLog(Evidence):
 
     @property
     def truth_name(self) -> str:
-        """What it is held to, in words."""
+        """The reference in words."""
         return log_kind(self.scene).truth_name
 
     @property
@@ -85,9 +85,9 @@ class JudgedLog(Evidence):
 def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     """Compare a log with the closed form, and judge it.
 
-    Raises CrankcheckError for neither target nor step for what the log holds; a target of forces
-    that are not judged; a step that is none; a name in ``require`` that the scene has not; a drive
-    that the log does not allow; a range that the mechanism can not be moved in.
+    Raises CrankcheckError for neither target nor step for the content of the log; a target of
+    forces that are not judged; an invalid step; a name in ``require`` that the scene lacks; a drive
+    that the log does not allow; a range in which the mechanism cannot move.
     """
     _check_step(log, request.step_s)
     required = [required_name(log.scene, name) for name in request.require]
@@ -137,7 +137,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
 def _explained(
     log: OwnLog, truth: Truth, fit: DriveFit | None, evidence: Evidence, errors: Errors
 ) -> tuple[tuple[Cause, ...], tuple[str, ...]]:
-    """The causes, and what else is worth knowing of a log that is within tolerance, or out."""
+    """Return the causes, and further notes on a log within tolerance or out."""
     rows = [row for row in errors.rows if row.kind == "total"]
     itself = (ITSELF,) if rows and all(row.maximum == 0.0 for row in rows) else ()
     out = any(finding.level == "fail" for finding in judge(evidence, LIMITS))
@@ -146,23 +146,23 @@ def _explained(
 
 
 def _placing(errors: Errors) -> Placing:
-    """How the places of a log came about, which its start goes by: those that are nearer than a
-    step leaves what is integrated were solved for. Where links bend places are off by what pieces
-    leave of the beam, and its pins tell alone: without these the start has the wider limit."""
+    """Return the origin of the positions of a log, for limits at its start: positions nearer than a
+    step of an integrator leaves were solved for. Where links bend, positions have the pieces'
+    error, and only pins show it: without these the start has the wider limit."""
     worst = largest(row for row in errors.rows if row.quantity in errors.of_links.shut)
     near = LEAST * errors.of_scene.step_rad**2
     return "integrated" if worst is not None and not worst.pure <= near else "solved"
 
 
 def _findings(evidence: Evidence, request: LogRequest) -> tuple[Finding, ...]:
-    """What the rules say that apply; their cures are those of engines, and left out."""
+    """Return the findings of the applicable rules; their cures are for engines, and left out."""
     left_out = NOT_OF_LOGS if request.step_s else (*NOT_OF_LOGS, *STEPPED)
     rules = [rule for id_, rule in RULES.items() if id_ not in left_out]
     return tuple(replace(finding, cure="") for finding in judge(evidence, rules))
 
 
 def _check_step(log: OwnLog, step_s: float) -> None:
-    """Refuse a step that is none, or longer than a sample. Raises CrankcheckError."""
+    """Refuse an invalid step, or one longer than a sample. Raises CrankcheckError."""
     if not (math.isfinite(step_s) and step_s >= 0.0):
         raise CrankcheckError(f"--step {step_s:g}: give a time above 0, in seconds")
     shortest = float(np.min(np.diff(log.time_s)))
@@ -174,7 +174,7 @@ def _check_step(log: OwnLog, step_s: float) -> None:
 
 
 def _of_what_is_held(errors: Errors, log: OwnLog) -> Errors:
-    """Errors without what the reference may be wrong by where the log has nothing."""
+    """Return errors without the reference's uncertainty of quantities that the log lacks."""
     held = {(row.quantity, row.body) for row in errors.rows}
     held |= set(log.forces.columns) if log.forces else set()
     sure = {key: number for key, number in errors.uncertain.items() if key in held}
@@ -182,15 +182,15 @@ def _of_what_is_held(errors: Errors, log: OwnLog) -> Errors:
 
 
 LONGEST = 60
-"""Characters of a column's name that are shown."""
+"""Number of characters of a column's name that are shown."""
 KINDS = ("total", "start", "passage")
 """Kinds of errors that have limits."""
 
 
 @dataclass(frozen=True)
 class LogRow:
-    """One error of a body: ``columns`` it was read from, and its ``limit`` [pure]. ``unit`` is that
-    of the columns, of which one is ``per_unit`` in SI."""
+    """One error of a body: its ``columns`` in the log, and its ``limit`` [pure]. ``unit`` is that
+    of the columns, and ``per_unit`` its size in SI."""
 
     columns: tuple[str, ...]
     what: str
@@ -206,17 +206,17 @@ class LogRow:
 
     @property
     def is_aside(self) -> bool:
-        """Whether it is not of a whole column as it was logged."""
+        """True if it is not of a whole column as logged."""
         return self.error.source != "reported" or self.error.kind != "total"
 
     @property
     def names(self) -> str:
-        """The columns as they are shown, - for none."""
+        """The displayed names of the columns, - for none."""
         return ", ".join(map(column_text, self.columns)) or "-"
 
     @property
     def taken(self) -> float:
-        """The part of the limit that it takes; no end where it is not finite."""
+        """Its part of the limit; infinite where it is not finite."""
         if not math.isfinite(self.error.pure):
             return math.inf
         return self.error.pure / self.limit.number
@@ -227,12 +227,12 @@ class LogRow:
 
 
 def column_text(column: str) -> str:
-    """The name of a column, short, and as text that does nothing to a terminal."""
+    """Return the name of a column, short, and as text that is harmless to a terminal."""
     return cut(harmless(column[:LONGEST]), LONGEST)
 
 
 def log_rows(judged: JudgedLog) -> list[LogRow]:
-    """Each error that is held to a limit, in the order of the quantities."""
+    """Return each error that has a limit, in the order of the quantities."""
     errors = judged.errors
     if errors is None:
         return []
@@ -259,7 +259,7 @@ def log_rows(judged: JudgedLog) -> list[LogRow]:
 
 
 def _unit(read: Sequence[Reading], otherwise: str) -> tuple[str, float]:
-    """The unit of some columns, and what one is in SI; SI where they have several."""
+    """Return the unit of some columns, and its size in SI; SI where they have several."""
     channels = [each.channel for each in read]
     units = {each.unit for each in channels}
     if len(units) != 1:
@@ -269,7 +269,7 @@ def _unit(read: Sequence[Reading], otherwise: str) -> tuple[str, float]:
 
 
 def _what(error: Error) -> str:
-    """An error in words: quantity, body, and where it is not from a column itself, from what."""
+    """Return an error in words: quantity, body, and its derivation if not from a column itself."""
     quantity = "angle" if error.quantity == "drive" else error.quantity
     driver = ", the driver" if error.body_kind == "driver" else ""
     differenced = ", differenced" if error.source == "differenced" else ""
@@ -278,7 +278,7 @@ def _what(error: Error) -> str:
 
 
 def row_table(judged: JudgedLog) -> list[dict[str, object]]:
-    """The rows with unit suffixes in their names, for frames, CSV and JSON."""
+    """Return the rows with unit suffixes in their names, for frames, CSV and JSON."""
     return [
         {
             "scene": judged.scene.name,

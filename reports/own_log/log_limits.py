@@ -1,4 +1,4 @@
-"""What the errors of a user's own log are held to, and what it has to hold."""
+"""The limits of the errors of a user's own log, and its required content."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -23,9 +23,8 @@ from reports.way.way import way_of
 
 @dataclass(frozen=True)
 class LogRequest:
-    """How a log is to be judged: pure numbers by quantity (`EVERY` for all others), or the step
-    [s] that a budget follows from; what has to be in it; and what its elastic links were given
-    as."""
+    """Request to judge a log: pure numbers by quantity (`EVERY` for all others), or the step [s]
+    for a budget; the required content; and the form of its elastic links."""
 
     target: Mapping[str, float] = field(default_factory=dict)
     step_s: float = 0.0
@@ -37,8 +36,7 @@ class LogRequest:
 
 @dataclass(frozen=True)
 class HeldLog:
-    """A log with the truth that it was compared with, and the drive that was fitted; ``out`` says
-    that it is out of tolerance."""
+    """A log with its reference, and the fitted drive; ``out`` is True if it is out of tolerance."""
 
     log: OwnLog
     truth: Truth
@@ -49,38 +47,38 @@ class HeldLog:
 
 
 class LogKind(Protocol):
-    """How logs of a kind of scene are judged."""
+    """Way to judge logs of a kind of scene."""
 
     truth_name: str
     no_cause: str
-    """The sentence about columns, at {}, that are out of tolerance and have no cause."""
+    """Sentence about columns, at {}, that are out of tolerance without a cause."""
     driver_angle: str
-    """The quantity that the angle of the driven link is judged as."""
+    """The quantity for which the angle of the driven link is judged."""
 
     def truth(self, log: OwnLog, request: LogRequest) -> tuple[OwnLog, Truth, DriveFit | None]:
-        """The log as far as its truth is known, the truth, and the drive that was fitted. Raises
-        CrankcheckError."""
+        """Return the log as far as its reference is known, the reference, and the fitted drive.
+        Raises CrankcheckError."""
         ...
 
     def explained(self, held: HeldLog) -> tuple[Sequence[Cause], Sequence[str]]:
-        """The causes of what is out of tolerance or late, and what else is worth knowing."""
+        """Return the causes of errors out of tolerance or delays, and further notes."""
         ...
 
 
 def log_kind(scene: Scene) -> LogKind:
-    """That of the scene."""
+    """Return the kind of the scene."""
     return cast(LogKind, way_of(scene).part("log"))
 
 
 EVERY = "all"
-"""What a target for all quantities is kept under."""
+"""Key of a target for all quantities."""
 
 
 def log_limits(
     scene: Scene, errors: Errors, target: Mapping[str, float], step_s: float
 ) -> dict[str, Limit]:
-    """The limit of everything that is judged, by target or by a step [s], 0 for none; what is not
-    judged has no end. Raises CrankcheckError for neither."""
+    """Return the limit of each judged quantity, by target or by a step [s], 0 for none; infinite
+    for others. Raises CrankcheckError for neither."""
     target, numbers = dict(target), errors.limits
     every = target.pop(EVERY, None)
     if every is not None:
@@ -101,8 +99,7 @@ def log_limits(
 
 
 def limit_of(error: Error, evidence: Evidence, errors: Errors) -> Limit:
-    """What an error of a log is held to: at the start, and near change points, to limits of their
-    own."""
+    """Return the limit of an error of a log: separate at the start, and near change points."""
     limit = evidence.limits[error.tolerance]
     if error.kind == "passage":
         return in_passage(error.tolerance, limit, errors)
@@ -112,8 +109,8 @@ def limit_of(error: Error, evidence: Evidence, errors: Errors) -> Limit:
 
 
 def limits_by_column(log: OwnLog, evidence: Evidence, errors: Errors) -> dict[str, float]:
-    """What the error of each column may be [SI]: the least limit that it is over, or the largest
-    where it is over none."""
+    """Return the allowed error of each column [SI]: the least limit that it exceeds, or else the
+    largest."""
     over: dict[str, list[float]] = {}
     under: dict[str, list[float]] = {}
     for row in errors.rows:
@@ -133,7 +130,7 @@ def limits_by_column(log: OwnLog, evidence: Evidence, errors: Errors) -> dict[st
 
 
 def required_name(scene: Scene, name: str) -> tuple[str, str, str]:
-    """What a name that is required is: as given, a quantity and a body, "" for any.
+    """Return a required name as given, with its quantity and body, "" for any.
 
     Raises CrankcheckError for one that is neither.
     """
@@ -160,8 +157,8 @@ def absent_names(
     not_judged: Sequence[str],
     errors: Errors,
 ) -> tuple[str, ...]:
-    """Each name that is required and not in the log, with what is lacking: of a quantity every
-    body, of a body anything. Raises CrankcheckError for what is judged in no log."""
+    """Return each required name that the log lacks, with the missing parts: for a quantity every
+    body, for a body any quantity. Raises CrankcheckError for parts that no log is judged for."""
     held = {(row.quantity, row.body) for row in errors.rows}
     found = []
     for name, quantity, body in required:
@@ -188,5 +185,5 @@ def absent_names(
 
 
 def _is_of(judged: str, body: str) -> bool:
-    """Whether what is judged is of a body: `C on rod`, the force of a pin on a body, is of C."""
+    """True if a judged part is of a body: `C on rod`, the force of a pin on a body, is of C."""
     return judged == body or judged.startswith(f"{body} on ")

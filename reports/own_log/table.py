@@ -1,4 +1,4 @@
-"""A judged log on the terminal, as Markdown and as JUnit XML: what is wrong with it, and why."""
+"""A judged log on the terminal, as Markdown and as JUnit XML: its faults, and their causes."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -22,9 +22,9 @@ from reports.own_log.log_limits import log_kind
 WIDE = 90
 """Columns of a terminal that show when an error is largest."""
 ROOM = 1000
-"""Characters of a cause."""
+"""Largest number of characters of a cause."""
 FEW = 12
-"""Names that are listed of what is not judged."""
+"""Number of missing names that are listed."""
 
 
 def show(console: Console, judged: JudgedLog, facts: Mapping[str, str]) -> None:
@@ -38,7 +38,7 @@ def show(console: Console, judged: JudgedLog, facts: Mapping[str, str]) -> None:
 
 
 def _failures(console: Console, judged: JudgedLog) -> None:
-    """What is out of tolerance, rule by rule, and what explains it."""
+    """Print failures, rule by rule, and their causes."""
     if not judged.failures:
         return
     console.print(
@@ -55,11 +55,11 @@ def _failures(console: Console, judged: JudgedLog) -> None:
 
 
 ADVICE = ("advice",)
-"""Causes that are told of what is within its limits as well."""
+"""Causes that are reported within limits as well."""
 
 
 def _late(console: Console, judged: JudgedLog) -> None:
-    """What is worth knowing of a log that is within tolerance."""
+    """Print notes on a log within tolerance."""
     if judged.failures:
         return
     for cause in judged.causes:
@@ -69,8 +69,8 @@ def _late(console: Console, judged: JudgedLog) -> None:
 
 
 def cause_text(cause: Cause) -> str:
-    """A cause, and what to write in the map where the log is right in itself; it may name columns,
-    which may be called anything."""
+    """Return a cause, and its map entries where the log is right in itself; it may name columns,
+    with any text as names."""
     text = cut(harmless(cause.text), ROOM)
     if cause.correction:
         return f"{text}; if the log means it so, in its [[channel]] of the map: " + _keys(
@@ -83,7 +83,7 @@ def cause_text(cause: Cause) -> str:
 
 
 def _keys(correction: Mapping[str, object]) -> str:
-    """Keys and values of the map."""
+    """Return keys and values of the map."""
     return ", ".join(f"{key} = {_toml(value)}" for key, value in correction.items())
 
 
@@ -94,8 +94,8 @@ def _toml(value: object) -> str:
 
 
 def unexplained(judged: JudgedLog) -> list[str]:
-    """Columns that are out of tolerance, and that no cause is known of; where it is known of the x
-    of a point, its y may be right."""
+    """Return columns out of tolerance without a known cause; where the x of a point has one, its y
+    may be right."""
     told = {column for cause in judged.causes for column in cause.columns}
     out = (row for row in log_rows(judged) if row.verdict == "out" and told.isdisjoint(row.columns))
     left = dict.fromkeys(column for row in out for column in row.columns)
@@ -103,12 +103,12 @@ def unexplained(judged: JudgedLog) -> list[str]:
 
 
 def no_cause_text(judged: JudgedLog, columns: Sequence[str]) -> str:
-    """What is said of columns that are out of tolerance and have no cause."""
+    """Return the sentence on columns out of tolerance without a cause."""
     return log_kind(judged.scene).no_cause.format(few(columns, 6))
 
 
 def _table(rows: Sequence[LogRow], width: int) -> Table:
-    """One row an error, those out of tolerance first."""
+    """Return one row an error, those out of tolerance first."""
     table = plain_table()
     table.add_column("")
     table.add_column("columns", overflow="fold", min_width=12)
@@ -128,19 +128,19 @@ def _table(rows: Sequence[LogRow], width: int) -> Table:
 
 
 def _texts(row: LogRow) -> tuple[str, ...]:
-    """Columns, what they are read as, and the numbers of a row."""
+    """Return the columns, the meaning, and the numbers of a row."""
     pure = f"{error_text(row.error.pure)} {share(row.error)}"
     limit = short(row.limit.number)
     return row.names, row.what, row.size, pure, limit, taken_text(row.taken)
 
 
 def shown_rows(judged: JudgedLog) -> list[LogRow]:
-    """The rows of a table: all columns, and of the rest what is out of tolerance."""
+    """Return the rows of a table: all columns, and other errors out of tolerance."""
     return [row for row in log_rows(judged) if row.verdict == "out" or not row.is_aside]
 
 
 def rest_text(judged: JudgedLog) -> str:
-    """What was judged and is not in the table."""
+    """Return the words for judged errors that are not in the table."""
     left = [row for row in log_rows(judged) if row.verdict == "within" and row.is_aside]
     if not left:
         return ""
@@ -153,14 +153,14 @@ def rest_text(judged: JudgedLog) -> str:
 
 
 def taken_text(taken: float) -> str:
-    """A part of a limit: 12%, x34."""
+    """Return a part of a limit: 12%, x34."""
     if not math.isfinite(taken):
         return "nan"
     return f"{taken:.0%}" if taken < 10 else f"x{short(taken)}" if taken >= 1e4 else f"x{taken:.0f}"
 
 
 def _rest(console: Console, judged: JudgedLog) -> None:
-    """The drive, what is not judged, columns that were not used, and notes."""
+    """Print the drive, quantities not judged, unused columns, and notes."""
     if judged.fit:
         hanging(console, "drive: ", fit_text(judged))
     if text := rest_text(judged):
@@ -175,7 +175,7 @@ def _rest(console: Console, judged: JudgedLog) -> None:
 
 
 def unused_lines(judged: JudgedLog) -> list[str]:
-    """The columns that nothing was made of, a line for each reason."""
+    """Return the columns without meaning, a line for each reason."""
     reasons: dict[str, list[str]] = {}
     for column, reason in judged.log.unused:
         reasons.setdefault(reason, []).append(column_text(column))
@@ -183,7 +183,7 @@ def unused_lines(judged: JudgedLog) -> list[str]:
 
 
 def missing_text(judged: JudgedLog) -> str:
-    """What of the scene is not judged, quantity by quantity."""
+    """Return the parts of the scene that are not judged, quantity by quantity."""
     bodies: dict[str, list[str]] = {}
     for each in judged.not_judged:
         quantity, _, body = each.partition(" of ")
@@ -192,7 +192,7 @@ def missing_text(judged: JudgedLog) -> str:
 
 
 def fit_text(judged: JudgedLog) -> str:
-    """The fitted drive in words."""
+    """Return the fitted drive in words."""
     fit = judged.fit
     assert fit is not None
     return (
@@ -203,7 +203,7 @@ def fit_text(judged: JudgedLog) -> str:
 
 
 def verdict_line(judged: JudgedLog) -> Text:
-    """The verdict in one line."""
+    """Return the verdict in one line."""
     rows = log_rows(judged)
     samples = judged.log.time_s.size
     what = f"{count(len(rows), 'error')} over {samples} samples of {judged.scene.name}"
@@ -214,7 +214,7 @@ def verdict_line(judged: JudgedLog) -> Text:
 
 
 def footer(judged: JudgedLog, facts: Mapping[str, str]) -> list[str]:
-    """What the numbers are, and versions."""
+    """Return the reference and scale of the numbers, and versions."""
     drives = {
         "scene": "the scene's driver",
         "fitted": "a driver fitted to the log",
@@ -232,7 +232,7 @@ def footer(judged: JudgedLog, facts: Mapping[str, str]) -> list[str]:
 
 
 def suite(judged: JudgedLog, facts: Mapping[str, str]) -> Element:
-    """A test case for each error, and one for what the rules say of the log as a whole."""
+    """Return a test case for each error, and one for the rules on the log as a whole."""
     cases = []
     for row in log_rows(judged):
         case = case_of(judged.scene.name, f"{row.what} ({', '.join(row.columns) or 'differenced'})")
@@ -258,7 +258,7 @@ HEADS = ("", "columns", "read as", "largest error:", "of its scale:", "limit:", 
 
 
 def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
-    """The verdict, what is wrong and why, every error, and what the numbers are."""
+    """Return the verdict, the faults and causes, every error, and the reference of the numbers."""
     parts = [
         f"## crankcheck judge: {plain(judged.log.source)}",
         f"**{verdict_line(judged).plain}**",
