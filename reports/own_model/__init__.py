@@ -1,1 +1,1 @@
-"""A user's own model: read, run in lines, judged, and told."""
+"""A user's own model: read, run in lines, judged, and reported."""

@@ -1,4 +1,4 @@
-"""What a model is read as, and what its lines come to: all that is told of it."""
+"""Account of a model: its reading, and the results of its lines."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ from sim.engine import Engine, Run
 from sim.registry.own_models import Advised, Disturbance, OwnModel, reader, reading_engine
 
 NO_MEMORY = "not allocate memory"
-"""What an engine says that may have no more memory."""
+"""Words of an engine that has no more memory."""
 POSES = 73
-"""Poses of a turn in which is looked for contacts and limits: 5 deg apart."""
+"""Poses of a turn in which contacts and limits are sought: 5 deg apart."""
 
 
 @dataclass(frozen=True)
 class ProposedChange:
-    """Settings that may be recommended, and what they change of the file: a diff, or words; ""
-    where that is nothing."""
+    """Settings that may be recommended, and the change of the file: a diff, or words; "" for no
+    change."""
 
     advised: Advised
     patch: str
@@ -43,9 +43,9 @@ class ProposedChange:
 
 @dataclass(frozen=True)
 class ModelAccount:
-    """A model as it was read, from its ``files``: its scene, how far open its own pose is by joint
-    [m], what can disturb a comparison, the lines to run, what may be recommended, the first choice
-    first, and what is; ``helps`` is false where none of these was seen to gain anything."""
+    """A model as read, from its ``files``: its scene, the openings of its own pose by joint [m],
+    possible disturbances of a comparison, the lines to run, the proposals, first choice first, and
+    the recommended one; ``helps`` is False where none was seen to gain anything."""
 
     request: ModelRequest
     scene: Scene
@@ -84,13 +84,13 @@ class ModelLine:
 
 
 def told(profiles: Sequence[str]) -> tuple[str, ...]:
-    """The three that are told with their finer steps: as written, contacts off, recommended."""
+    """Return the three that are run with finer steps: as written, contacts off, recommended."""
     return (profiles[0], profiles[1], profiles[-1])
 
 
 def read(request: ModelRequest, limits: Limits) -> ModelAccount:
-    """Read a model in a process of its own: what is wrong with it may end that, or not come to an
-    end. Raises CrankcheckError for what can not be read, or held to a closed form."""
+    """Read a model in a process of its own: a fault in it may end that, or run forever. Raises
+    CrankcheckError for a file that cannot be read, or has no closed form."""
     reader()  # says how to install it where it is missing
     child: Isolated[ModelAccount] = Isolated(limits)
     try:
@@ -115,7 +115,7 @@ def _unless_lost(
 
 
 def read_here(request: ModelRequest) -> ModelAccount:
-    """As `read`, in this process."""
+    """Read as `read`, in this process."""
     own = reader()(request.path, request.joint, request.key)
     found = assembled(own, request)
     scene = found.scene
@@ -162,8 +162,8 @@ def read_here(request: ModelRequest) -> ModelAccount:
 
 
 def _proposed(touching: bool) -> list[Advised]:
-    """What may be recommended: contacts off only where links are ``touching``, and the file's own
-    integrator where another one is no help."""
+    """Return possible recommendations: contacts off only where links are ``touching``, and the
+    file's own integrator where another one is no help."""
     return [
         Advised(integrator, contacts_off)
         for integrator in (True, False)
@@ -172,7 +172,7 @@ def _proposed(touching: bool) -> list[Advised]:
 
 
 def _counted(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float, int]:
-    """Step [s] and number of steps. Raises CrankcheckError as `counted`."""
+    """Return step [s] and number of steps. Raises CrankcheckError as `counted`."""
     given_s = request.dt_s
     if given_s is None and request.steps_per_turn is None:
         if not 0.0 < own.dt_s < math.inf:
@@ -196,8 +196,8 @@ MOST = 600
 
 @dataclass(frozen=True)
 class ErrorCourse:
-    """The largest error of place of all bodies over time, and the widest gap, as pure numbers (T,):
-    of a long run the largest of each stretch, at its own instant [s]."""
+    """The largest position error of all bodies over time, and the widest gap, as pure numbers (T,):
+    for a long run the largest of each stretch, at its own instant [s]."""
 
     time_s: Array
     error: Array
@@ -224,8 +224,8 @@ def checked(cell: Cell, adapter: Engine) -> CheckedLine:
 
 
 def course_of(cell: Cell, run: Run) -> ErrorCourse | None:
-    """The course of a run, None where it logged nothing. Raises CrankcheckError where there is no
-    reference."""
+    """Return the course of a run, None where it logged nothing. Raises CrankcheckError where there
+    is no reference."""
     beside = Beside.of(truth_of(Same(cell.scene)), run)
     if beside is None:
         return None
@@ -238,7 +238,7 @@ def course_of(cell: Cell, run: Run) -> ErrorCourse | None:
 
 
 def _largest_rows(series: Array) -> list[int]:
-    """The first row, the last, and the largest of each stretch, about `MOST` in all."""
+    """Return the first row, the last, and the largest of each stretch, about `MOST` in all."""
     if series.size <= MOST:
         return list(range(series.size))
     ends = np.linspace(0, series.size, MOST - 1).astype(int)

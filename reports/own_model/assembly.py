@@ -1,4 +1,4 @@
-"""Which assembly a model is drawn in: the scene that was read off it, with its branch and start."""
+"""The assembly of a model as drawn: the scene read from it, with its branch and start."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from sim.engine import BodyPose
 from sim.registry.own_models import MOST_TURNS, OwnModel
 
 MOST_CHOICES = 8
-"""Assemblies are tried one by one, two to the power of the choices; more of these are asked for."""
+"""Most choices that are tried, two to this power; beyond it the user chooses."""
 ALIKE = 0.1
-"""A pose that is nearer to the best assembly than to the next, by less than this share, fits
-both."""
+"""A pose fits both assemblies if it is nearer to the best than to the next by less than this
+share."""
 TURN = math.tau
 SHOWN = 6
 
 
 @dataclass(frozen=True)
 class AssembledModel:
-    """The scene as it is to be run, and how far the drawn pose is from it: the largest distance of
-    a body's frame over the longest link, or angle [rad]."""
+    """The scene for the run, and the distance of the drawn pose from it: the largest distance of a
+    body's frame over the longest link, or angle [rad]."""
 
     scene: Scene
     far: float
@@ -40,11 +40,11 @@ class AssembledModel:
 
 
 def assembled(own: OwnModel, request: ModelRequest) -> AssembledModel:
-    """The scene of a model, in the assembly that it is drawn in.
+    """Return the scene of a model, in the assembly as drawn.
 
     Raises CrankcheckError for a start many turns away; no closed form; a pose that two assemblies
     fit as well, or a driver angle that none reaches, with the range in the coordinate of the joint;
-    more choices than are tried; a branch that chooses nothing.
+    too many choices to try; a branch that chooses nothing.
     """
     if request.start_deg is not None and abs(request.start_deg) > 360.0 * MOST_TURNS:
         raise CrankcheckError(
@@ -96,7 +96,7 @@ def _words(branch: Mapping[str, int]) -> str:
 
 
 def _why_not_one(own: OwnModel, request: ModelRequest) -> str:
-    """What makes the mobility of a model other than 1, by joint and weld."""
+    """Return the cause of a mobility other than 1, by joint and weld."""
     loose, welds = own.loose(), own.welds()
     if loose:
         return f" (with {request.joint} held these still move: {few(loose, SHOWN)})"
@@ -106,8 +106,8 @@ def _why_not_one(own: OwnModel, request: ModelRequest) -> str:
 
 
 def _led_to(scene: Scene, elsewhere: Scene, request: ModelRequest) -> Scene:
-    """A scene that starts elsewhere, in the assembly that the driver leads to from the pose: those
-    of class III groups are numbered where they start. Raises CrankcheckError."""
+    """Return a scene with another start, in the assembly to which the driver leads from the pose:
+    assemblies of class III groups are numbered where they start. Raises CrankcheckError."""
     if not analyse(scene).triads:
         return elsewhere
     there = elsewhere.driver.law.at(np.zeros(1))[0]
@@ -124,7 +124,7 @@ def _led_to(scene: Scene, elsewhere: Scene, request: ModelRequest) -> Scene:
 def _fits(
     own: OwnModel, bare: Scene, choices: Mapping[str, Sequence[int]], chosen: Mapping[str, int]
 ) -> Iterator[tuple[float, Scene]]:
-    """Every assembly, with how far the pose is from it."""
+    """Yield every assembly, with the distance of the pose from it."""
     left = [key for key in choices if key not in chosen]
     drawn = own.drawn().bodies
     for signs in itertools.product(*(choices[key] for key in left)):
@@ -139,13 +139,13 @@ def _fits(
 
 
 def _off(frame: Frame, pose: BodyPose, longest_m: float) -> float:
-    """How far a body is drawn from where it should be."""
+    """Return the distance of a body as drawn from its place."""
     turn = abs(math.remainder(float(pose.theta[0]) - frame.theta, TURN))
     return max(turn, math.dist(frame.origin, pose.origin[0]) / (longest_m or 1.0))
 
 
 def _not_assembled(own: OwnModel, bare: Scene, request: ModelRequest) -> str:
-    """Why no assembly holds in the pose."""
+    """Return the reason why no assembly holds in the pose."""
     try:
         solve(bare, np.zeros(1), bound=False)
     except ReachError as error:
@@ -156,9 +156,9 @@ def _not_assembled(own: OwnModel, bare: Scene, request: ModelRequest) -> str:
 
 
 def out_of_reach(scene: Scene, request: ModelRequest, otherwise: str) -> str:
-    """Where the driver would go, and where it can, in words; ``otherwise`` where it can go nowhere.
+    """Return the requested and the possible range of the driver in words; ``otherwise`` if empty.
 
-    The angle of the driver is what its joint reads, so that all is in the joint's own coordinate.
+    The angle of the driver is its joint's reading, so that all is in the joint's own coordinate.
     """
     start = float(scene.driver.law.at(np.zeros(1))[0][0])
     way = math.copysign(TURN, request.speed_rad_s)
@@ -182,19 +182,18 @@ def out_of_reach(scene: Scene, request: ModelRequest, otherwise: str) -> str:
 
 
 def _near(span: tuple[float, float], angle: float) -> tuple[float, float]:
-    """The range of whole turns on or back that is nearest to an angle."""
+    """Return the range, moved by whole turns, that is nearest to an angle."""
     turns = round((angle - (span[0] + span[1]) / 2) / TURN) * TURN
     return span[0] + turns, span[1] + turns
 
 
 @dataclass(frozen=True)
 class ModelRequest:
-    """A model file and the joint that drives it, at ``speed_rad_s`` from the pose that the file is
-    drawn in, or from keyframe ``key``, or from ``start_deg`` of the joint's own coordinate.
+    """A model file and the joint that drives it, at ``speed_rad_s`` from the drawn pose, or from
+    keyframe ``key``, or from ``start_deg`` of the joint's own coordinate.
 
     The step is the file's own where neither ``dt_s`` nor ``steps_per_turn`` is given; ``branch``
-    overrides the assembly that is drawn. Raises CrankcheckError for what is no speed, angle or
-    assembly.
+    overrides the drawn assembly. Raises CrankcheckError for an invalid speed, angle or assembly.
     """
 
     path: Path

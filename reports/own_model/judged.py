@@ -1,4 +1,4 @@
-"""A model of the user's own with the lines that were run of it, and what they come to."""
+"""A model of the user's own with its lines, and their results."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -23,15 +23,14 @@ from reports.verify.advised import HELPS
 from reports.workers.isolated import Isolated, Limits, Lost
 
 SAYS = 2.0
-"""A line that is told for one thing alone has something to say where it changes the error by so
-many times."""
+"""Ratio of errors from which on a line with a single change is worth reporting."""
 PARTS = (1, 2, 4)
-"""What the step is cut into."""
+"""Divisors of the step."""
 
 
 @dataclass(frozen=True)
 class JointGap:
-    """A joint or loop: how far open the file's own pose has it, and, by line, its widest gap [m];
+    """A joint or loop: its opening in the file's own pose, and, by line, its widest gap [m];
     ``share`` is that of the model as written over its limit, NaN where it has none."""
 
     name: str
@@ -42,7 +41,7 @@ class JointGap:
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedModel:
-    """A model as it was read, and its lines: as written first, recommended last.
+    """A model as read, and its lines: as written first, recommended last.
 
     The verdict is that on the model as written.
     """
@@ -73,50 +72,50 @@ class JudgedModel:
 
     @property
     def patch(self) -> str:
-        """The recommended settings as a diff of the file; in words where that can not be; "" where
-        the file has them, or where they do not help."""
+        """The recommended settings as a diff of the file, or in words where that is impossible; ""
+        where the file has them, or where they do not help."""
         return self.account.recommended.patch if self.account.helps else ""
 
     @property
     def three(self) -> list[CheckedLine]:
-        """As written, contacts off, recommended."""
+        """The lines as written, contacts off, recommended."""
         names = told(self.account.profiles)
         return [one for one in self.lines if one.cell.profile in names]
 
     @property
     def others(self) -> list[CheckedLine]:
-        """The other lines, those that say something."""
+        """The other lines worth reporting."""
         names = told(self.account.profiles)
         rest = [one for one in self.lines if one.cell.profile not in names]
         return [one for one in rest if self._says(one)]
 
     def _says(self, one: Checked) -> bool:
-        """Whether a line changes the error, or how the run ends."""
+        """True if a line changes the error, or how the run ends."""
         if one.status != self.own.status:
             return True
         factor = self.gains(one)[0]
         return not (1 / SAYS <= factor <= SAYS) and math.isfinite(factor)
 
     def without(self, kind: str) -> CheckedLine | None:
-        """The line without the disturbances of a kind, None where there is none."""
+        """Return the line without the disturbances of a kind, None where there is none."""
         name = f"{kind}-off"
         return next((one for one in self.lines if one.cell.profile == name), None)
 
     def gains(self, one: Checked) -> tuple[float, float, float]:
-        """The error as written over that of a line, at the step, its half and its quarter; NaN
-        where one of them has none."""
+        """Return the error as written over that of a line, at the step, its half and its quarter;
+        NaN where one of them has none."""
         own, other = errors_of(self.own), errors_of(one)
         first, second, third = (_ratio(a, b) for a, b in zip(own, other, strict=True))
         return first, second, third
 
     def still(self) -> Finding | None:
-        """What the recommended settings fail by most, as a part of its limit; None where they fail
-        nothing."""
+        """Return the worst failure of the recommended settings, as a part of its limit; None if
+        there is none."""
         failures = self.lines[-1].failures
         return max(failures, key=_part, default=None)
 
     def joints(self) -> list[JointGap]:
-        """Every joint and loop, the widest as written first."""
+        """Return every joint and loop, the widest as written first."""
         limit = self.own.limits.get("gap")
         most = limit.number * (self.scene.longest_m or 1.0) if limit else math.nan
         by_line = {
@@ -141,8 +140,8 @@ class JudgedModel:
 
 
 def errors_of(one: Checked) -> tuple[float, float, float]:
-    """The largest error of place of a line at the step, its half and its quarter, as pure numbers;
-    NaN where there is none, or where the run did not end well."""
+    """Return the largest position error of a line at the step, its half and its quarter, as pure
+    numbers; NaN where there is none, or where the run did not end well."""
     worst = worst_place(one.errors) if one.errors else None
     if worst is None or one.status != "ok":
         return math.nan, math.nan, math.nan
@@ -153,7 +152,7 @@ def errors_of(one: Checked) -> tuple[float, float, float]:
 
 
 def _ratio(own: float, other: float) -> float:
-    """How many times one error is another, NaN where there is none of the two."""
+    """Return the ratio of two errors, NaN where one is missing."""
     if math.isnan(own) or math.isnan(other):
         return math.nan
     if own == other:
@@ -162,13 +161,13 @@ def _ratio(own: float, other: float) -> float:
 
 
 def judged_model(account: ModelAccount, lines: Sequence[CheckedLine]) -> JudgedModel:
-    """A model with its lines, each with what the recommended settings would do for it."""
+    """Return a model with its lines, each with the effect of the recommended settings on it."""
     judged = JudgedModel(account=account, lines=lines)
     return replace(judged, lines=[_advised(judged, one) for one in lines])
 
 
 def _advised(judged: JudgedModel, one: CheckedLine) -> CheckedLine:
-    """A line whose cures are the recommended settings, where these help."""
+    """Return a line whose cures are the recommended settings, where these help."""
     last = judged.lines[-1]
     if one is last or one.verdict == "within" or not judged.account.helps:
         return one
@@ -182,7 +181,7 @@ def _advised(judged: JudgedModel, one: CheckedLine) -> CheckedLine:
 
 
 def _part(finding: Finding) -> float:
-    """What a finding takes of its limit; without numbers it is how the run ended."""
+    """Return a finding as a part of its limit; infinite without numbers: how the run ended."""
     if finding.number is None or not finding.limit:
         return math.inf
     return finding.number / finding.limit if math.isfinite(finding.number) else math.inf
@@ -214,7 +213,7 @@ def run_lines(
 def judged_lines(
     account: ModelAccount, run: Run, done: Callable[[CheckedLine], None]
 ) -> JudgedModel:
-    """All lines, as ``run`` does each; what is recommended is chosen once the first is there."""
+    """Return all lines, run by ``run``; the recommendation is chosen after the first."""
     lines: list[CheckedLine] = []
     for profile in account.profiles:
         if len(lines) == 1:
@@ -225,8 +224,8 @@ def judged_lines(
 
 
 def chosen(account: ModelAccount, own: CheckedLine, run: Run) -> ModelAccount:
-    """The account with the first of its proposals that gains on the model as written; contacts
-    are off only where that makes the error `SAYS` times less. Where none gains, it says so."""
+    """Return the account with the first of its proposals that gains on the model as written;
+    contacts are off only for an error `SAYS` times less. If none gains, ``helps`` is False."""
     limit = _error(own)
     quick = replace(account, request=replace(account.request, converge=False))
 
@@ -253,6 +252,6 @@ def chosen(account: ModelAccount, own: CheckedLine, run: Run) -> ModelAccount:
 
 
 def _error(one: CheckedLine) -> float:
-    """The largest error of place, without an end where the run did not end well."""
+    """Return the largest position error, infinite where the run did not end well."""
     error = errors_of(one)[0]
     return math.inf if math.isnan(error) else error

@@ -1,5 +1,5 @@
-"""What is told of an own model in words: how it was read, what can disturb it, what each line
-gains, the verdict."""
+"""Words for an own model: its reading, its possible disturbances, the gain of each line, the
+verdict."""
 
 import math
 from collections.abc import Sequence
@@ -13,29 +13,29 @@ from reports.own_model.account import ModelAccount, told
 from reports.own_model.judged import PARTS, JudgedModel
 
 OPEN = 1e-9
-"""A joint that is open by more, over the longest link, is told."""
+"""Least opening of a joint that is reported, over the longest link."""
 SHOWN = 6
 NO_HELP = "no settings that were tried here help"
 EACH = 3
-"""Disturbances of a kind that are told on a terminal."""
+"""Number of disturbances of a kind that are listed on a terminal."""
 
 
 @dataclass(frozen=True)
 class SentenceGroup:
-    """The disturbances of a kind, and what comes of leaving them out: "" where that is no line."""
+    """The disturbances of a kind, and the effect of leaving them out: "" without such a line."""
 
     kind: str
     texts: Sequence[str]
     effect: str
 
     def short(self) -> str:
-        """The first of them, and how many more there are."""
+        """Return the first of them, and the number of the others."""
         left = len(self.texts) - EACH
         return "; ".join(self.texts[:EACH]) + (f"; and {left} more" if left > 0 else "")
 
 
 def reading(account: ModelAccount) -> dict[str, str]:
-    """What the file was read as, how it is driven, and where it starts, each under its head."""
+    """Return words for the reading of the file, its drive, and its start, each under its head."""
     scene = account.scene
     sliders = f"; {_named(list(scene.sliders), 'slider')}" if scene.sliders else ""
     notes = {f"note {n}" if n else "note": text for n, text in enumerate(account.notes)}
@@ -48,7 +48,7 @@ def reading(account: ModelAccount) -> dict[str, str]:
 
 
 def _drive(account: ModelAccount) -> str:
-    """How it is driven, and from where."""
+    """Return the words for its drive and start."""
     request = account.request
     turned = f"{account.steps * account.dt_s / account.scene.driver.law.period_s:.4g}"
     turns = "1 turn" if turned == "1" else f"{turned} turns"
@@ -63,12 +63,12 @@ def _drive(account: ModelAccount) -> str:
 
 
 def _named(names: Sequence[str], noun: str) -> str:
-    """How many there are, and what they are called."""
+    """Return a count with names."""
     return f"{count(len(names), noun)} ({few(names, SHOWN)})"
 
 
 def _pose(account: ModelAccount) -> str:
-    """How far open the file's own pose is, and where the run starts."""
+    """Return the words for the openings of the file's own pose, and the start of the run."""
     most = OPEN * (account.scene.longest_m or 1.0)
     gaping = sorted(
         ((gap, name) for name, gap in account.open_m.items() if gap > most), reverse=True
@@ -83,7 +83,7 @@ def _pose(account: ModelAccount) -> str:
 
 
 def groups(judged: JudgedModel) -> list[SentenceGroup]:
-    """What can disturb the comparison, kind by kind, what is met on the way first."""
+    """Return possible disturbances of the comparison, kind by kind, those on the way first."""
     kinds: dict[str, list[str]] = {}
     for each in judged.account.disturbances:
         kinds.setdefault(each.kind, []).append(each.text)
@@ -91,7 +91,7 @@ def groups(judged: JudgedModel) -> list[SentenceGroup]:
 
 
 def effect(judged: JudgedModel, kind: str) -> str:
-    """What comes of leaving out the disturbances of a kind; "" where no line says it."""
+    """Return the effect of leaving out the disturbances of a kind; "" if no line shows it."""
     one = judged.without(kind)
     if one is None:
         return ""
@@ -103,7 +103,7 @@ def effect(judged: JudgedModel, kind: str) -> str:
 
 
 def factor_words(factor: float) -> str:
-    """An error as written over another one, in words."""
+    """Return an error as written over another one, in words."""
     if math.isnan(factor):
         return "not to be told"
     if 0.99 < factor < 1.01:
@@ -114,7 +114,7 @@ def factor_words(factor: float) -> str:
 
 
 def factor_text(factor: float) -> str:
-    """A factor with few digits: 1.3, 27, 1.2e5."""
+    """Return a factor with few digits: 1.3, 27, 1.2e5."""
     if not math.isfinite(factor):
         return "-" if math.isnan(factor) else "inf"
     if factor >= 1e4 or factor < 0.095:
@@ -123,7 +123,7 @@ def factor_text(factor: float) -> str:
 
 
 def gaps(judged: JudgedModel) -> str:
-    """The widest gap of all joints as written, in a sentence; "" where nothing was logged."""
+    """Return the widest gap of all joints as written, in words; "" where nothing was logged."""
     joints = [joint for joint in judged.joints() if judged.own.cell.profile in joint.gap_m]
     if not joints:
         return ""
@@ -143,7 +143,7 @@ def gaps(judged: JudgedModel) -> str:
 
 
 def still_out(judged: JudgedModel) -> str:
-    """Why the recommended settings are out of tolerance, "" where they are not."""
+    """Return why the recommended settings are out of tolerance, "" if they are within."""
     finding = judged.still()
     if finding is None:
         return ""
@@ -153,14 +153,14 @@ def still_out(judged: JudgedModel) -> str:
 
 
 def share_text(share: float) -> str:
-    """A part of a limit: 12.3% of its limit, 34 times its limit."""
+    """Return a part of a limit: 12.3% of its limit, 34 times its limit."""
     if share >= 1.0:
         return f"{factor_text(share)} times its limit"
     return f"{share:.1%} of its limit" if share >= 1e-3 else "below 0.1% of its limit"
 
 
 def verdict_text(judged: JudgedModel) -> str:
-    """The verdict on the model as written in one line, and what is to be gained."""
+    """Return the verdict on the model as written in one line, and the possible gain."""
     own, last = judged.own, judged.lines[-1]
     if own.verdict == "within":
         head = "WITHIN TOLERANCE as written"
@@ -177,7 +177,7 @@ def verdict_text(judged: JudgedModel) -> str:
 
 
 def _why(judged: JudgedModel) -> str:
-    """The worst place of a run that is out, or how it ended."""
+    """Return the worst position error of a run that is out, or how it ended."""
     own = judged.own
     if own.status != "ok":
         return f": {own.status}"
@@ -188,7 +188,7 @@ def _why(judged: JudgedModel) -> str:
 
 
 def footer(judged: JudgedModel) -> list[str]:
-    """What the numbers are, and how long was run."""
+    """Return the reference and scale of the numbers, and the length of the run."""
     account, own = judged.account, judged.own
     drive = own.errors.worst("drive") if own.errors else None
     driven = f"; largest drive error {short(drive.maximum)} rad" if drive else ""
@@ -205,21 +205,21 @@ def footer(judged: JudgedModel) -> list[str]:
 
 
 def steps_text(judged: JudgedModel) -> str:
-    """The steps at which lines are run, in words."""
+    """Return the steps at which lines are run, in words."""
     if not judged.account.request.converge:
         return f"at dt {judged.account.dt_s:g} s"
     return f"at dt {judged.account.dt_s:g} s, its half and its quarter"
 
 
 def step_heads(judged: JudgedModel) -> list[str]:
-    """Heads of the columns of errors."""
+    """Return the heads of the columns of errors."""
     if not judged.account.request.converge:
         return ["dt"]
     return ["dt" if parts == 1 else f"dt/{parts}" for parts in PARTS]
 
 
 def recommended_head(judged: JudgedModel) -> str:
-    """What is said of the recommended settings, before they follow, if there are any."""
+    """Return the sentence before the recommended settings, if there are any."""
     if not judged.account.helps:
         return f"{NO_HELP.capitalize()}: stiff loops run no better, nor with fourth-order steps."
     if not judged.patch:
@@ -228,5 +228,5 @@ def recommended_head(judged: JudgedModel) -> str:
 
 
 def is_diff(patch: str) -> bool:
-    """Whether recommended settings are a diff, and not told in words."""
+    """True if recommended settings are a diff, and not words."""
     return patch.startswith("--- ")

@@ -1,4 +1,4 @@
-"""An own model on the terminal and as JSON: what was read, its lines, and what to change."""
+"""An own model on the terminal and as JSON: its reading, its lines, and the recommended changes."""
 
 import json
 import math
@@ -33,13 +33,13 @@ from reports.own_model.sentences import (
 from reports.verify.table import MARKS, halved, mark
 
 WIDE, NARROW = 76, 52
-"""Columns of a terminal that show the gap and the body of the largest error; below which what
-halving the step does is left out, if all lines ran."""
+"""Columns of a terminal that show the gap and the body of the largest error; and those below which
+the convergence by halving is left out, if all lines ran."""
 STYLES = {"within": "bold green", "out": "bold red", "unsupported": "bold red"}
 
 
 def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> None:
-    """Print it all."""
+    """Print the whole model."""
     _failures(console, judged)
     _told(console, str(judged.account.request.path), reading(judged.account))
     console.print()
@@ -56,7 +56,7 @@ def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> Non
 
 
 def _failures(console: Console, judged: JudgedModel) -> None:
-    """What is out of tolerance as written, rule by rule."""
+    """Print the failures of the model as written, rule by rule."""
     if not judged.failures:
         return
     head = f"{MARKS[judged.verdict].plain}  {judged.account.request.path}, as written"
@@ -70,14 +70,14 @@ def _failures(console: Console, judged: JudgedModel) -> None:
 
 
 def _told(console: Console, title: str, told: Mapping[str, str]) -> None:
-    """Sentences under a title, each beside its head."""
+    """Print sentences under a title, each beside its head."""
     console.print(Text(harmless(title), "bold"))
     for head, text in told.items():
         hanging(console, f"  {head}: ", harmless(text))
 
 
 def _table(judged: JudgedModel, width: int) -> Table:
-    """The three lines, each with what it gains, and the others that say something."""
+    """Return the three lines, each with its gain, and the others worth reporting."""
     wide = width >= WIDE
     table = plain_table(f"largest error of place {steps_text(judged)}")
     table.add_column("")
@@ -95,7 +95,7 @@ def _table(judged: JudgedModel, width: int) -> Table:
 
 
 def _add(table: Table, judged: JudgedModel, one: CheckedLine, *, wide: bool) -> None:
-    """A line, and below it what it gains."""
+    """Add a line, and its gain below it."""
     columns = len(table.columns) - 2
     steps = len(step_heads(judged))
     table.add_row(mark(one), one.cell.profile, *_numbers(one, steps, wide=wide)[:columns])
@@ -108,7 +108,7 @@ def _add(table: Table, judged: JudgedModel, one: CheckedLine, *, wide: bool) -> 
 
 
 def _numbers(one: CheckedLine, steps: int, *, wide: bool) -> list[Text | str]:
-    """One row, from its numbers on."""
+    """Return one row, from its numbers on."""
     if one.errors is None:
         reason = Text(harmless(f"{one.status}: {one.reason}"), "red")
         return [*["-"] * steps, *(["-", reason] if wide else [reason])]
@@ -124,7 +124,7 @@ def _numbers(one: CheckedLine, steps: int, *, wide: bool) -> list[Text | str]:
 
 
 def _disturbing(console: Console, judged: JudgedModel) -> None:
-    """What can disturb the comparison, a paragraph for each kind."""
+    """Print possible disturbances of the comparison, a paragraph for each kind."""
     found = groups(judged)
     if found:
         console.print("can disturb it:")
@@ -135,14 +135,14 @@ def _disturbing(console: Console, judged: JudgedModel) -> None:
 
 
 def _recommended(console: Console, judged: JudgedModel) -> None:
-    """The recommended settings, or why there are none."""
+    """Print the recommended settings, or why there are none."""
     console.print(Text(recommended_head(judged), "bold"))
     console.print(harmless(judged.patch), markup=False, highlight=False, soft_wrap=True)
 
 
 def document(judged: JudgedModel, facts: Mapping[str, str]) -> str:
-    """Facts, what was read, every joint, and the lines with their findings and errors; what is not
-    finite is null."""
+    """Return facts, the reading, every joint, and the lines with their findings and errors; values
+    that are not finite are null."""
     account = judged.account
     content = {
         "provenance": dict(facts),
@@ -173,7 +173,7 @@ def document(judged: JudgedModel, facts: Mapping[str, str]) -> str:
 
 
 def _cell(judged: JudgedModel, one: CheckedLine) -> dict[str, object]:
-    """A line: as a cell of any verification, with what it gains at each step and every error."""
+    """Return a line: as a cell of any verification, with its gain at each step and every error."""
     return cell_row(one) | {
         "settings": dict(one.settings),
         "gains": list(judged.gains(one)),
