@@ -1,1 +1,1 @@
-"""What every engine has to do, whoever wrote it: clauses, and whether an engine holds them."""
+"""The contract of every engine, whoever wrote it: clauses, and their check on an engine."""

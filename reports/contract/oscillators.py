@@ -1,13 +1,13 @@
-"""Second opinions on what nothing drives: oscillators, and a mechanism under gravity alone.
+"""Independent references for free motion: oscillators, and a mechanism under gravity alone.
 
 ::
 
     q'' + 2 decay q' + pace^2 (q - rest) = 0
 
 A rod on a pin, with a spring in the pin, or between its end and a point across its way; a block on
-a line, with a spring along it, or to a point of it. Without weight; let go at rest. What an engine
-makes of it is read back from samples at even times: q(n + 1) = a q(n) + b q(n - 1) + c holds of
-each such motion to the last digit, and a, b, c tell pace, decay and rest.
+a line, with a spring along it, or to a point of it. Without weight; released at rest. An engine's
+motion is identified from samples at even times: q(n + 1) = a q(n) + b q(n - 1) + c holds for each
+such motion to the last digit, and a, b, c determine pace, decay and rest.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ from sim.engine import Poses
 from sim.engine.measure import motion
 
 PACE, DECAY = 10.0, 0.5
-"""Of all of them, in rad/s and 1/s."""
+"""Pace and decay of all of them, in rad/s and 1/s."""
 PERIODS, SAMPLES, STEPS = 3, 16, 40
-"""Periods that are looked at, samples in each, and steps between two samples."""
+"""Number of periods, samples in each, and steps between two samples."""
 DURATION_S = PERIODS * math.tau / PACE
 LENGTH_M, MASS_KG, BLOCK_KG = 0.5, 1.2, 0.8
 BASE_RAD = 0.7
-"""Where the rod stands when nothing turns it, where that is to be chosen."""
+"""Angle of the rod when nothing turns it, where that can be chosen."""
 
 
 @dataclass(frozen=True)
 class Oscillator:
-    """One body at a spring, as it is let go: ``body`` is the link, or the slider, whose angle or
-    displacement q is."""
+    """One body at a spring, at its release: ``body`` is the link, or the slider, with the angle or
+    displacement q."""
 
     words: str
     scene: Scene
@@ -56,7 +56,7 @@ class Oscillator:
         return "rad" if self.body in self.scene.links else "m"
 
     def read(self, poses: Poses) -> SwingOscillator:
-        """The oscillation in the poses."""
+        """Return the oscillation in the poses."""
         seen = motion(self.scene, poses)
         if self.body in seen.links:
             return SwingOscillator.of(seen.links[self.body].theta, seen.time_s)
@@ -73,7 +73,7 @@ class SwingOscillator:
 
     @staticmethod
     def of(q: Array, time_s: Array) -> SwingOscillator:
-        """That of samples at even times."""
+        """Return the oscillation of samples at even times."""
         step_s = float(time_s[1] - time_s[0])
         if not np.isfinite(q).all():
             return SwingOscillator(math.nan, math.nan, math.nan)
@@ -88,7 +88,7 @@ class SwingOscillator:
 
 
 def oscillators() -> Iterator[Oscillator]:
-    """One for each kind of spring, those of rods first."""
+    """Yield one oscillator for each kind of spring, rods first."""
     inertia = MASS_KG * LENGTH_M**2 / 3.0
     stiff, damping = inertia * PACE**2, 2.0 * DECAY * inertia
     # The free angle lies beyond half a turn, so that a wrapped angle is not where it has to be.
@@ -108,7 +108,7 @@ def oscillators() -> Iterator[Oscillator]:
 
 
 def rod_scene(points: dict[str, Point] | None = None) -> Scene:
-    """A rod from A to B on a pin, without weight; with other points of the ground."""
+    """Return a rod from A to B on a pin, without weight; with other points of the ground."""
     rod = Link(
         "rod",
         {"A": (0.0, 0.0), "B": (LENGTH_M, 0.0)},
@@ -122,7 +122,7 @@ def rod_scene(points: dict[str, Point] | None = None) -> Scene:
 
 
 def block_scene() -> Scene:
-    """A block on a line beside a rod that nothing moves; E lies on the line, 0.6 m before it."""
+    """Return a block on a line beside a still rod; E lies on the line, 0.6 m before it."""
     through, direction = (0.1, -0.2), 0.5
     behind = through[0] - 0.6 * math.cos(direction), through[1] - 0.6 * math.sin(direction)
     slider = Slider("C", "C", GROUND, through, direction, mass_kg=BLOCK_KG, inertia_kg_m2=0.01)
@@ -130,7 +130,7 @@ def block_scene() -> Scene:
 
 
 def rod_state(scene: Scene, theta: float, omega: float, alpha: float) -> State:
-    """The rod at an angle."""
+    """Return the state of the rod at an angle."""
     c, s = math.cos(theta), math.sin(theta)
     tip = LENGTH_M * c, LENGTH_M * s
     return State(
@@ -156,7 +156,7 @@ def rod_state(scene: Scene, theta: float, omega: float, alpha: float) -> State:
 
 
 def block_state(scene: Scene, place_m: float, speed_m_s: float, push_m_s2: float) -> State:
-    """The block at a displacement, and the rod at rest."""
+    """Return the state of the block at a displacement, and the rod at rest."""
     slider, rod = scene.sliders["C"], rod_state(scene, BASE_RAD, 0.0, 0.0)
     c, s = math.cos(slider.direction_rad), math.sin(slider.direction_rad)
     x, y = slider.through_m
@@ -191,11 +191,11 @@ def _block(words: str, spring: Spring, rest: float, amplitude: float) -> Oscilla
 
 
 def centres(scene: Scene, state: State, duration_s: float, steps: int) -> Mapping[str, Point]:
-    """Where the centres of mass are a while after the driver has let go [m].
+    """Return the centres of mass a while after the driver's release [m].
 
-    The equations of motion of all bodies (`analytic.multibody`), stepped by the fourth-order
-    Runge-Kutta method, without correction of what the joints drift: it is for short motions, and to
-    a thousandth.
+    The equations of motion of all bodies (`analytic.multibody`) are stepped by the fourth-order
+    Runge-Kutta method, without correction of the joints' drift: it is for short motions, and to a
+    thousandth.
 
     Raises CrankcheckError for a freedom without mass, or a start in a change point.
 
@@ -204,11 +204,11 @@ def centres(scene: Scene, state: State, duration_s: float, steps: int) -> Mappin
     scene : Scene
         A mechanism with its masses and its gravity; loads and friction are left out.
     state : State
-        The mechanism when it is let go.
+        The mechanism at its release.
     duration_s : float
-        For how long it is free [s].
+        The duration of free motion [s].
     steps : int
-        Of the integration.
+        Steps of the integration.
     """
     heavy = replace(scene, loads={}, springs={}, friction={})
     plain = Baumgarte(0.0, 0.0, step_s=duration_s / steps)

@@ -1,4 +1,4 @@
-"""Put an engine to the clauses, each in a process apart: what ends it costs its clause alone."""
+"""Check an engine against the clauses, each in a process apart: a crash costs its clause alone."""
 
 from collections.abc import Callable, Sequence
 from contextlib import closing
@@ -29,17 +29,17 @@ SCENES = (
     "shaper",
     "scotch-yoke",
 )
-"""One of each kind of joint; the first is what every engine is held to."""
+"""One scene of each kind of joint; the first applies to every engine."""
 THE_SCENE = "EC21"
-"""The clause that a session is the scene: where it is held nowhere, there is no session that the
-others could say anything of."""
+"""The clause that a session is the scene: where it is held nowhere, there is no session for the
+others."""
 Answer = Literal["held", "broken", "not tried"]
 
 
 @dataclass(frozen=True)
 class Ruling:
-    """What came of a clause: the scenes that it is held on, what breaks it, and why it was not
-    tried on others."""
+    """Result of a clause: the scenes that hold it, its breaches, and the reasons for no trial on
+    others."""
 
     id: str
     scenes: tuple[str, ...] = ()
@@ -58,7 +58,7 @@ class Ruling:
 
 
 def put_to(subject: Engine, clause: Clause, scenes: Sequence[str] = SCENES) -> Ruling:
-    """What comes of a clause in an engine."""
+    """Return the ruling on a clause for an engine."""
     held, breaches, untried = [], [], []
     for name in scenes:
         try:
@@ -78,14 +78,14 @@ def put_to(subject: Engine, clause: Clause, scenes: Sequence[str] = SCENES) -> R
 
 
 def _raised(error: Exception) -> str:
-    """What an engine raised where it should not."""
+    """Return the words for an engine's unexpected error."""
     if isinstance(error, BrokenContractError):
         return error.fault
     return str(error) if isinstance(error, EngineError) else f"raised {failure(error)}"
 
 
 def refuses_all(rulings: Sequence[Ruling]) -> bool:
-    """Whether nothing could be tried: no clause is held, or the scene itself was tried nowhere."""
+    """True if nothing could be tried: no clause is held, or the scene itself was tried nowhere."""
     by_id = {ruling.id: ruling.answer for ruling in rulings}
     return by_id.get(THE_SCENE) == "not tried" or set(by_id.values()) == {"not tried"}
 
@@ -97,7 +97,7 @@ def put_to_all(
     limits: Limits,
     done: Callable[[Ruling], None] = lambda _: None,
 ) -> list[Ruling]:
-    """What comes of clauses, by their ids, in that order; ``done`` hears of each as it ends."""
+    """Return the rulings on clauses, by their ids, in that order; ``done`` gets each as it ends."""
     results: dict[int, Ruling] = {}
     with closing(as_they_end(partial(_apart, name), clauses, jobs, limits)) as ends:
         for index, result in ends:
@@ -107,10 +107,10 @@ def put_to_all(
 
 
 def named(name: str, limits: Limits) -> tuple[str, str]:
-    """What an engine calls itself, and its version, looked for in a process apart.
+    """Return an engine's own name and its version, determined in a process apart.
 
-    Raises CrankcheckError for an engine that is not there, or none; one that hangs, or ends its
-    process, when it is imported.
+    Raises CrankcheckError for a missing or invalid engine; one that hangs, or ends its process,
+    when it is imported.
     """
     with closing(Isolated[tuple[str, str]](limits)) as child:
         answer = child.call(_name_and_version, name)
@@ -130,7 +130,7 @@ def _name_and_version(name: str) -> tuple[str, str]:
 
 
 def by_name(name: str, clause: str) -> Ruling:
-    """As `put_to`, in a process that knows neither the engine nor the clause."""
+    """Return `put_to`, in a process that knows neither the engine nor the clause."""
     return put_to(engine(name), CLAUSES[clause])
 
 
@@ -143,12 +143,12 @@ def _apart(name: str, child: Isolated[Ruling], clause: str) -> Ruling:
 
 MARKS = {"held": ("ok ", "green"), "broken": ("OUT", "bold red"), "not tried": ("-  ", "dim")}
 BREACHES = 4
-"""That are told of a clause; the others are counted."""
+"""Number of breaches of a clause that are listed; the others are counted."""
 INDENT = 10
 
 
 def show(console: Console, called: str, rulings: Sequence[Ruling], scenes: Sequence[str]) -> None:
-    """A line for each clause; below it what breaks it, why it matters and what to look at."""
+    """Print a line for each clause; below it its breaches, reason and cure."""
     for ruling in rulings:
         mark, style = MARKS[ruling.answer]
         line = Text(f"{mark} {ruling.id}  ", style)
@@ -166,7 +166,7 @@ def show(console: Console, called: str, rulings: Sequence[Ruling], scenes: Seque
 
 
 def _below(ruling: Ruling) -> list[str]:
-    """What is to be said of a clause that is not held."""
+    """Return the lines below a clause that is not held."""
     if ruling.answer == "held":
         return []
     if ruling.answer == "not tried":
@@ -189,7 +189,7 @@ def _verdict(called: str, rulings: Sequence[Ruling]) -> Text:
 
 
 def _refused(rulings: Sequence[Ruling], scenes: Sequence[str]) -> list[str]:
-    """The scenes that no clause could be tried on, and why."""
+    """Return the scenes on which no clause could be tried, with the reasons."""
     tried = {name for ruling in rulings for name in ruling.scenes}
     tried |= {text.partition(": ")[0] for ruling in rulings for text in ruling.breaches}
     reasons: dict[str, str] = {}

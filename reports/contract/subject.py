@@ -1,4 +1,4 @@
-"""An engine with a scene, as the clauses look at it: opened at the reference's own state."""
+"""An engine with a scene, in the clauses' view: opened at the reference's own state."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ from sim.own_engine.watched import BrokenContractError
 from sim.run import run
 
 STEPS = 600
-"""Steps in a period, where a clause says nothing else."""
+"""Default number of steps in a period."""
 ROUNDING = 1e-10
-"""What two ways to the same state may differ by, over the largest number in it."""
+"""Largest difference of two ways to the same state, over the largest number in it."""
 
 
 class NotTriedError(Exception):
-    """Why a clause has nothing to look at: the engine says that it can not hold the scene, or not
-    with that drive, which is no fault of its; or it does not promise what the clause is of."""
+    """Reason why a clause does not apply: the engine declares that it cannot hold the scene, or not
+    with that drive, which is no fault; or it does not promise the subject of the clause."""
 
 
 @dataclass(frozen=True)
 class Subject:
-    """What a clause is put to."""
+    """Subject of a clause."""
 
     engine: Engine
     scene: Scene
@@ -46,23 +46,23 @@ class Subject:
         return truth_of(Same(self.scene)).start
 
     def at(self, time_s: float) -> State:
-        """The mechanism at a time."""
+        """Return the mechanism at a time."""
         return solve(self.scene, np.array([time_s]), bound=False).state()
 
     def in_scene(self, scene: Scene) -> Subject:
-        """The engine with another scene."""
+        """Return the engine with another scene."""
         return replace(self, scene=scene)
 
     def driven_by(self, law: Law) -> Subject:
-        """The engine with the scene under another law."""
+        """Return the engine with the scene under another law."""
         return self.in_scene(replace(self.scene, driver=replace(self.scene.driver, law=law)))
 
     def dt_s(self, steps: int = STEPS) -> float:
-        """A step of which so many are a period [s]."""
+        """Return the step for ``steps`` steps in a period [s]."""
         return self.scene.driver.law.period_s / steps
 
     def settings(self, profile: str = "tuned") -> Settings:
-        """All settings of a profile."""
+        """Return all settings of a profile."""
         return resolved(profile_of(self.engine, profile), None)
 
     def opened(
@@ -72,8 +72,8 @@ class Subject:
         start: State | None = None,
         steps: int = STEPS,
     ) -> Session:
-        """A new session at a state, that of time 0 if none, with so many steps in a period. Raises
-        NotTriedError."""
+        """Open a session at a state, by default that of time 0, with so many steps in a period.
+        Raises NotTriedError."""
         state, settings = start or self.start, self.settings(profile)
         try:
             return self.engine.open(self.scene, state, settings, self.dt_s(steps), drive)
@@ -83,24 +83,24 @@ class Subject:
             raise NotTriedError(str(error)) from None
 
     def reports_forces(self) -> None:
-        """Raises NotTriedError where the engine says that it reports no forces."""
+        """Raise NotTriedError where the engine declares that it reports no forces."""
         if self.engine.forces_of == "nothing":
             raise NotTriedError("forces_of says that it reports no forces")
 
     def force_session(self, profile: str = "tuned", steps: int = STEPS) -> ForceSession:
-        """As `opened`, of an engine that reports forces. Raises NotTriedError."""
+        """Open as `opened`, for an engine that reports forces. Raises NotTriedError."""
         self.reports_forces()
         return cast(ForceSession, self.opened(profile, steps=steps))
 
     def acting(self, steps: int) -> Forces:
-        """The forces of a period, in so many steps, each logged. Raises NotTriedError."""
+        """Return the forces of a period, in so many steps, each logged. Raises NotTriedError."""
         forces = self.force_session(steps=steps).record_forces(steps, 1).forces
         if forces is None:
             raise EngineError("record_forces gave a log without forces")
         return forces
 
     def ran(self, steps_per_turn: int, turns: float, profile: str = "tuned", every: int = 1) -> Run:
-        """A run from time 0. Raises NotTriedError."""
+        """Return a run from time 0. Raises NotTriedError."""
         try:
             done = run(
                 self.scene,
@@ -120,12 +120,12 @@ class Subject:
         return done
 
     def errors(self, done: Run) -> Errors | None:
-        """The errors of a run; None where it logged nothing."""
+        """Return the errors of a run; None where it logged nothing."""
         return compare(Beside.of(truth_of(Same(self.scene)), done))
 
 
 def numbers(poses: Poses, names: Sequence[str] = ()) -> Array:
-    """All positions and velocities of the bodies, a row per sample."""
+    """Return all positions and velocities of the bodies, a row per sample."""
     rows = []
     for body in (poses.bodies[name] for name in names or sorted(poses.bodies)):
         rows += [body.origin, body.velocity, body.theta[:, None], body.omega[:, None]]
@@ -133,8 +133,8 @@ def numbers(poses: Poses, names: Sequence[str] = ()) -> Array:
 
 
 def apart(one: Poses, other: Poses) -> float:
-    """How far two logs of the same instants differ, over the largest number; infinite where they
-    do not have as many samples, or anything is not finite."""
+    """Return the difference of two logs of the same instants, over the largest number; infinite
+    where they have different numbers of samples, or anything is not finite."""
     a, b = numbers(one), numbers(other)
     if a.shape != b.shape or not (np.isfinite(a).all() and np.isfinite(b).all()):
         return float("inf")
@@ -142,16 +142,16 @@ def apart(one: Poses, other: Poses) -> float:
 
 
 Check = Callable[[Subject], Iterator[str]]
-"""Yields what is wrong, in words and numbers: nothing where the clause is held. Raises
-NotTriedError where there is nothing to look at."""
+"""Check that yields faults, in words and numbers: nothing where the clause is held. Raises
+NotTriedError where it does not apply."""
 
 
 @dataclass(frozen=True)
 class Clause:
-    """One thing that every engine has to do.
+    """One duty of every engine.
 
-    ``title`` says what, ``why`` what goes wrong otherwise, ``cure`` what to look at. A clause that
-    is not ``of_scenes`` is put to the first scene alone that it can be put to.
+    ``title`` names it, ``why`` the harm of its breach, ``cure`` the place to look at. A clause that
+    is not ``of_scenes`` is tried on the first possible scene alone.
     """
 
     id: str

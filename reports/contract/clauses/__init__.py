@@ -1,4 +1,4 @@
-"""All clauses, by what they are about; a new one is an entry in one of these files."""
+"""All clauses by subject; a new one is an entry in one of these files."""
 
 from reports.contract.clauses import (
     declared,

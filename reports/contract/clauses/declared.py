@@ -1,4 +1,4 @@
-"""What an engine says of itself: profiles, version, and the settings that it takes."""
+"""Declarations of an engine: profiles, version, and accepted settings."""
 
 import math
 import re
@@ -64,19 +64,19 @@ def _settings(subject: Subject) -> Iterator[str]:
 
 
 def _wrong(value: SettingValue) -> list[SettingValue]:
-    """What no setting of that kind can be."""
+    """Return values that no setting of that kind can have."""
     if isinstance(value, float):
         return [math.nan, math.inf, -math.inf, NONSENSE]
     return [NONSENSE]
 
 
 def _taken(subject: Subject, settings: dict[str, SettingValue]) -> bool:
-    """Whether settings are refused neither at once nor with the scene."""
+    """True if settings are refused neither at once nor with the scene."""
     return not _refusal(subject, settings) and not _refused_at_open(subject, settings)
 
 
 def _refusal(subject: Subject, settings: dict[str, SettingValue]) -> str:
-    """What the engine has against settings, by SettingError; any other error is raised."""
+    """Return the engine's refusal of settings by SettingError; any other error is raised."""
     try:
         subject.engine.check(settings)
     except SettingError as error:
@@ -85,7 +85,7 @@ def _refusal(subject: Subject, settings: dict[str, SettingValue]) -> str:
 
 
 def _refused_at_open(subject: Subject, settings: dict[str, SettingValue]) -> bool:
-    """Whether what `check` can not see without the scene is refused with it."""
+    """True if settings are refused with the scene, as `check` cannot see them without it."""
     scene, start, dt_s = subject.scene, subject.start, subject.dt_s()
     try:
         subject.engine.open(scene, start, settings, dt_s, "prescribed")
@@ -110,7 +110,7 @@ def _told_back(subject: Subject) -> Iterator[str]:
 
 
 def _felt(subject: Subject, one: str, other: str) -> Iterator[str]:
-    """Whether two profiles that have an engine hold something else have it do something else."""
+    """Yield a fault where two profiles hold different settings and run the same."""
     asked, others = subject.settings(one), subject.settings(other)
     kept = [subject.engine.holds(s, subject.dt_s(), "prescribed") for s in (asked, others)]
     if kept[0] == kept[1]:
@@ -125,7 +125,7 @@ def _felt(subject: Subject, one: str, other: str) -> Iterator[str]:
 
 
 def _same(held: object, asked: SettingValue) -> bool:
-    """Whether a setting is what was asked for, but for what a number loses on its way."""
+    """True if a setting is the requested one, but for the loss of a number on its way."""
     if isinstance(asked, float) and isinstance(held, float):
         return math.isclose(held, asked, rel_tol=1e-9)
     return held == asked

@@ -1,4 +1,4 @@
-"""Loads and friction that an engine says it applies: that they are felt, in full and in time."""
+"""Loads and friction that an engine declares: they act in full and in time."""
 
 import math
 from collections.abc import Iterator
@@ -17,8 +17,8 @@ from reports.contract.clauses.reactions import LATE, OFF, START, STEPS, largest,
 from reports.contract.subject import Clause, NotTriedError, Subject, numbers
 
 SHARE = 0.98
-"""Of all samples that have to be within `OFF`: where a joint turns back friction jumps, and what is
-felt there hangs on a rounding."""
+"""Share of all samples that have to be within `OFF`: where a joint turns back friction jumps, and
+its value there depends on rounding."""
 FALL_STEPS = 60
 CENTRE = "centre of mass"
 """A point that no scene has, as names hold no space."""
@@ -49,7 +49,7 @@ def _loads(subject: Subject) -> Iterator[str]:
 
 
 def _as_weight(subject: Subject) -> Iterator[str]:
-    """Free, a load of its weight at its centre of mass moves a body as gravity does."""
+    """Yield faults where, free, loads like the weights move bodies otherwise than gravity."""
     scene, fall_s = subject.scene, FALL_STEPS * subject.dt_s()
     pull = 0.4 * scene.longest_m / fall_s**2
     heavy = replace(scene, gravity_m_s2=(0.6 * pull, -0.8 * pull))
@@ -71,7 +71,7 @@ def _as_weight(subject: Subject) -> Iterator[str]:
 
 
 def _weighed(scene: Scene, pull: float, down_rad: float) -> Scene:
-    """The scene with the weight of each body as a load at a point of its own."""
+    """Return the scene with the weight of each body as a load at a point of its own."""
     links = {
         name: replace(link, points={**link.points, f"{CENTRE} {name}": centre_of(scene, name)})
         for name, link in scene.links.items()
@@ -103,13 +103,13 @@ def _friction(subject: Subject) -> Iterator[str]:
 
 
 def _size(scene: Scene) -> float:
-    """The largest force that the motion itself asks for [N]."""
+    """Return the largest force of the motion itself [N]."""
     times = np.linspace(0.0, scene.driver.law.period_s, 50)
     return largest(kinetostatics.forces(scene, times, bound=False, skip_dead_points=True))
 
 
 def _unfelt(subject: Subject, changed: Scene, share: float) -> Iterator[str]:
-    """What of a change of the scene is not in the engine's forces as in the reference's."""
+    """Yield changes of the reference forces by a change of the scene that the engine's lack."""
     scenes = (changed, subject.scene)
     own = [subject.in_scene(each).acting(STEPS).stretch(slice(START, None)) for each in scenes]
     true = [
@@ -141,7 +141,7 @@ def _unfelt(subject: Subject, changed: Scene, share: float) -> Iterator[str]:
 
 
 def _change(one: Forces, other: Forces) -> dict[str, Array]:
-    """What all series differ by."""
+    """Return the differences of all series."""
     before = dict(named(other))
     return {name: each - before[name] for name, each in named(one)}
 
@@ -151,7 +151,7 @@ def _kind(name: str) -> str:
 
 
 def _most(series: dict[str, Array], kind: str) -> float:
-    """The largest number in the series of a kind."""
+    """Return the largest number in the series of a kind."""
     each = [np.nanmax(np.abs(values)) for name, values in series.items() if _kind(name) == kind]
     return max(map(float, each), default=0.0)
 

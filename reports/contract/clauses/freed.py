@@ -1,4 +1,4 @@
-"""What is let go: springs that hold it, its energy, and motors that go by its speed."""
+"""Free motion: springs that hold it, its energy, and motors that depend on its speed."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -37,18 +37,18 @@ from sim.engine.measure import energy, motion
 from sim.run.check import refuse_other_model
 
 PACE_OFF, DECAY_OFF, REST_OFF = 0.02, 0.2, 0.02
-"""How far the pace of an oscillation may be from that of its spring, over it; its decay, over it;
-and its place of rest, over the amplitude: far above what steps cost, far below another spring."""
+"""Largest errors of an oscillation: of its pace, over that of its spring; its decay, over it; and
+its place of rest, over the amplitude: far above the effect of steps, far below another spring."""
 ENERGY_STEPS = 1200, 2400
 ENERGY_OFF, SHRUNK = 0.02, 0.7
-"""How much of what goes back and forth may be gained or lost in a period: so much, or less than
-that share of what was at half the steps."""
+"""Largest gain or loss of exchanged energy in a period: this part, or less than that share of the
+value at half the steps."""
 FIRST, LAST, RATE = 1.0, 4.0, 2.0
-"""Speeds [rad/s or m/s] at the start and in the end, and how fast what is left dies away [1/s]."""
+"""Speeds [rad/s or m/s] at the start and in the end, and decay rate of their difference [1/s]."""
 SETTLING_STEPS, SETTLED = 600, 3.0
-"""Steps in which a speed settles, and for how long it does, over 1 / `RATE`."""
+"""Steps in which a speed settles, and the duration, over 1 / `RATE`."""
 SPEED_OFF = 0.02
-"""How far it may be from its closed form, over all that it changes by."""
+"""Largest difference to its closed form, over its whole change."""
 
 
 def _held(subject: Subject) -> Iterator[str]:
@@ -85,7 +85,7 @@ def _swings(subject: Subject) -> Iterator[str]:
 def _each_spring(
     subject: Subject, check: Callable[[Oscillator, Subject], Iterator[str]]
 ) -> Iterator[str]:
-    """What is wrong with the springs of each kind that an engine can hold: one without sliders has
+    """Yield faults of the springs of each kind that an engine can hold: one without sliders has
     none there."""
     if not subject.engine.applies_springs:
         raise NotTriedError("applies_springs says that it takes no springs")
@@ -110,8 +110,8 @@ def _energy(subject: Subject) -> Iterator[str]:
 
 
 def _drift(subject: Subject, steps: int) -> float:
-    """How much of the energy that goes back and forth is gained or lost at most in a period of so
-    many steps, under gravity."""
+    """Return the largest gain or loss, as a part of the exchanged energy, in a period of ``steps``
+    steps, under gravity."""
     scene = pulled(subject.scene)
     session = subject.in_scene(scene).opened(drive="free", start=subject.start, steps=steps)
     log = session.record(steps, 1)
@@ -147,12 +147,12 @@ def _by_speed(subject: Subject) -> Iterator[str]:
 
 
 def _by_rate(inertia: float) -> Polynomial:
-    """What makes a mass, or a moment of inertia, settle."""
+    """Return the load over speed under which a mass, or a moment of inertia, settles."""
     return Polynomial((RATE * LAST * inertia, -RATE * inertia))
 
 
 def _settling(scene: Scene, load: Load) -> Scene:
-    """The scene for as long as a speed settles."""
+    """Return the scene for the duration of settling."""
     driver = Driver(scene.driver.link, Released(BASE_RAD, 0.0, SETTLED / RATE))
     return replace(scene, loads={load.name: load}, driver=driver)
 
@@ -160,7 +160,7 @@ def _settling(scene: Scene, load: Load) -> Scene:
 def _unsettled(
     subject: Subject, start: State, words: str, speed: Callable[[Motion], Array]
 ) -> Iterator[str]:
-    """What of a speed that begins at `FIRST` does not settle at `LAST`, at `RATE`."""
+    """Yield a fault of a speed that begins at `FIRST` and should settle at `LAST`, at `RATE`."""
     session = subject.opened(drive="free", start=start, steps=SETTLING_STEPS)
     poses = session.record(SETTLING_STEPS, SETTLING_STEPS // 20).poses
     found = speed(motion(subject.scene, poses))

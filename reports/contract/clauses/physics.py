@@ -1,4 +1,4 @@
-"""What comes out of the steps: the driven crank, errors over the step, gravity."""
+"""Results of the steps: the driven crank, errors over the step, gravity."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping
@@ -23,21 +23,21 @@ from reports.judge.three_steps import convergence
 from sim.engine import Poses
 
 DRIVE_RAD = 1e-9
-"""A crank that is off by more is not prescribed."""
+"""Largest error of a prescribed crank."""
 STEPS = (180, 360, 720)
 SLACK = 0.5
-"""How far a slope over three steps may be from the order that it tends to."""
+"""Largest distance of a slope over three steps from its asymptotic order."""
 SOLVED = 1e-9
-"""An error of place, as a pure number, that solving to rounding may leave."""
+"""Largest position error, as a pure number, after solving to rounding."""
 TWICE, NONE = 2.0, 1e-9
-"""Errors of two runs that ought to err alike differ by less than this factor, or are none."""
+"""Errors of two runs that should be equal differ by less than this factor, or are negligible."""
 SPEEDS = {"fifty times as fast": 50.0, "a thousandth as fast": 1e-3, "backwards": -1.0}
 FALL_STEPS = 60
 FALL = 0.2
-"""How far a body without joints falls meanwhile, over the longest link."""
+"""Fall of a body without joints meanwhile, over the longest link."""
 FALL_OFF = 0.1
-"""How far a free motion may be from that of the equations, over its size: far above what steps
-and joints that give way cost, far below what a body without weight or with another's mass does."""
+"""Largest difference of a free motion to that of the equations, over its size: far above the effect
+of steps and of joints that give way, far below a body without weight or with another's mass."""
 
 
 def _crank(subject: Subject) -> Iterator[str]:
@@ -120,8 +120,8 @@ def _speed(subject: Subject) -> Iterator[str]:
 
 
 def pure_errors(subject: Subject) -> Mapping[str, float]:
-    """The largest error of each quantity that is reported, over a turn and a half, after what may
-    be the start."""
+    """Return the largest reported error of each quantity, over a turn and a half, after the
+    start."""
     done = subject.ran(400, 1.5)
     errors = subject.errors(done)
     if errors is None or done.status != "ok":
@@ -132,7 +132,7 @@ def pure_errors(subject: Subject) -> Mapping[str, float]:
 
 
 def unlike(plain: Mapping[str, float], other: Mapping[str, float], words: str) -> Iterator[str]:
-    """What errs otherwise in a scene that is the same for a mechanism."""
+    """Yield errors that differ in a scene that is equivalent as a mechanism."""
     for name in plain.keys() | other.keys():
         one, two = plain.get(name, math.inf), other.get(name, math.inf)
         if not (one <= TWICE * two + NONE and two <= TWICE * one + NONE):
@@ -162,7 +162,7 @@ def _gravity(subject: Subject) -> Iterator[str]:
 
 
 def _apart(own: Array, wanted: Array, size: float) -> str:
-    """How places (n, 2) move and ought to, where that differs by too much over a size [m]."""
+    """Return actual and required motion of places (n, 2), if too far apart over a size [m]."""
     off, gone, whole = (float(np.linalg.norm(each)) for each in (own - wanted, own, wanted))
     if off <= FALL_OFF * size:
         return ""
@@ -170,7 +170,7 @@ def _apart(own: Array, wanted: Array, size: float) -> str:
 
 
 def _centres(scene: Scene, poses: Poses, sample: int) -> Array:
-    """The centres of mass of all bodies at a sample [m], (n, 2)."""
+    """Return the centres of mass of all bodies at a sample [m], (n, 2)."""
     rows = []
     for name in bodies(scene):
         body, (x, y) = poses.bodies[name], centre_of(scene, name)

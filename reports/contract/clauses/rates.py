@@ -1,7 +1,7 @@
-"""Velocities and accelerations: of which instant they are, and that they are those of the places.
+"""Velocities and accelerations: their instants, and their agreement with the positions.
 
-They are held to the engine's own path, which may be off as a whole: its differences, and how these
-change in the reference, tell how many steps later or earlier a rate is.
+They are compared with the engine's own path, which may be off as a whole: its differences, and
+their change in the reference, show by how many steps a rate is late or early.
 """
 
 from collections.abc import Iterator
@@ -16,21 +16,21 @@ from sim.engine import Session
 from sim.engine.measure import motion
 
 STEPS = 800
-"""Of one turn."""
+"""Number of steps in one turn."""
 LATE = 0.25
-"""Steps that a rate may be from the instant that it is said to be of."""
+"""Largest distance of a rate from its stated instant, in steps."""
 OFF = 0.05
-"""How far a rate may be from the path's own, over the largest of that body."""
+"""Largest difference of a rate to the path's own, over the largest of that body."""
 SLOW = 1e-2
-"""Below this, over the scale of the scene, a rate is none: what it differs by is rounding, or
-what joints give way."""
+"""Rate, over the scale of the scene, below which it counts as 0: its differences are rounding, or
+the give of joints."""
 STILL = 1e-3
-"""Below this, over the largest of all, a rate changes too little to tell when it is of."""
+"""Change of a rate, over the largest of all, below which its instant is undetermined."""
 
 
 @dataclass(frozen=True)
 class _Rate:
-    """A rate of a body (T, n) as it is reported, by its path's differences, and how that changes in
+    """A rate of a body (T, n) as reported, by its path's differences, and the change of these in
     the reference; without the start, in which an engine may settle. ``scale`` is that of a body as
     fast as the driver, as long as the longest link."""
 
@@ -41,13 +41,13 @@ class _Rate:
     scale: float
 
     def late_s(self) -> float:
-        """How much later than the path's own it is [s]."""
+        """Return its delay against the path's own [s]."""
         return float((self.reported - self.own).ravel() @ self.change.ravel()) / float(
             (self.change**2).sum()
         )
 
     def off(self, shift_s: float) -> float:
-        """How far it is from the path's own, of an instant so much later, over its own largest."""
+        """Return its difference to the path's own, that much later, over its own largest."""
         size = max(float(np.abs(self.own).max()), SLOW * self.scale)
         return float(np.abs(self.reported - self.own - shift_s * self.change).max()) / size
 
@@ -78,7 +78,7 @@ def _accelerations(subject: Subject) -> Iterator[str]:
 
 
 def _of_log(subject: Subject, session: Session, order: int) -> list[_Rate]:
-    """The rates of links and points over a turn: velocities for 1, accelerations for 2."""
+    """Return the rates of links and points over a turn: velocities for 1, accelerations for 2."""
     held = motion(subject.scene, session.record(STEPS, 1).poses)
     truth = solve(subject.scene, held.time_s, bound=False)
     dt_s, rates = subject.dt_s(STEPS), []
@@ -99,7 +99,7 @@ def _of_log(subject: Subject, session: Session, order: int) -> list[_Rate]:
 def _differences(
     place: Array, reported: Array, true: Array, dt_s: float, order: int
 ) -> tuple[Array, Array, Array]:
-    """What is reported, the path's own, and how that changes in the reference."""
+    """Return the reported rate, the path's own, and its change in the reference."""
     own = (place[2:] - place[:-2]) / (2 * dt_s)
     change = true[1:-1]
     if order == 2:
@@ -110,8 +110,8 @@ def _differences(
 
 
 def _faults(rates: list[_Rate], said: float, dt_s: float, what: str, where: str) -> Iterator[str]:
-    """The body whose rate is farthest from the instant that it is said to be of, and the one that
-    is farthest from the path."""
+    """Yield the body whose rate is farthest from its stated instant, and the one that is farthest
+    from the path."""
     for kind in ("link", "point"):
         same = [rate for rate in rates if rate.body.startswith(kind)]
         change = max(float(np.sqrt((rate.change**2).mean())) for rate in same)

@@ -1,5 +1,5 @@
-"""Forces that an engine reports: that nothing else changes for them, that they hold every body in
-its motion, and at which instants."""
+"""Reported forces of an engine: they change nothing else, balance every body in its motion, and
+belong to stated instants."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -16,20 +16,20 @@ from models.scene.joints import block_name, centre_of, joined_at, local_point, m
 from reports.contract.subject import Clause, Subject, numbers
 
 STEPS = 800
-"""Of one turn."""
+"""Number of steps in one turn."""
 START = STEPS // 8
 """Samples in which an engine may settle."""
 OFF = 0.05
-"""How much of the largest force may be left on a body that ought to be in equilibrium, and of that
-force over the longest link of a moment: far above what steps cost, below any wrong sign."""
+"""Largest residual force on a body in equilibrium, over the largest force, and of a moment over
+that force times the longest link: far above the effect of steps, below any wrong sign."""
 LATE = 0.25
-"""Steps that forces may be from the instant that they say."""
+"""Largest distance of forces from their stated instant, in steps."""
 STEADY = 0.01
-"""What changes less over a turn, over its size or that of another's change, does not tell when."""
+"""Change over a turn, over its size or another's change, below which the instant is unknown."""
 CLOSED = 1e-9
-"""What all forces of a pin may add up to, over the largest."""
+"""Largest sum of all forces of a pin, over the largest."""
 PULL = 0.5
-"""Gravity in which forces are looked at, over the acceleration of the longest link's end."""
+"""Gravity for the tests of forces, over the acceleration of the longest link's end."""
 
 
 def _same_motion(subject: Subject) -> Iterator[str]:
@@ -71,7 +71,7 @@ def _declared(subject: Subject) -> Iterator[str]:
 
 
 def named(forces: Forces) -> Iterator[tuple[str, Array]]:
-    """All series in words."""
+    """Yield all series with their names in words."""
     for point, by_body in forces.pins.items():
         for body, force in by_body.items():
             yield f"force of pin {point} on {body}", force
@@ -82,7 +82,7 @@ def named(forces: Forces) -> Iterator[tuple[str, Array]]:
 
 
 def largest(forces: Forces) -> float:
-    """The largest of all forces [N]."""
+    """Return the largest of all forces [N]."""
     each = [force for by_body in forces.pins.values() for force in by_body.values()]
     each += [slider.normal for slider in forces.sliders.values()]
     return max(float(np.nan_to_num(np.abs(force)).max(initial=0.0)) for force in each)
@@ -108,7 +108,7 @@ def _equilibrium(subject: Subject) -> Iterator[str]:
 
 
 def pulled(scene: Scene) -> Scene:
-    """The scene in a gravity that shows beside its inertia forces."""
+    """Return the scene in a gravity that shows beside its inertia forces."""
     pull = PULL * scene.longest_m * scene.pace_rad_s**2
     return replace(scene, gravity_m_s2=(0.6 * pull, -0.8 * pull))
 
@@ -128,7 +128,7 @@ class _Held:
         return next((s.name for s in sliders if block_name(s) == self.body), "")
 
     def _turning(self, name: str) -> tuple[Array, Array, Array]:
-        """Angle, rate and its rate of a link, of the ground, or of the guide of a block."""
+        """Return angle, rate and its rate of a link, of the ground, or of the guide of a block."""
         if name == GROUND:
             zero = np.zeros(len(self.motion.time_s))
             return zero, zero, zero
@@ -136,7 +136,7 @@ class _Held:
         return link.theta, link.omega, link.alpha
 
     def left_over(self, forces: Forces) -> tuple[Array, Array]:
-        """The force, and the moment about the centre of mass; 0 where some of it is not told."""
+        """Return the residual force, and moment about the centre of mass; 0 where unknown."""
         slider = self.scene.sliders[self._slider] if self._slider else None
         theta, omega, alpha = self._turning(slider.on if slider else self.body)
         point = slider.point if slider else next(iter(self.scene.links[self.body].points))
@@ -159,7 +159,7 @@ class _Held:
         return np.where(told, force, 0.0), np.where(told, moment, 0.0)
 
     def _from_joints(self, forces: Forces) -> Iterator[tuple[Array, Array, Array]]:
-        """Where each joint acts on it, its force and its couple."""
+        """Yield the place of each joint on it, its force and its couple."""
         none = np.zeros(len(self.motion.time_s))
         for point, by_body in forces.pins.items():
             if self.body in by_body:
@@ -178,7 +178,7 @@ _AXES = np.array([1.0, 1j])
 
 
 def _matter(scene: Scene, body: str) -> tuple[float, float]:
-    """Mass and inertia; a block may be without."""
+    """Return mass and inertia; a block may be without."""
     massless = [block_name(s) for s in scene.sliders.values() if s.mass_kg == 0.0]
     return (0.0, 0.0) if body in massless else mass_of(scene, body)
 
@@ -193,7 +193,7 @@ def _instants(subject: Subject) -> Iterator[str]:
 
 
 def late_by(own: Mapping[str, Array], true: Mapping[str, Array], dt_s: float) -> dict[str, float]:
-    """How many steps later than they say forces are, as far as they change enough to tell."""
+    """Return the delay of forces in steps, for those that change enough to show it."""
     rates = {name: np.gradient(true[name], dt_s, axis=0) for name in own if "force" in name}
     most = max(float(np.sqrt(np.nanmean(rate**2))) for rate in rates.values())
     size = max(float(np.nanmax(np.abs(true[name]))) for name in rates)

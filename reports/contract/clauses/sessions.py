@@ -1,4 +1,4 @@
-"""Stepping and logging: whatever way a session is stepped, it comes to the same."""
+"""Stepping and logging: every way to step a session gives the same result."""
 
 import ctypes
 import os
@@ -14,7 +14,7 @@ from reports.contract.subject import ROUNDING, Clause, Subject, apart, numbers
 from sim.run import stretch
 
 TURNS = 2.2
-"""Of the driver, to see angles over whole turns."""
+"""Turns of the driver, for angles over whole turns."""
 
 
 def _step_and_record(subject: Subject) -> Iterator[str]:
@@ -124,8 +124,8 @@ def _quiet(subject: Subject) -> Iterator[str]:
 
 @contextmanager
 def _listening() -> Iterator[tuple[list[bytes], list[str]]]:
-    """What is written to the terminal, by Python or below it, and into the working folder; both
-    lists are filled at the end."""
+    """Yield lists of output to the terminal, by Python or below it, and of files in the working
+    folder; both are filled at the end."""
     words, files, home = list[bytes](), list[str](), Path.cwd()
     _flush()
     before = os.dup(1), os.dup(2)
@@ -150,7 +150,7 @@ def _listening() -> Iterator[tuple[list[bytes], list[str]]]:
 
 
 def _flush() -> None:
-    """Write out what is still held back, in Python and in the C library."""
+    """Write out all buffered text, in Python and in the C library."""
     for stream in (sys.stdout, sys.stderr):
         with suppress(ValueError, OSError, AttributeError):
             stream.flush()

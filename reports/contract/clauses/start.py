@@ -1,4 +1,4 @@
-"""How a session begins: with the scene that was asked for, at its state, at any time."""
+"""Start of a session: with the requested scene, at its state, at any time."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -16,9 +16,9 @@ from sim.own_engine.spelling import failure
 from sim.run.check import refuse_other_model
 
 PLACE = 1e-12
-"""How far a point may be from where it is, over the longest link or coordinate."""
+"""Largest distance of a point from its place, over the longest link or coordinate."""
 LATER = 0.3
-"""Of a period."""
+"""Part of a period."""
 
 
 def _the_scene(subject: Subject) -> Iterator[str]:
@@ -29,12 +29,12 @@ def _the_scene(subject: Subject) -> Iterator[str]:
 
 
 def is_other(subject: Subject) -> bool:
-    """Whether a session is not the scene to begin with, of which one clause is enough."""
+    """True if a session is not the scene to begin with; one clause reports it."""
     return any(_the_scene(subject))
 
 
 def _other_scene(subject: Subject, profile: str) -> str:
-    """What is not as it should be at the start."""
+    """Return the fault of the start."""
     facts = subject.opened(profile).facts()
     try:
         refuse_other_model(subject.scene, subject.start, facts, subject.dt_s(), "prescribed")
@@ -118,7 +118,7 @@ def _every_scene(subject: Subject) -> Iterator[str]:
 
 
 def _massless(scene: Scene) -> Scene:
-    """The scene with a link that nothing but its joints could move."""
+    """Return the scene with a link that nothing but its joints could move."""
     link = next(name for name in reversed(list(scene.links)) if name != scene.driver.link)
     bare = replace(scene.links[link], mass_kg=0.0, inertia_kg_m2=0.0)
     return replace(scene, links={**scene.links, link: bare})
