@@ -1,5 +1,5 @@
-"""A scene with elastic links over time, beside the same scene with rigid ones: what is told and
-drawn of it."""
+"""A scene with elastic links over time, beside the same scene with rigid ones, for words and
+drawings."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ if TYPE_CHECKING:
 
 
 SHARES = np.linspace(0.0, 1.0, 41)
-"""Of an elastic link's length, at which its shape is looked at; the middle is one of them."""
+"""Points of an elastic link at which its shape is computed, over its length; with the middle."""
 
 ROUNDING = 1e-14
-"""Of the largest of a series: its joints are closed to no less."""
+"""Rounding, over the largest of a series: its joints are closed to no less."""
 LEAST, MOST, IN_A_PERIOD = 180, 7200, 360
-"""Parts of what is closely sampled: at least and at most, and in a period of the driver."""
+"""Intervals of a closely sampled motion: at least and at most, and in a period of the driver."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Apart:
 
     @property
     def difference(self) -> Array:
-        """Elastic less rigid; what is nothing but rounding is 0."""
+        """Elastic less rigid; 0 where it is mere rounding."""
         apart = self.elastic - self.rigid
         rounding = ROUNDING * float(np.max(np.abs(self.rigid), initial=0.0))
         return np.where(np.abs(apart) <= rounding, 0.0, apart)
@@ -59,10 +59,10 @@ class Apart:
 
 @dataclass(frozen=True)
 class ElasticCourse:
-    """Both motions at the same instants, with their forces; ``bent`` is how far each elastic link
-    is from the line between its pins [m], (T, K), at `SHARES` of its length. ``words`` say how the
-    links are described, and how they start. ``uncontrolled`` is the motion without the gains of a
-    controller, where it was asked for."""
+    """Both motions at the same instants, with their forces; ``bent`` is the distance of each
+    elastic link from the line between its pins [m], (T, K), at `SHARES` of its length. ``words``
+    name the description of the links, and their start. ``uncontrolled`` is the motion without the
+    gains of a controller, where requested."""
 
     scene: Scene
     motion: Motion
@@ -73,7 +73,7 @@ class ElasticCourse:
 
     @property
     def time_s(self) -> Array:
-        """(T,)."""
+        """The instants [s], (T,)."""
         return self.motion.time_s
 
     @property
@@ -83,13 +83,13 @@ class ElasticCourse:
 
     @property
     def base(self) -> Motion:
-        """What displacements are drawn from: rigid links, where these are driven alike; let go they
-        are soon elsewhere, and the motion itself is drawn with its links bent."""
+        """Base of drawn displacements: rigid links, where these are driven alike; in free motion
+        they are soon elsewhere, and the motion itself is drawn with its links bent."""
         return self.motion if self.scene.is_free else self.rigid
 
     def apart(self) -> Iterator[Apart]:
-        """What elastic links change: the angles of links, without that of a driver that follows a
-        law, which is told, and the displacements of sliders."""
+        """Yield the effects of elastic links: on the angles of links, without a driver that follows
+        a law, and on the displacements of sliders."""
         for name, link in self.motion.links.items():
             gives_way = self.scene.is_free or isinstance(self.scene.driver.law, Controlled)
             if name != self.scene.driver.link or gives_way:
@@ -100,20 +100,20 @@ class ElasticCourse:
 
     @property
     def torques(self) -> tuple[Array, Array] | None:
-        """Those of the drive with elastic links and with rigid ones [N m], (T,); None without a
+        """Torques of the drive with elastic links and with rigid ones [N m], (T,); None without a
         drive."""
         acting, rigid = self.motion.forces, self.rigid.forces
         return None if acting is None or rigid is None else (acting.torque, rigid.torque)
 
 
 def closely_sampled(scene: Scene, until_s: float) -> Array:
-    """Instants from 0 to a time [s], both included, close enough to draw, and to find extremes."""
+    """Return instants from 0 to a time [s], inclusive, close enough for drawings and extremes."""
     count = IN_A_PERIOD * until_s / scene.driver.law.period_s
     return np.linspace(0.0, until_s, int(np.clip(round(count), LEAST, MOST)) + 1)
 
 
 def elastic_course(motion: ElasticHistory, time_s: Array) -> ElasticCourse:
-    """A motion at times [s], (T,) in ascending order. Raises CrankcheckError where there is
+    """Return a motion at times [s], (T,) in ascending order. Raises CrankcheckError where there is
     none."""
     scene = motion.scene
     words = [described(scene, motion.by), f"start {start_of(motion)}"]
@@ -123,8 +123,8 @@ def elastic_course(motion: ElasticHistory, time_s: Array) -> ElasticCourse:
 
 
 def drawn_course(motion: ElasticHistory, time_s: Array) -> ElasticCourse:
-    """As `elastic_course`, with what is drawn alone: a driver that is controlled without its gains,
-    under the torque that rigid links would need. Raises CrankcheckError as that."""
+    """Return `elastic_course` for a drawing: also a controlled driver without its gains, under the
+    torque for rigid links. Raises CrankcheckError as that."""
     course, driver = elastic_course(motion, time_s), motion.scene.driver
     if not isinstance(motion, ReleasedElasticMotion) or not isinstance(driver.law, Controlled):
         return course
@@ -134,7 +134,7 @@ def drawn_course(motion: ElasticHistory, time_s: Array) -> ElasticCourse:
 
 
 def _with_rigid_links(motion: ElasticHistory, time_s: Array) -> Motion:
-    """The same mechanism, driven or let go alike, with its forces where it is driven."""
+    """Return the same mechanism, driven or free alike, with its forces where it is driven."""
     scene = with_rigid_links(motion.scene)
     if scene.is_free:
         return release(scene, motion.until_s).at(time_s, bound=False)
@@ -143,14 +143,14 @@ def _with_rigid_links(motion: ElasticHistory, time_s: Array) -> Motion:
 
 
 def start_of(motion: ElasticHistory) -> Shape:
-    """The shape at time 0."""
+    """Return the shape at time 0."""
     if isinstance(motion, ReleasedElasticMotion):
         return motion.scene.start.shape or "quasi-static"
     return motion.start
 
 
 def rigid_columns(rigid: Motion) -> dict[str, Array]:
-    """What the same mechanism does with rigid links, by names with units."""
+    """Return the motion of the same mechanism with rigid links, by names with units."""
     columns = {f"{name}_theta_rigid_rad": link.theta for name, link in rigid.links.items()}
     columns |= {
         f"{name}_slider_displacement_rigid_m": slider.displacement
@@ -162,7 +162,7 @@ def rigid_columns(rigid: Motion) -> dict[str, Array]:
 
 
 def energy_columns(motion: ElasticHistory, time_s: Array) -> dict[str, Array]:
-    """What is let go has of energy and work, by names with units, at times (T,) in any order."""
+    """Return energy and work of free motion, by names with units, at times (T,) in any order."""
     if not isinstance(motion, ReleasedElasticMotion):
         return {}
     order = np.argsort(time_s, kind="stable")
@@ -172,8 +172,8 @@ def energy_columns(motion: ElasticHistory, time_s: Array) -> dict[str, Array]:
 
 
 def elastic_tables(course: ElasticCourse, width: int) -> list[Table]:
-    """Over time: how elastic links are bent and stretched, and what links and sliders do with them
-    and without."""
+    """Return tables over time: bending and extension of elastic links, and the motion of links and
+    sliders with and without them."""
     bodies: list[tuple[str, Columns]] = []
     for name, shape in course.motion.elastic.items():
         bent = [("middle\nm", shape.middle)] * course.scene.elastic[name].bends
@@ -190,7 +190,7 @@ def elastic_tables(course: ElasticCourse, width: int) -> list[Table]:
 @dataclass(frozen=True)
 class DeflectionExtreme:
     """The largest value of a motion, with its sign, in ``unit``; when [s], and the driver's angle
-    there [deg]; ``note`` says what more is to be told of it."""
+    there [deg]; ``note`` adds a remark."""
 
     name: str
     value: float
@@ -201,7 +201,7 @@ class DeflectionExtreme:
 
 
 def extremes(course: ElasticCourse) -> list[DeflectionExtreme]:
-    """The largest deflections, extensions, differences to rigid links, and torques."""
+    """Return the largest deflections, extensions, differences to rigid links, and torques."""
     return [_extreme(course, *each) for each in _series(course)]
 
 
@@ -242,7 +242,7 @@ def _extreme(
 
 
 def extremes_table(scene: Scene, rows: list[DeflectionExtreme]) -> Table:
-    """What `extremes` has."""
+    """Return a table of `extremes`."""
     table = plain_table(gap=2)
     table.add_column("largest", no_wrap=True)
     table.add_column("", justify="right", no_wrap=True)
@@ -257,5 +257,5 @@ def extremes_table(scene: Scene, rows: list[DeflectionExtreme]) -> Table:
 
 
 def largest_deflections(course: ElasticCourse) -> dict[str, float]:
-    """Over each elastic link and the motion [m]."""
+    """Return the largest deflection over each elastic link and the motion [m]."""
     return {name: float(np.max(np.abs(each))) for name, each in course.bent.items()}

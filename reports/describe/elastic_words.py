@@ -1,5 +1,4 @@
-"""Elastic links in words: how they are described, how they start, and how far that is to be
-trusted."""
+"""Elastic links in words: their description, their start, and its uncertainty."""
 
 import math
 from collections.abc import Iterator
@@ -27,12 +26,12 @@ from models.scene.laws import ConstantSpeed
 from reports.output.numbers import count, error_text, listed, readable
 
 NEAR = 0.1
-"""From a whole frequency ratio: undamped, what is so near to it is nearly resonant."""
+"""Distance from a whole frequency ratio below which an undamped link is nearly resonant."""
 SLOW = 20
-"""A ratio beyond which what resonates is too small to be seen."""
+"""Ratio beyond which a resonance is too small to be seen."""
 SLIGHT = 1e-2
-"""What the square of a slope may be, so that a curvature is the second derivative of a deflection
-to about that share of it."""
+"""Largest square of a slope for which a curvature is the second derivative of a deflection, to
+about that share of it."""
 STARTS: dict[Shape, str] = {
     "periodic": "Starts on the periodic motion: it comes back after a period of the driver.",
     "quasi-static": "Starts with the deflection that the rigid motion asks for (quasi-static); "
@@ -43,7 +42,7 @@ STARTS: dict[Shape, str] = {
 
 
 def elastic_facts(scene: Scene, by: Discretisation, *, stiffened: bool) -> list[str]:
-    """One line per elastic link, and one of how all of them are described."""
+    """Return one line per elastic link, and one on the description of all of them."""
     lines = [_link(scene, own) for own in scene.elastic.values()]
     short = "with the shortening of bent links" if stiffened else (
         "without the shortening of bent links (linear, as in the thesis)"
@@ -52,7 +51,7 @@ def elastic_facts(scene: Scene, by: Discretisation, *, stiffened: bool) -> list[
 
 
 def described(scene: Scene, by: Discretisation) -> str:
-    """By what elastic links are described, such as 5 sines across and 2 sines along."""
+    """Return the description of elastic links, such as 5 sines across and 2 sines along."""
     bends, stretches = (
         any(getattr(own, kind) for own in scene.elastic.values()) for kind in ("bends", "stretches")
     )
@@ -73,7 +72,7 @@ def _across_and_along(
 
 
 def _link(scene: Scene, own: ElasticLink) -> str:
-    """A link with its stiffness and its first natural frequencies between its pins."""
+    """Return a link with its stiffness and its first natural frequencies between its pins."""
     line = line_of(scene, own.link)
     parts = []
     if own.bends:
@@ -88,7 +87,7 @@ def _link(scene: Scene, own: ElasticLink) -> str:
 
 
 def _ratio(scene: Scene, first_rad_s: float) -> str:
-    """A frequency, and how often it goes into the driver's speed where that is constant."""
+    """Return a frequency, and its ratio to the driver's speed where that is constant."""
     words = f"{first_rad_s:.6g} rad/s on"
     law = scene.driver.law
     if isinstance(law, ConstantSpeed):
@@ -97,14 +96,14 @@ def _ratio(scene: Scene, first_rad_s: float) -> str:
 
 
 def start_words(scene: Scene, start: Shape) -> str:
-    """What it starts with, in a sentence."""
+    """Return the start in a sentence."""
     damped = any(own.damping_s for own in scene.elastic.values())
     ending = " until it is damped" if damped else ", as nothing damps it"
     return STARTS[start].format(damped=ending)
 
 
 def elastic_warnings(scene: Scene, largest_m: dict[str, float]) -> Iterator[str]:
-    """Sentences on what the model is not fit for, with the largest deflections [m] by link."""
+    """Yield sentences on the limits of the model, with the largest deflections [m] by link."""
     law = scene.driver.law
     for name, own in scene.elastic.items():
         line = line_of(scene, name)
@@ -126,14 +125,14 @@ def elastic_warnings(scene: Scene, largest_m: dict[str, float]) -> Iterator[str]
 
 
 ROUNDING = 1e-13
-"""To which joints are closed, and equations met: differences are no less."""
+"""Accuracy of closed joints and solved equations: differences are no less."""
 SAMPLES = 73
-"""Instants of a motion that are compared."""
+"""Instants at which motions are compared."""
 
 
 class Shares(NamedTuple):
     """The largest distances of a motion from another: of a deflection over the largest of its link
-    in that one (the worst link counts), of an angle [rad], of the torque over its largest."""
+    in the other (the worst link counts), of an angle [rad], of the torque over its largest."""
 
     deflection: float
     angle_rad: float
@@ -141,7 +140,7 @@ class Shares(NamedTuple):
 
 
 def _shares(one: Motion, other: Motion) -> Shares:
-    """Of motions at the same instants; none is less than rounding."""
+    """Return the distances of motions at the same instants; none is less than rounding."""
     apart = ElasticDoubt.between(one, other)
     bent = [_over(off, other.elastic[name].middle) for name, off in apart.middle_m.items()]
     turned = [float(off.max()) for off in apart.theta_rad.values()]
@@ -156,8 +155,8 @@ def _over(off: Array, series: Array) -> float:
 
 
 def certainty(motion: ElasticHistory) -> list[str]:
-    """What a motion may be off by, in sentences. Raises CrankcheckError where another one can not
-    be had."""
+    """Return the uncertainty of a motion, in sentences. Raises CrankcheckError where no other can
+    be computed."""
     if isinstance(motion.by, Segments):
         return []  # it is what an engine has, and not the beam
     time_s = np.linspace(0.0, motion.until_s, SAMPLES)
@@ -174,8 +173,8 @@ def certainty(motion: ElasticHistory) -> list[str]:
 
 
 def _by_other_shapes(motion: ElasticHistory, time_s: Array, own: Motion) -> str:
-    """By the next finer description; of elements, and of what is let go, which take long, by one of
-    fewer shapes, whose error is the larger one, if there are any fewer."""
+    """Compare with the next finer description; for elements, and for free motion, which take long,
+    with one of fewer shapes, whose error is the larger one, if there are any fewer."""
     fewer = coarser(motion.by)
     slow = isinstance(motion, ReleasedElasticMotion) or isinstance(motion.by, Elements)
     if not slow or described(motion.scene, fewer) == described(motion.scene, motion.by):
@@ -196,7 +195,7 @@ def _by_other_shapes(motion: ElasticHistory, time_s: Array, own: Motion) -> str:
 
 
 def coarser(by: Discretisation) -> Discretisation:
-    """About half as many shapes of each kind, and at least one."""
+    """Return about half as many shapes of each kind, and at least one."""
     if isinstance(by, Elements | Segments):
         return replace(by, count=max(1, by.count // 2))
     return replace(by, across=max(1, (by.across + 1) // 2), along=max(1, by.along // 2))

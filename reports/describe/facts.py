@@ -1,4 +1,4 @@
-"""What the theory of machines says of a mechanism as a whole, in lines to be read."""
+"""Facts of the theory of machines on a mechanism as a whole, in lines to be read."""
 
 import contextlib
 import math
@@ -20,9 +20,9 @@ FULL_TURN = math.tau - 1e-9
 
 
 def facts(scene: Scene, structure: Structure, along: Sequence[Along] = ()) -> list[str]:
-    """Grashof class and transmission angles of a four-bar; the driver's range where it cannot turn
-    fully; swing or stroke and time ratio of every link and slider, and of points along directions,
-    between their limit positions."""
+    """Return Grashof class and transmission angles of a four-bar; the driver's range where it
+    cannot turn fully; swing or stroke and time ratio of every link and slider, and of points along
+    directions, between their limit positions."""
     lines = []
     kinds = [group.kind for group in structure.groups]
     if scene.driver.is_crank and kinds == ["RRR"] and not structure.triads:
@@ -40,7 +40,7 @@ def facts(scene: Scene, structure: Structure, along: Sequence[Along] = ()) -> li
 
 @dataclass(frozen=True)
 class SpeedFacts:
-    """Extreme speeds: a title, and what each output has, by the name that it is called by."""
+    """Extreme speeds: a title, and the words for each output, by its name."""
 
     title: str
     rows: Mapping[str, str]
@@ -49,9 +49,9 @@ class SpeedFacts:
 def speed_facts(
     scene: Scene, along: Sequence[Along] = (), *, clockwise: bool = False
 ) -> SpeedFacts | None:
-    """The largest and smallest speeds of links, sliders and points along directions, at the
+    """Return the largest and smallest speeds of links, sliders and points along directions, at the
     driver's angles at which they have no acceleration; None where a cycle of the mechanism has
-    none. ``clockwise`` turns a driver of one speed round, as in `models.scene.driver`."""
+    none. ``clockwise`` reverses a driver of one speed, as in `models.scene.driver`."""
     try:
         every = extreme_speeds(scene, _outputs(scene, along))
     except CrankcheckError:
@@ -70,7 +70,7 @@ def speed_facts(
 
 @dataclass(frozen=True)
 class _Pace:
-    """What speeds by the driver's phase are multiplied with, how that is said, and their units."""
+    """Factor on speeds by the driver's phase, its words, and their units."""
 
     factor: float
     words: str
@@ -103,7 +103,7 @@ def _grashof(bar: FourBar) -> str:
 
 
 def _travels(scene: Scene, along: Sequence[Along]) -> Iterator[str]:
-    """One line per output that goes back and forth, and per point that was asked for."""
+    """Yield one line per output that goes back and forth, and per requested point."""
     try:
         every = travels(scene, _outputs(scene, along))
     except CrankcheckError:
@@ -123,7 +123,7 @@ def _travels(scene: Scene, along: Sequence[Along]) -> Iterator[str]:
 
 
 def _is_driver(scene: Scene, output: Output) -> bool:
-    """Whether it is told of as the driver."""
+    """True if it is described as the driver."""
     driver = scene.driver
     return output == (driver.link if driver.is_crank else driver.slider)
 
@@ -133,7 +133,7 @@ def _outputs(scene: Scene, along: Sequence[Along]) -> list[Output]:
 
 
 def _turns(scene: Scene, output: Output) -> bool:
-    """Whether its place is an angle."""
+    """True if its coordinate is an angle."""
     return isinstance(output, str) and output in scene.links
 
 
@@ -144,12 +144,12 @@ def _called(output: Output) -> str:
 
 
 def _deg(angle_rad: float) -> str:
-    """To six digits; what is less than rounding of a turn is 0."""
+    """Return degrees to six digits; a value below the rounding of a turn is 0."""
     return f"{round(math.degrees(angle_rad), 9) + 0.0:.6g}"
 
 
 def describe_law(scene: Scene) -> str:
-    """The driver's law in a few words."""
+    """Return the driver's law in a few words."""
     law, slides = scene.driver.law, scene.driver.slider is not None
     unit = "m" if slides else "rad"
 
@@ -181,11 +181,11 @@ def describe_law(scene: Scene) -> str:
 
 
 MOST_DEG = 1e6
-"""Beyond this too few digits of the angle within a turn are left."""
+"""Largest angle: beyond it too few digits of the angle within a turn are left."""
 
 
 def angle_at(at_deg: float) -> float:
-    """An angle that a user named [rad]. Raises CrankcheckError for what is none."""
+    """Return a user's angle [rad]. Raises CrankcheckError for an invalid one."""
     if not abs(at_deg) <= MOST_DEG:
         raise CrankcheckError(
             f"--at-deg {at_deg:g}: give an angle in degrees, such as 90, up to {MOST_DEG:g}"
@@ -194,7 +194,7 @@ def angle_at(at_deg: float) -> float:
 
 
 def time_at(scene: Scene, at_s: float) -> float:
-    """A time that a user named [s]. Raises CrankcheckError for what is none, or of no motion."""
+    """Return a user's time [s]. Raises CrankcheckError if invalid, or outside the motion."""
     latest = way_of(scene).latest_s(scene)
     if not 0.0 <= at_s <= latest:  # or no number
         raise CrankcheckError(
@@ -205,8 +205,8 @@ def time_at(scene: Scene, at_s: float) -> float:
 
 
 def place_at(scene: Scene, at_deg: float | None, at_m: float | None) -> float:
-    """Where the driver was asked to stand: an angle [rad] that is given in degrees, or a slider's
-    displacement [m]. Raises CrankcheckError for what is none, or not the driver's."""
+    """Return the requested place of the driver: an angle [rad] given in degrees, or a slider's
+    displacement [m]. Raises CrankcheckError for an invalid one, or not the driver's."""
     if at_deg is not None and at_m is not None:
         raise CrankcheckError("--at-deg and --at-m: the driver stands at one place; give one")
     slides = scene.driver.slider is not None
@@ -232,8 +232,8 @@ def place_at(scene: Scene, at_deg: float | None, at_m: float | None) -> float:
 def driver_at(
     scene: Scene, at_deg: float | None, at_m: float | None = None, *, clockwise: bool = False
 ) -> tuple[float, float, float]:
-    """Place [rad or m], speed and acceleration as the driver's law moves it through an angle [deg]
-    or a displacement [m]. Raises CrankcheckError for one that it never has."""
+    """Return place [rad or m], speed and acceleration as the driver's law moves it through an angle
+    [deg] or a displacement [m]. Raises CrankcheckError for a place that it never has."""
     place = place_at(scene, at_deg, at_m)
     asked = f"--at-deg {at_deg:g}" if at_m is None else f"--at-m {at_m:g}"
     if clockwise and at_m is not None:

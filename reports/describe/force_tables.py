@@ -19,7 +19,7 @@ from reports.output.numbers import listed
 
 
 def position_friction_tables(scene: Scene, motion: Motion, acting: Forces) -> list[Table]:
-    """At one position: of what the drive puts in, what friction takes; and what rubs in each joint.
+    """Return tables at one position: power of the drive with its loss; and friction of each joint.
 
     None without friction.
     """
@@ -41,7 +41,7 @@ def position_friction_tables(scene: Scene, motion: Motion, acting: Forces) -> li
 
 
 def friction_over_time(scene: Scene, motion: Motion, acting: Forces) -> list[tuple[str, Columns]]:
-    """Columns of the instantaneous efficiency, and of what rubs, by joint."""
+    """Return columns of the instantaneous efficiency, and of friction by joint."""
     flow = flow_of(scene, motion, acting)
     if flow is None:
         return []
@@ -59,17 +59,17 @@ def friction_over_time(scene: Scene, motion: Motion, acting: Forces) -> list[tup
 
 
 def friction_name(scene: Scene, joint: str) -> str:
-    """A joint that rubs, as tables of forces call it."""
+    """Return the name of a joint with friction in tables of forces."""
     return f"slider {joint}" if joint in scene.sliders else f"{joint} on {_bodies(scene, joint)[1]}"
 
 
 def unit_of(scene: Scene, joint: str) -> str:
-    """Of what rubs: a force in a slider, a couple in a pin."""
+    """Return the unit of friction: a force in a slider, a couple in a pin."""
     return "N" if joint in scene.sliders else "N m"
 
 
 def flow_of(scene: Scene, motion: Motion, acting: Forces) -> PowerFlow | None:
-    """The power in and lost; None without friction, or of a motion that lacks a body."""
+    """Return the power in and lost; None without friction, or for a motion that lacks a body."""
     whole = (
         motion.links.keys() == scene.links.keys() and motion.sliders.keys() == scene.sliders.keys()
     )
@@ -77,7 +77,7 @@ def flow_of(scene: Scene, motion: Motion, acting: Forces) -> PowerFlow | None:
 
 
 def cycle_of(scene: Scene) -> Efficiency | None:
-    """The efficiency of a scene with friction; None without, or where no cycle is."""
+    """Return the efficiency of a scene with friction; None without, or where there is no cycle."""
     if not scene.friction:
         return None
     try:
@@ -87,12 +87,12 @@ def cycle_of(scene: Scene) -> Efficiency | None:
 
 
 def friction_words(scene: Scene) -> list[str]:
-    """What friction costs over a cycle, and where it locks, in sentences."""
+    """Return the loss by friction over a cycle, and the ranges where it locks, in sentences."""
     return cycle_words(scene, cycle_of(scene))
 
 
 def cycle_words(scene: Scene, cycle: Efficiency | None) -> list[str]:
-    """As `friction_words`, of what was worked out before."""
+    """Return `friction_words` of an earlier result."""
     if cycle is None:
         return []
     words = []
@@ -113,7 +113,7 @@ def cycle_words(scene: Scene, cycle: Efficiency | None) -> list[str]:
 
 
 def _bodies(scene: Scene, joint: str) -> tuple[str, str]:
-    """The body that friction comes from, and the one that it acts on."""
+    """Return the body that exerts friction, and the one on which it acts."""
     if joint in scene.sliders:
         slider = scene.sliders[joint]
         return slider.on, slider.link or "block"
@@ -122,9 +122,9 @@ def _bodies(scene: Scene, joint: str) -> tuple[str, str]:
 
 
 def position_force_tables(scene: Scene, motion: Motion, acting: Forces) -> list[Table]:
-    """The driving torque with its power, the force in every pin, and that of every guide, at one
-    position; of a guide also how far along its line from the slider's point the normal force
-    acts alone."""
+    """Return the driving torque with its power, the force in every pin, and that of every guide, at
+    one position; of a guide also the distance along its line from the slider's point at which the
+    normal force acts alone."""
     drive = head_table("drive on", (_effort(scene), "power W"))
     torque = float(acting.torque[0])
     power = math.nan
@@ -148,7 +148,7 @@ def position_force_tables(scene: Scene, motion: Motion, acting: Forces) -> list[
 
 
 def motion_force_tables(scene: Scene, motion: Motion, acting: Forces, width: int) -> list[Table]:
-    """Torque, pins and sliders over time, as many to a table as the terminal has room for."""
+    """Return torque, pins and sliders over time, as many to a table as the terminal can hold."""
     bodies: list[tuple[str, Columns]] = [
         ("drive", [(_effort(scene).replace(" ", "\n", 1), acting.torque)])
     ]
@@ -164,14 +164,14 @@ def motion_force_tables(scene: Scene, motion: Motion, acting: Forces, width: int
 
 
 def _effort(scene: Scene) -> str:
-    """What the drive exerts, with its unit."""
+    """Return the drive's effort, with its unit."""
     return f"{scene.driver.effort} {scene.driver.effort_unit}"
 
 
 @dataclass(frozen=True)
 class Largest:
-    """The largest value over a turn, with its sign, in ``unit``; where the driver is there
-    [deg or m], and the mean over time, NaN where friction locks in part of it."""
+    """The largest value over a turn, with its sign, in ``unit``; the place of the driver there [deg
+    or m], and the mean over time, NaN where friction locks in part of it."""
 
     name: str
     value: float
@@ -181,8 +181,8 @@ class Largest:
 
 
 def largest_of(scene: Scene, turn: Motion, acting: Forces) -> list[Largest]:
-    """The torque, each pin by the size of its force, and each slider; a row for what is
-    determined. ``turn`` has both its ends."""
+    """Return the torque, each pin by the size of its force, and each slider; a row for each
+    determined series. ``turn`` has both its ends."""
     places = driver_shown(scene, turn)
     places = places % 360.0 if driver_unit(scene) == "deg" else places
     drive = (f"driving {scene.driver.effort}", acting.torque, scene.driver.effort_unit)
@@ -214,7 +214,7 @@ def largest_of(scene: Scene, turn: Motion, acting: Forces) -> list[Largest]:
 
 
 def largest_table(scene: Scene, turn: Motion, acting: Forces) -> Table:
-    """What `largest_of` has."""
+    """Return a table of `largest_of`."""
     table = plain_table(gap=2)
     table.add_column("over a turn", no_wrap=True)
     table.add_column("largest", justify="right", no_wrap=True)
@@ -229,7 +229,7 @@ def largest_table(scene: Scene, turn: Motion, acting: Forces) -> Table:
 
 
 def _direction(x: float, y: float) -> float:
-    """The angle of a force [deg], 0 to 360; none where there is no force."""
+    """Return the angle of a force [deg], 0 to 360; none where there is no force."""
     if x == y == 0.0:
         return math.nan
     return math.degrees(math.atan2(y, x)) % 360.0

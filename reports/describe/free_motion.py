@@ -1,4 +1,4 @@
-"""A free motion in words and columns: its energy, how sure it is, and what it meets on the way."""
+"""A free motion in words and columns: its energy, its uncertainty, and events on its way."""
 
 import math
 
@@ -12,15 +12,15 @@ from reports.describe.motion_tables import Columns, tables_over_time
 from reports.output.numbers import count, error_text
 
 ROUNDING = 1e-15
-"""An energy that is less of the largest is 0."""
+"""Part of the largest energy below which an energy is 0."""
 NAMED = 4
-"""Instants that a note names."""
+"""Number of instants that a note names."""
 
 
 def free_columns(free: FreeMotion, time_s: Array) -> dict[str, Array]:
-    """What a free motion has beside its places and rates, by names with units: energies, what
-    loads, dampers and friction have done since the start, the sensitivity, and what the driver's
-    angle may be off by."""
+    """Return further columns of a free motion, by names with units: energies, the work of loads,
+    dampers and friction since the start, the sensitivity, and the uncertainty of the driver's
+    angle."""
     energy = free.energy(time_s)
     return {
         "kinetic_j": energy.kinetic,
@@ -32,7 +32,7 @@ def free_columns(free: FreeMotion, time_s: Array) -> dict[str, Array]:
 
 
 def free_tables(free: FreeMotion, motion: Motion, width: int) -> list[Table]:
-    """The driver's motion and the energy over time."""
+    """Return the driver's motion and the energy over time."""
     energy = free.energy(motion.time_s)
     driver = motion.links[free.scene.driver.link]
     own: Columns = [("omega\nrad/s", driver.omega), ("alpha\nrad/s^2", driver.alpha)]
@@ -47,7 +47,7 @@ def free_tables(free: FreeMotion, motion: Motion, width: int) -> list[Table]:
 
 
 def free_notes(motion: FreeMotion, until_s: float) -> list[str]:
-    """How sure the motion is up to an instant [s], and what it goes through until then, in
+    """Return the uncertainty of the motion up to an instant [s], and events until then, in
     sentences."""
     last = np.array([until_s])
     off, growth = float(motion.error_rad(last)[0]), float(motion.sensitivity(last)[0])
@@ -81,7 +81,7 @@ LEAST, MOST, IN_A_TURN, IN_A_SECOND = 121, 1201, 45, 60
 
 
 def instants(free: FreeMotion) -> int:
-    """How many a free motion is drawn at."""
+    """Return the number of instants in a drawing of a free motion."""
     turns = free.peak_speed_rad_s * free.until_s / math.tau
     wanted = max(IN_A_TURN * turns, IN_A_SECOND * free.until_s)
     return int(np.clip(wanted, LEAST, MOST))

@@ -28,13 +28,13 @@ Columns = list[tuple[str, Array]]
 
 
 def digits(value: float) -> str:
-    """Eight significant digits, zeros at the end included; a dash for what is not determined."""
+    """Return eight significant digits, with zeros at the end; a dash for undetermined values."""
     return "-" if math.isnan(value) else f"{value + 0.0:#.8g}"
 
 
 def position_tables(scene: Scene, motion: Motion) -> list[Table]:
-    """Those that the motion has of links, points and sliders, at one position; the Coriolis
-    component of those on a moving guide, where there are any."""
+    """Return tables of the links, points and sliders in the motion, at one position; with the
+    Coriolis component on a moving guide, where there is any."""
     links = head_table("link", ("theta deg", "theta rad", "omega rad/s", "alpha rad/s^2"))
     for name, link in motion.links.items():
         theta = float(link.theta[0])
@@ -62,7 +62,7 @@ def position_tables(scene: Scene, motion: Motion) -> list[Table]:
 
 
 def speed_table(speeds: SpeedFacts) -> Table:
-    """Extreme speeds, a row for each output; long rows are folded within their column."""
+    """Return extreme speeds, a row for each output; long rows are folded within their column."""
     table = plain_table()
     table.add_column(no_wrap=True)
     table.add_column(speeds.title, overflow="fold")
@@ -72,7 +72,7 @@ def speed_table(speeds: SpeedFacts) -> Table:
 
 
 def certainty(motion: Motion) -> str:
-    """What the reference may be wrong by, in a line."""
+    """Return the uncertainty of the reference, in a line."""
     if motion.bound is None or not motion.bound.links:
         return ""
     links = motion.bound.links.values()
@@ -86,7 +86,7 @@ def certainty(motion: Motion) -> str:
 
 
 def motion_tables(scene: Scene, motion: Motion, width: int) -> list[Table]:
-    """Links and sliders over time, as many bodies to a table as the terminal has room for."""
+    """Return links and sliders over time, as many bodies to a table as the terminal can hold."""
     bodies: list[tuple[str, Columns]] = [
         (name, [("theta\nrad", m.theta), ("omega\nrad/s", m.omega), ("alpha\nrad/s^2", m.alpha)])
         for name, m in motion.links.items()
@@ -101,7 +101,7 @@ def motion_tables(scene: Scene, motion: Motion, width: int) -> list[Table]:
 def tables_over_time(
     scene: Scene, motion: Motion, bodies: Sequence[tuple[str, Columns]], width: int
 ) -> list[Table]:
-    """Series by owner beside the time and the driver's angle; ``width`` is the terminal's."""
+    """Return series by owner beside time and driver's angle; ``width`` is the terminal's."""
     together = 2 if width >= WIDE else 1
     place, driver = driver_place(scene, motion), scene.driver
     instants: Columns = [("\ntime\ns", motion.time_s)]
@@ -126,7 +126,7 @@ def tables_over_time(
 
 
 def head_table(head: str, columns: Sequence[str]) -> Table:
-    """A table with a first column of names; each other head is a word and its unit."""
+    """Return a table with a first column of names; each other head is a word and its unit."""
     table = plain_table()
     table.add_column(head, no_wrap=True)
     for column in columns:
@@ -135,8 +135,8 @@ def head_table(head: str, columns: Sequence[str]) -> Table:
 
 
 def motion_frame(motion: Motion, *, lengths: bool = True) -> pd.DataFrame:
-    """One row per sample: each link, point and slider with its rates, vectors also by length; how
-    elastic links are bent in their middle and stretched; and the forces, where there are any
+    """Return one row per sample: each link, point and slider with its rates, vectors also by
+    length; middle deflection and extension of elastic links; and the forces, where there are any
     (`reports.describe.motion_tables`)."""
     import pandas as pd
 
@@ -168,11 +168,11 @@ def motion_frame(motion: Motion, *, lengths: bool = True) -> pd.DataFrame:
 
 
 def run_frame(run: Run) -> pd.DataFrame:
-    """What a run logged, one row per sample, no rows where it logged nothing.
+    """Return the log of a run, one row per sample, no rows where it logged nothing.
 
-    As `motion_frame`, but for lengths of vectors, and how far each pin and slider is open. The
-    instants that velocities and accelerations belong to stand beside those of the places where they
-    are others. What the engine does not report is left out.
+    As `motion_frame`, but without lengths of vectors, and with the opening of each pin and slider.
+    The instants of velocities and accelerations are beside those of the positions where they
+    differ. Series that the engine does not report are left out.
     """
     if run.motion is None:
         import pandas as pd
@@ -198,8 +198,8 @@ def run_frame(run: Run) -> pd.DataFrame:
 
 
 def cleaned(motion: Motion) -> Motion:
-    """The motion to be read by people: numbers that are 0 within their own bound are 0, and those
-    without a bound, of which nothing is known, NaN."""
+    """Return the motion for readers: numbers that are 0 within their own bound are 0, and those
+    with an infinite bound NaN."""
     if motion.bound is None:
         return motion
     links, points, sliders = motion.bound.links, motion.bound.points, motion.bound.sliders
@@ -212,7 +212,7 @@ def cleaned(motion: Motion) -> Motion:
 
 
 def _cleaned(body: BodyMotion, bound: BodyMotion) -> BodyMotion:
-    """One body's arrays; a bound is per sample, also for vectors."""
+    """Return one body's arrays; a bound is per sample, also for vectors."""
     fields = {}
     for name, values in vars(body).items():
         limit = vars(bound)[name]
@@ -222,9 +222,9 @@ def _cleaned(body: BodyMotion, bound: BodyMotion) -> BodyMotion:
 
 
 def acted_on(acting: Forces) -> Iterator[tuple[str, str, str, Array]]:
-    """Each pin, the body whose force is told, from what, and that force [N], (T, 2).
+    """Yield each pin, the body under the force, its source, and that force [N], (T, 2).
 
-    Where two bodies meet, it is the one on the second, from the first; of more, it is that on each,
+    Where two bodies meet, it is the force on the second, from the first; of more, that on each,
     from the pin.
     """
     for point, bodies in acting.pins.items():
@@ -235,8 +235,8 @@ def acted_on(acting: Forces) -> Iterator[tuple[str, str, str, Array]]:
 
 
 def force_columns(acting: Forces, *, lengths: bool = True) -> dict[str, Array]:
-    """Columns by name: the driving torque or force, pins by point and body, sliders, and
-    what rubs; vectors also by length."""
+    """Return columns by name: the driving torque or force, pins by point and body, sliders, and
+    friction; vectors also by length."""
     columns = {"torque_n_m" if acting.drive_unit == "N m" else "drive_force_n": acting.torque}
     for point, body, _, force in acted_on(acting):
         stem = f"{point}_{body.replace(' ', '_')}"

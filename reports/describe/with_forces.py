@@ -1,4 +1,4 @@
-"""The forces of a solved motion, as they are shown: what is not certain, left out or open is told.
+"""The forces of a solved motion, as shown: notes name uncertain, omitted or open ones.
 
 Over a turn, instants in dead points have no numbers; a single position in one is refused.
 """
@@ -19,19 +19,19 @@ from models.scene.driver import driver_place, driver_shown, driver_unit
 from reports.output.numbers import count, listed
 
 UNCERTAIN = 1e-6
-"""A number that its own bound swallows is 0 where the bound is less than so much of the largest of
-its kind, and unknown where it is more."""
+"""Limit for a number smaller than its own bound: it is 0 where the bound is less than this part of
+the largest of its kind, and unknown where it is more."""
 TURN = 721
-"""Samples of a turn whose forces are drawn, or looked through for the largest."""
+"""Samples of a turn for drawings and largest forces."""
 NAMED = 4
-"""Angles of dead points that a note names."""
+"""Number of angles of dead points that a note names."""
 
 
 def with_forces(scene: Scene, motion: Motion, *, by_law: bool = True, bound: bool = True) -> Motion:
-    """The motion with its reactions and driving torque, of a slider force.
+    """Return the motion with its reactions and driving torque, for a slider force.
 
-    ``by_law`` says that its times are instants of the driver's law, of which the forces are worked
-    out; else the whole motion itself is taken.
+    ``by_law`` is True if its times are instants of the driver's law, which determine the forces;
+    else the whole motion itself is taken.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def with_forces(scene: Scene, motion: Motion, *, by_law: bool = True, bound: boo
 
 
 def turn_with_forces(scene: Scene, samples: int = TURN) -> Motion:
-    """The first turn of the driver, both ends included, with its forces and their bounds."""
+    """Return the first turn of the driver, both ends included, with its forces and their bounds."""
     time_s = np.linspace(0.0, scene.driver.law.period_s, samples)
     return with_forces(scene, solve(scene, time_s))
 
@@ -64,7 +64,7 @@ def _refuse_loads_over_time(scene: Scene) -> None:
 
 
 def force_notes(scene: Scene, motion: Motion) -> list[str]:
-    """What is not determined, in sentences."""
+    """Return the undetermined forces, in sentences."""
     acting = motion.forces
     if acting is None:
         return []
@@ -73,7 +73,7 @@ def force_notes(scene: Scene, motion: Motion) -> list[str]:
 
 
 def left_out_notes(scene: Scene, motion: Motion) -> list[str]:
-    """Where the driver stands in dead points, and where friction locks, a sentence for each."""
+    """Return the driver's places in dead points, and where friction locks, a sentence for each."""
     assert motion.forces is not None
     is_locked = motion.forces.has_equilibria(0)
     locked = np.flatnonzero(is_locked)
@@ -93,7 +93,7 @@ def left_out_notes(scene: Scene, motion: Motion) -> list[str]:
 
 
 def _where(scene: Scene, motion: Motion, samples: NDArray[np.intp]) -> str:
-    """The driver's angles at samples."""
+    """Return the driver's angles at samples in words."""
     if driver_place(scene, motion) is None:
         return count(samples.size, "instant")
     places, unit = driver_shown(scene, motion)[samples], driver_unit(scene)
@@ -105,12 +105,12 @@ def _where(scene: Scene, motion: Motion, samples: NDArray[np.intp]) -> str:
 
 
 def force_certainty(scene: Scene, acting: Forces) -> str:
-    """What forces may be wrong by, in a line; "" without a bound. Instants at which a bound is of
-    the size of the forces themselves are counted apart; those at which it locks or may jam are left
-    out.
+    """Return the uncertainty of forces, in a line; "" without a bound. Instants at which a bound is
+    of the size of the forces themselves are counted apart; those at which it locks or may jam are
+    left out.
 
-    A couple is large or small against what forces do at the arms of the links: where it is 0, as in
-    a dead centre, its own size says nothing of what is lost.
+    A couple is compared with that of the forces at the arms of the links: where it is 0, as in a
+    dead centre, its own size is no measure of the loss.
     """
     bound = acting.bound
     if bound is None:
@@ -154,9 +154,9 @@ def force_certainty(scene: Scene, acting: Forces) -> str:
 
 
 def cleaned_forces(acting: Forces) -> Forces:
-    """The forces to be read by people: numbers that are 0 within their own bound are 0, and those
-    of which the bound leaves nothing are NaN. Where the mechanism may jam there is no bound, and
-    they stay."""
+    """Return the forces for readers: numbers that are 0 within their own bound are 0, and those
+    smaller than a large bound are NaN. Where the mechanism may jam there is no bound, and they
+    stay."""
     bound = acting.bound
     if bound is None:
         return acting
@@ -182,7 +182,7 @@ def cleaned_forces(acting: Forces) -> Forces:
 
 
 def _cleaned(series: Array, limit: Array) -> Array:
-    """A series (T,) or (T, 2) with a bound (T,)."""
+    """Return a series (T,) or (T, 2) with a bound (T,), cleaned."""
     rows = series.T
     largest = float(np.nanmax(np.abs(rows), initial=0.0))
     swallowed = np.where(limit <= max(UNCERTAIN * largest, 1e-9), 0.0, np.nan)
