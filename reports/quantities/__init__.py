@@ -1,4 +1,4 @@
-"""What is compared: one entry per quantity, in the order of every table.
+"""The compared quantities: one entry each, in the order of every table.
 
 A new quantity is an entry here. Its columns, rows, limit, rule and diagrams follow from it.
 """
@@ -38,12 +38,12 @@ QUANTITIES: dict[str, Quantity] = {
 
 
 def named(*roles: Role) -> tuple[str, ...]:
-    """The quantities that play one of some roles."""
+    """Return the quantities of some roles."""
     return tuple(name for name, entry in QUANTITIES.items() if entry.role in roles)
 
 
 MOVES: Collection[Role] = ("drive", "place", "closure", "derived")
-"""The roles of what is compared of every run."""
+"""The roles of the quantities compared in every run."""
 
 
 _OWN = {
@@ -55,20 +55,20 @@ DRIVEN = (*MOVES, "force")
 DEFAULTS: Mapping[str, Tolerance] = {
     name: each.tolerance for name, (role, each) in _OWN.items() if role in DRIVEN
 }
-"""Of a mechanism that is driven."""
+"""Tolerances of a driven mechanism."""
 BENDING: Mapping[str, Tolerance] = {
     name: each.tolerance for name, (role, each) in _OWN.items() if role == "elastic"
 }
-"""Of elastic links themselves."""
+"""Tolerances of elastic links themselves."""
 ELASTIC = {**DEFAULTS, **BENDING}
-"""Of a mechanism whose links bend."""
+"""Tolerances of a mechanism whose links bend."""
 FREE: Mapping[str, Tolerance] = {
     name: limit
     for name, (role, each) in _OWN.items()
     if (limit := each.tolerance if role == "free" else each.free_motion)
 }
-"""Of free motion: its errors at the same time are over the sensitivity of the motion."""
+"""Tolerances of free motion: its errors at the same time are over the sensitivity of the motion."""
 FREE_ELASTIC = {**FREE, **BENDING}
-"""Of free motion of links that bend."""
+"""Tolerances of free motion of links that bend."""
 EVERY = tuple(dict.fromkeys((*DEFAULTS, *FREE, *ELASTIC)))
-"""All that there may be a limit of."""
+"""Names of all tolerances."""

@@ -1,4 +1,4 @@
-"""What is compared of free motion alone: its phase, its geometry, and what it has to conserve.
+"""The quantities of free motion alone: its phase, its geometry, and conserved quantities.
 
 Errors are shares of the largest deflection of the reference over the run (``D``), of all links: a
 link that passes through its straight line is as hard on an engine there as elsewhere.
@@ -112,7 +112,7 @@ def _nothing(scene: Scene, of: Motion | Run) -> Series:
 
 
 def _drift(column: str, unit: str, share: str) -> Measure:
-    """One number of a whole run, which no series of the log has."""
+    """Return one number of a whole run, which no series of the log has."""
     return Measure(
         body_kind="mechanism",
         column=column,
@@ -174,12 +174,12 @@ MOMENTUM = Quantity(
 
 
 LEAST = 1e-9
-"""The least deflection that errors are shares of, over the longest link: below it a link is rigid
-to an engine, whose joints are no nearer."""
+"""The least deflection for shares of errors, over the longest link: below it a link is rigid to an
+engine, whose joints are no nearer."""
 
 
 def largest_deflection(scene: Scene, reference: Motion) -> float:
-    """The largest deflection of the middle of any elastic link over the run [m]."""
+    """Return the largest deflection of the middle of any elastic link over the run [m]."""
     sizes = (float(np.max(np.abs(each), initial=0.0)) for each in _middles(reference).values())
     return max(*sizes, LEAST * scene.longest_m, 0.0)
 

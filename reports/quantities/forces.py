@@ -1,8 +1,8 @@
-"""What the joints and the drive bear: reactions, forces and moments of sliders, driving torque.
+"""Forces of the joints and the drive: reactions, forces and moments of sliders, driving torque.
 
-They are compared where they were asked for, at the instants that the engine says they act at.
-Errors are shares of the largest of the reference over the run (``F`` of reactions, ``M`` of the
-torque): a reaction that passes through 0 is as hard on an engine as any other.
+They are compared on request, at the instants at which the engine states that they act. Errors are
+shares of the largest of the reference over the run (``F`` of reactions, ``M`` of the torque): a
+reaction that passes through 0 is as hard on an engine as any other.
 """
 
 import itertools
@@ -19,12 +19,12 @@ from reports.quantities.quantity import BodyKind, Criterion, Measure, Quantity, 
 from sim.engine import Run
 
 LEAST_ARM = 0.1
-"""The least arm of a torque, over the longest link: a torque whose largest is under so much of the
-largest reaction times that link (that of a parallelogram at constant speed is 0) is held to it. Of
-the shipped scenes none has less than 0.13."""
+"""The least arm of a torque, over the longest link: a torque whose largest is under this part of
+the largest reaction times that link (that of a parallelogram at constant speed is 0) is scaled by
+it. Of the shipped scenes none has less than 0.13."""
 OPEN_SHARE = 3e-4
-"""Three times what MuJoCo's stiffest documented impedance (0.9999) leaves of a force; over the
-largest of them no ratio of masses makes it more (0.001 to 1000 times the mass of any link)."""
+"""Three times the part of a force that MuJoCo's stiffest documented impedance (0.9999) leaves; over
+the largest of them no ratio of masses makes it more (0.001 to 1000 times the mass of any link)."""
 TAKEN_UP = Tolerance(
     "Second order: forces go with accelerations, at places that are off by what a step leaves "
     "out, and a dyad passes them on enlarged by 1/sine of its transmission angle. Besides the "
@@ -58,8 +58,8 @@ FREE_FORCE = Tolerance(
 
 
 def acting(run: Run) -> Forces | None:
-    """The forces that a run logged, without the start where they are those of steps; None where
-    it logged none, or none that are as many as its samples."""
+    """Return the forces that a run logged, without the start where they are those of steps; None
+    where it logged none, or another number than its samples."""
     forces = run.motion.forces if run.motion is not None else None
     if forces is None or run.motion is None or forces.time_s.shape != run.motion.time_s.shape:
         return None
@@ -67,7 +67,7 @@ def acting(run: Run) -> Forces | None:
 
 
 def acting_at(run: Run) -> Array | None:
-    """When the forces of a run act, None where that is not known."""
+    """Return the instants at which the forces of a run act, None where unknown."""
     forces = acting(run)
     if forces is None or not np.all(np.isfinite(forces.time_s)):
         return None
@@ -75,13 +75,13 @@ def acting_at(run: Run) -> Array | None:
 
 
 def silent(run: Run) -> bool:
-    """Whether the engine says why it has no number of some forces."""
+    """True if the engine gives a reason for missing forces."""
     forces = acting(run)
     return forces is not None and bool(forces.undetermined)
 
 
 def largest_reaction(_: Scene, reference: Motion) -> float:
-    """The largest reaction in a pin, or normal force of a slider, over the run [N]."""
+    """Return the largest reaction in a pin, or normal force of a slider, over the run [N]."""
     forces = reference.forces
     assert forces is not None
     pins = (np.hypot(*force.T) for bodies in forces.pins.values() for force in bodies.values())
@@ -90,13 +90,13 @@ def largest_reaction(_: Scene, reference: Motion) -> float:
 
 
 def largest_moment(scene: Scene, reference: Motion) -> float:
-    """The largest reaction at the end of the longest link [N m]."""
+    """Return the moment of the largest reaction at the end of the longest link [N m]."""
     return largest_reaction(scene, reference) * scene.longest_m
 
 
 def largest_torque(scene: Scene, reference: Motion) -> float:
-    """The largest torque over the run, or of the largest reaction on the least arm [N m]; of a
-    driven slider the force, or the least share of that reaction [N]."""
+    """Return the largest torque over the run, or of the largest reaction on the least arm [N m];
+    for a driven slider the force, or the least share of that reaction [N]."""
     forces = reference.forces
     assert forces is not None
     bears = largest_reaction(scene, reference) if forces.pins else _inertia(scene)
@@ -106,8 +106,8 @@ def largest_torque(scene: Scene, reference: Motion) -> float:
 
 
 def _inertia(scene: Scene) -> float:
-    """The force that all masses take at the speed of the longest link, and their weight [N]: of
-    redundant links no reaction is known."""
+    """Return the inertia force of all masses at the speed of the longest link, and their weight
+    [N]: redundant links have no known reaction."""
     masses = [link.mass_kg for link in scene.links.values()]
     masses += [slider.mass_kg for slider in scene.sliders.values()]
     push = scene.longest_m * scene.pace_rad_s**2 + math.hypot(*scene.gravity_m_s2)
@@ -115,7 +115,7 @@ def _inertia(scene: Scene) -> float:
 
 
 def _largest(series: object) -> float:
-    """The largest finite number of some series (T,), 0 where there is none."""
+    """Return the largest finite number of some series (T,), 0 where there is none."""
     sizes = [
         np.max(each, where=np.isfinite(each), initial=0.0)
         for each in series  # type: ignore[attr-defined]
@@ -127,7 +127,7 @@ Read = Callable[[Scene, Forces | ForceBound], Series]
 
 
 def _pins(_: Scene, forces: Forces | ForceBound) -> Series:
-    """The force on the second of two bodies that meet in a pin; on each, where there are more."""
+    """Return the force on the second of two bodies that meet in a pin; on each, where more meet."""
     found: dict[str, Array] = {}
     for point, bodies in forces.pins.items():
         if len(bodies) == 2:
@@ -158,7 +158,7 @@ def _force(
     scale: Callable[[Scene, Motion], float],
     criterion: Criterion,
 ) -> Quantity:
-    """A quantity of forces, which one kind of bodies has."""
+    """Return a quantity of forces of one kind of bodies."""
 
     def seen(scene: Scene, forces: Forces | ForceBound | None) -> Series:
         return {} if forces is None else read(scene, forces)

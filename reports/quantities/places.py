@@ -1,5 +1,5 @@
-"""Where a mechanism stands and how it moves: its crank, links, sliders and points, whether its
-joints hold, and the rates, as the engine reports them and by differencing the places."""
+"""Position and motion of a mechanism: its crank, links, sliders and points, the gaps of its joints,
+and the rates, as the engine reports them and by differencing the positions."""
 
 from dataclasses import replace
 
@@ -46,7 +46,7 @@ FREE_PLACE = Tolerance(
 
 
 def _commanded(scene: Scene, reference: Motion) -> Series:
-    """Its angle; of a slider its displacement over the longest length."""
+    """Return its angle; for a slider its displacement over the longest length."""
     commanded = scene.driver.law.at(reference.time_s)[0]
     return {scene.driver.name: commanded / scene.driver_arm_m}
 
@@ -95,7 +95,7 @@ DRIVE = Quantity(
 def _place(
     name: str, measure: Measure, head: str, rule: str, short: str, explanation: str, cure: str
 ) -> Quantity:
-    """A quantity of which one kind of bodies has its places; its rule has its name."""
+    """Return a quantity of the positions of one kind of bodies; its rule has its name."""
     criterion = Criterion(
         rule, name, explanation, cure, short, WITHIN_A_STEP, free_motion=FREE_PLACE
     )
@@ -133,7 +133,7 @@ POSITION = _place(
 
 
 def _gap(kind: BodyKind, column: str) -> Measure:
-    """How far the bodies that share a pin or slider have come apart: by nothing, in truth."""
+    """Return the measure of the gap at a shared pin or slider, which is 0 in the reference."""
 
     def truth(scene: Scene, reference: Motion) -> Series:
         shared = (*(pin.point for pin in joints(scene).pins), *scene.sliders)
@@ -179,10 +179,10 @@ GAP = Quantity(
 
 
 OPEN_SHARE = 1e-3
-"""Ten times what MuJoCo's stiffest documented impedance (0.9999) leaves of an acceleration."""
+"""Ten times the open share of an acceleration at MuJoCo's stiffest documented impedance, 0.9999."""
 LOAD_SHARE = 5e-3
-"""Twice what MuJoCo's tuned constraints, of three steps' time constant, were seen to make of what
-loads shake their bodies by from step to step: 0.7e-3 to 2.5e-3, at 90 to 1440 steps a turn."""
+"""Twice the observed response of MuJoCo's tuned constraints, of three steps' time constant, to the
+change of loads on their bodies from step to step: 0.7e-3 to 2.5e-3, at 90 to 1440 steps a turn."""
 SECOND_ORDER = Tolerance(
     "Second order, with the third derivative of the motion, about curvature^1.5; as reported, "
     "with the share of an acceleration that soft constraints keep open, over a step.",

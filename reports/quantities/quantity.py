@@ -1,4 +1,4 @@
-"""What a quantity is: one entry says all that the other rooms want to know of it."""
+"""Interface of a quantity: one entry holds all data of it that the other rooms need."""
 
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -13,10 +13,10 @@ from sim.engine import Run
 BodyKind = Literal["driver", "link", "slider", "point", "mechanism"]
 Source = Literal["reported", "differenced"]
 Role = Literal["drive", "place", "closure", "derived", "force", "free", "elastic"]
-"""Places are what convergence, geometric errors and differences are taken of. What is derived comes
-of them, and forces go with it: the first samples, and those near change points, are rows of their
-own. Forces are compared where they were asked for alone, and what is of role "free" where a
-mechanism was let go, which has no drive; what is "elastic" where links bend."""
+"""Convergence, geometric errors and differences are computed for role "place". Derived quantities
+follow from these, and forces go with them: the first samples, and those near change points, are
+separate rows. Forces are compared on request only, role "free" in free motion, which has no drive,
+and role "elastic" where links bend."""
 Series = Mapping[str, Array]
 """A number (T,) or two (T, 2) per sample, by body."""
 
@@ -26,10 +26,10 @@ class Measure:
     """A quantity of one kind of body, in ``unit``.
 
     ``column`` names its largest error in the frame of cells, and has ``_error_`` in it where there
-    are errors of several kinds. ``truth`` is the reference's series, whose bodies are those that
-    are compared: none where it was not asked for. ``logged`` is the engine's, ``bound`` what the
-    reference may be wrong by (T,), nothing where it does not say. ``scale`` makes a pure number of
-    an error, a multiple of ``share``: L the longest link, w the driver's peak speed.
+    are errors of several kinds. ``truth`` is the reference's series, and determines the compared
+    bodies: none without a request. ``logged`` is the engine's, ``bound`` the uncertainty of the
+    reference (T,), empty where it is unknown. ``scale`` makes a pure number of an error, a multiple
+    of ``share``: L the longest link, w the driver's peak speed.
     """
 
     body_kind: BodyKind
@@ -44,10 +44,10 @@ class Measure:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """The numbers of a default limit, and why they are what they are; `reports.judge.tolerance` has
-    the formula, `reports.judge.rules.limits` that of ``jump``, ``parts`` and ``makes_up``.
-    ``lasting``, ``drifting``, ``opening``, ``arc`` and ``late`` are of free motion, which is ever
-    further off the longer it lasts; what ``bends`` is a share of the largest deflection."""
+    """The numbers of a default limit, with their reason; `reports.judge.tolerance` has the formula,
+    `reports.judge.rules.limits` that of ``jump``, ``parts`` and ``makes_up``. ``lasting``,
+    ``drifting``, ``opening``, ``arc`` and ``late`` are for free motion, whose errors grow with its
+    length; a limit that ``bends`` is a share of the largest deflection."""
 
     reason: str
     cap: float = math.inf
@@ -76,11 +76,11 @@ class Tolerance:
 
 @dataclass(frozen=True)
 class Criterion:
-    """What the errors of one source are held to: the words of a rule, and its tolerance.
+    """Criterion for the errors of one source: the words of a rule, and its tolerance.
 
     ``short`` is the rule in the verdict table, ``diagram`` the error in the page's list of
-    diagrams, which has none of it where that is empty. ``free_motion`` is the tolerance of free
-    motion, None where the error is shown alone there.
+    diagrams, which omits it where that is empty. ``free_motion`` is the tolerance of free motion,
+    None where the error is only shown there.
     """
 
     id: str
@@ -99,11 +99,11 @@ class Criterion:
 
 @dataclass(frozen=True)
 class Quantity:
-    """What is compared, for all kinds of bodies that have it.
+    """A compared quantity, for all kinds of bodies that have it.
 
-    ``head`` is the column of the verdict table that shows it, with others of that head ("" in
-    none). ``instants`` are those that the engine's numbers belong to, None where they are those of
-    the places; ``silent`` says of a run that its engine has no such numbers, which is no fault.
+    ``head`` is its column of the verdict table, with others of that head ("" in none). ``instants``
+    are those of the engine's numbers, None where they are those of the positions; ``silent`` is
+    True for a run whose engine has no such numbers, which is no fault.
     """
 
     name: str
@@ -116,16 +116,16 @@ class Quantity:
 
     @property
     def share(self) -> str:
-        """What its pure numbers are multiples of, lengths apart."""
+        """The unit of its pure numbers, lengths apart."""
         return self.measures[0].share
 
     def of(self, kind: BodyKind) -> Measure:
-        """The quantity of a kind of body."""
+        """Return the quantity of a kind of body."""
         return next(each for each in self.measures if each.body_kind == kind)
 
 
 def tolerance_name(quantity: str, source: Source) -> str:
-    """What `--tol`, a scene and the columns of pure numbers call a quantity from a source."""
+    """Return the name of a quantity and source in `--tol`, scenes and pure columns."""
     return quantity if source == "reported" else f"{quantity}-{source}"
 
 
@@ -133,7 +133,7 @@ MovingKind = Literal["link", "slider", "point"]
 
 
 def moving(kind: MovingKind, order: Order, column: str) -> Measure:
-    """Angles, displacements or positions of the moving bodies of a kind, or a rate of them."""
+    """Return angles, displacements or positions of moving bodies of a kind, or a rate of them."""
     turns = kind == "link"
 
     def scale(scene: Scene, _: Motion) -> float:
@@ -141,7 +141,7 @@ def moving(kind: MovingKind, order: Order, column: str) -> Measure:
         return speed if turns else scene.longest_m * speed
 
     def truth(scene: Scene, reference: Motion) -> Series:
-        """Without points of the ground, and without the driver's coordinate, which is the drive."""
+        """Omit points of the ground, and the driver's coordinate, which is the drive."""
         own = scene.driver
         crank = (own.link,) if order == 0 and own.is_crank else ()
         slider = (own.slider,) if order == 0 and own.slider is not None else ()
@@ -166,7 +166,7 @@ def moving(kind: MovingKind, order: Order, column: str) -> Measure:
 
 
 def every_place(kind: MovingKind, column: str) -> Measure:
-    """The places of all moving bodies of a kind, the driver with them."""
+    """Return the positions of all moving bodies of a kind, including the driver."""
 
     def truth(scene: Scene, reference: Motion) -> Series:
         still = scene.ground if kind == "point" else ()
@@ -180,10 +180,10 @@ FIELDS: Mapping[MovingKind, Sequence[str]] = {
     "slider": ("displacement", "speed", "acceleration"),
     "point": ("position", "velocity", "acceleration"),
 }
-"""What a motion calls a place, and its rates."""
+"""Attributes of a motion for a position, and its rates."""
 
 
 def _read(motion: Motion | Bound | None, kind: MovingKind, order: Order) -> Series:
-    """The series of a motion, or of a bound, if it is there."""
+    """Return the series of a motion, or of a bound, if it is there."""
     bodies = () if motion is None else getattr(motion, f"{kind}s").items()
     return {name: getattr(body, FIELDS[kind][order]) for name, body in bodies}
