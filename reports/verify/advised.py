@@ -1,4 +1,4 @@
-"""A failing cell is run again with what its engine has against that, and says what came of it."""
+"""Remedies of a failing cell: another run with the remedies of its engine, and their result."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -13,14 +13,14 @@ from sim.registry import ENGINES, engine
 from sim.registry.offers import remedies
 
 HELPS = 3.0
-"""How many times less error makes a remedy; less than that may be chance."""
+"""Factor by which a remedy reduces the error; less may be chance."""
 ENDS = ("ok", "diverged", "locked", "branch-changed")
-"""How runs end that other settings may mend."""
+"""Status of runs that other settings may mend."""
 
 
 def advised(cell: Cell) -> Checked:
-    """As `judge.cell.check`; where profile tuned fails by what settings can mend, the remedies of
-    its engine are tried at the same step, and the cures say what came of it."""
+    """Return `judge.cell.check`; where profile tuned fails by an error that settings can mend, the
+    remedies of its engine are tried at the same step, and the cures give their results."""
     checked = check(cell)
     if not _mendable(checked):
         return checked
@@ -34,7 +34,7 @@ def advised(cell: Cell) -> Checked:
 
 
 def _mendable(checked: Checked) -> bool:
-    """A servo lags by itself; other profiles are told to use this one."""
+    """True if settings may help: a servo lags by itself; other profiles are to use this one."""
     cell = checked.cell
     return (
         (cell.profile, cell.drive) == ("tuned", "prescribed")
@@ -45,16 +45,16 @@ def _mendable(checked: Checked) -> bool:
 
 @dataclass(frozen=True)
 class _Outcome:
-    """What came of a run: the rules that it fails, and what its error takes of the limit (no end
-    where it fails a rule that it should not)."""
+    """Result of a run: the rules that it fails, and its error as a part of the limit (infinite
+    where it fails a further rule)."""
 
     failing: tuple[str, ...]
     share: float
 
 
 def _remedy(checked: Checked, choices: Sequence[Settings]) -> str:
-    """What came of the first choice that mends the cell with `HELPS` times less error, or of the
-    best of all; the error is that which takes most of its limit."""
+    """Return the result of the first choice that mends the cell with `HELPS` times less error, or
+    of the best of all; the error is the one with the largest part of its limit."""
     cell, rule = checked.cell, _worst(checked)
     before = _share(checked, rule) if rule else math.inf
     outcomes: dict[str, _Outcome] = {}
@@ -79,7 +79,7 @@ def _remedy(checked: Checked, choices: Sequence[Settings]) -> str:
 
 
 def _outcome(checked: Checked, changed: Cell, rule: str) -> _Outcome:
-    """What comes of a changed cell; with its finer steps where these failed, or nothing ran."""
+    """Return the result of a changed cell; with finer steps where these failed, or nothing ran."""
     again = check(replace(changed, converge=changed.converge and not rule))
     failing = {finding.rule for finding in again.failures}
     mended = failing <= {finding.rule for finding in checked.failures} if rule else not failing
@@ -87,8 +87,8 @@ def _outcome(checked: Checked, changed: Cell, rule: str) -> _Outcome:
 
 
 def _worst(checked: Checked) -> str:
-    """The rule whose error takes most of its limit, of those that fail; "" where there is none,
-    and for a run that did not end well."""
+    """Return the failing rule with the largest part of its limit; "" where there is none, and for a
+    run that did not end well."""
     if checked.status != "ok":
         return ""
     failing = [f.rule for f in checked.failures if f.rule in (*PLACES, *RATES, *FORCES)]
@@ -96,7 +96,7 @@ def _worst(checked: Checked) -> str:
 
 
 def _share(checked: Checked, rule: str) -> float:
-    """The part of its limit that the error of a rule takes, "" for the largest of all.
+    """Return the error of a rule as a part of its limit, "" for the largest of all.
 
     The limits are the same for all settings: they follow from the step and the geometry.
     """
@@ -113,20 +113,20 @@ def _share(checked: Checked, rule: str) -> float:
 
 
 def _of_limit(after: float, before: float) -> str:
-    """Two shares in words."""
+    """Return two shares in words."""
     instead = f" instead of {before:.2g}" if math.isfinite(before) else ""
     return f"{after:.2g} of its limit{instead}"
 
 
 LIMITS = Limits(3600.0, 16.0)
-"""Far beyond what any sound cell takes: one that hangs, or fills the memory, is a row all the
-same. Longer runs are asked for with one job, which has no limits."""
+"""Limits far beyond any sound cell: one that hangs, or fills the memory, is a row all the same.
+Longer runs need one job, which has no limits."""
 
 
 def check_all(
     cells: Sequence[Cell], jobs: int, done: Callable[[Checked], None] = lambda _: None
 ) -> list[Checked]:
-    """Check all cells, in the order of ``cells``; ``done`` hears of each as it ends.
+    """Check all cells, in the order of ``cells``; ``done`` gets each as it ends.
 
     Parameters
     ----------

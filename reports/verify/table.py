@@ -1,6 +1,5 @@
-"""A verification on the terminal, failures first with their cure, then the tables, then where the
-numbers come from; and as JUnit XML.
-"""
+"""A verification on the terminal, failures first with their cure, then the tables, then the origin
+of the numbers; and as JUnit XML."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -26,7 +25,7 @@ from reports.way.way import WAYS
 
 Texts = Callable[[Checked], Sequence[str]]
 Part = tuple[int, Callable[[Sequence[Checked]], Sequence[str]]]
-"""A part of what stands under the tables, its place among the others, and its lines for cells."""
+"""A part of the text below the tables, its place among the others, and its lines for cells."""
 
 
 def _none(one: Checked) -> Sequence[str]:
@@ -37,9 +36,9 @@ def _none(one: Checked) -> Sequence[str]:
 class CellTable:
     """The columns of cells of a kind.
 
-    ``numbers`` are quantities by the head of their column. ``rooms`` says for terminals of at least
-    so many columns which heads are shown, and which of those that ``before`` fills before the share
-    of a limit; ``after`` is filled behind it. From ``apart`` columns on the engine has its own.
+    ``numbers`` are quantities by the head of their column. ``rooms`` lists, for terminals of at
+    least so many columns, the heads shown, and those filled by ``before``, before the share of a
+    limit; ``after`` comes behind it. From ``apart`` columns on the engine has its own.
     """
 
     title: str
@@ -53,7 +52,7 @@ class CellTable:
     forces: bool = False
 
     def shown(self, profile: str, gated: bool, chosen: Sequence[Checked], width: int) -> Table:
-        """The cells of one profile, those out of tolerance first."""
+        """Return the cells of one profile, those out of tolerance first."""
         heads, before = next(
             (heads, before) for least, heads, before in self.rooms if width >= least
         )
@@ -90,11 +89,11 @@ MARKS = {
     "unsupported": Text("NONE", "bold red"),
 }
 SHORT = {each.id: each.short for entry in QUANTITIES.values() for each in entry.criteria}
-"""The rules that hold an error to a limit, short; a dash marks differenced rates."""
+"""The rules that compare an error with a limit, short; a dash marks differenced rates."""
 
 
 def mark(one: Checked) -> Text:
-    """The verdict; red only where it counts."""
+    """Return the verdict; red only where it counts."""
     shown = MARKS[one.verdict]
     return shown if one.cell.gated or one.verdict == "within" else Text(shown.plain, "yellow")
 
@@ -106,7 +105,7 @@ def row_cells(
     *,
     forces: bool = False,
 ) -> list[Text | str]:
-    """One row, from its numbers on; ``numbers`` are the quantities by head."""
+    """Return one row, from its numbers on; ``numbers`` are the quantities by head."""
     errors = one.errors
     if errors is None:
         return [*["-"] * len(heads), "", Text(f"{one.status}: {one.reason}", "red")]
@@ -117,7 +116,7 @@ def row_cells(
 
 
 def halved(one: Checked, convergence: Convergence | None) -> str:
-    """What an error does when the step is halved, or how the run ended."""
+    """Return the convergence of an error when the step is halved, or how the run ended."""
     if one.status != "ok":
         early = one.status != "branch-changed"  # such a run goes on to its end
         return one.status + (f" at t = {one.stopped_at_s:.3g} s" if early else "")
@@ -125,12 +124,12 @@ def halved(one: Checked, convergence: Convergence | None) -> str:
 
 
 def _number(error: Error | None) -> str:
-    """A pure number, or a dash where nothing of the kind was reported."""
+    """Return a pure number, or a dash where nothing of the kind was reported."""
     return "-" if error is None else f"{error.pure:.1e}" if error.finite else "nan"
 
 
 def _share(findings: Sequence[Finding]) -> Text:
-    """The largest share of a limit that an error takes, and whose it is."""
+    """Return the largest error as a share of its limit, with its name."""
     shares = [
         (finding.number / finding.limit, SHORT[finding.rule])
         for finding in findings
@@ -147,7 +146,7 @@ def _share(findings: Sequence[Finding]) -> Text:
 
 
 UNITS, LINK_UNITS, OF_FORCES, MORE_UNITS, MORE_STEPS, NOTES, STEPS = range(7)
-"""Places of parts: units and steps of cells stand there, those of free motion between."""
+"""Places of parts: units and steps of cells, with those of free motion between."""
 OF_FORCES_WORDS = (
     "Forces against kinetostatics at the instants that they act at; F largest reaction, M largest "
     "torque over the run."
@@ -155,7 +154,7 @@ OF_FORCES_WORDS = (
 
 
 def footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
-    """Units, steps and versions."""
+    """Return units, steps and versions."""
     of_all: list[Part] = [(OF_FORCES, _of_forces), (NOTES, _notes)]
     own = {part: [*checked] for part in of_all}
     for one in checked:
@@ -172,7 +171,7 @@ def _of_forces(checked: Sequence[Checked]) -> Sequence[str]:
 
 
 def _notes(checked: Sequence[Checked]) -> list[str]:
-    """What is to be said of forces, and of free motion, once for a scene: counts may differ by a
+    """Return the notes on forces, and on free motion, once for a scene: counts may differ by a
     sample."""
     notes = dict[tuple[str, str], str]()
     for one in checked:
@@ -184,7 +183,7 @@ def _notes(checked: Sequence[Checked]) -> list[str]:
 
 
 def span(values: Sequence[float]) -> str:
-    """One value, or the smallest and the largest."""
+    """Return one value, or the smallest and the largest."""
     low, high = f"{values[0]:.4g}", f"{values[-1]:.4g}"
     return low if low == high else f"{low} to {high}"
 
@@ -215,8 +214,8 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
 
 
 def _failures(console: Console, failed: Sequence[Checked]) -> None:
-    """What is out of tolerance, cell by cell and with what was tried on it, then what would mend
-    the others, rule by rule."""
+    """Print the failures, cell by cell and with the tried remedies, then the cures of the others,
+    rule by rule."""
     for one in failed:
         console.print(Text(f"{mark(one).plain}  {one.cell.label}", "bold red"))
         for finding in one.failures:
@@ -233,7 +232,7 @@ def _failures(console: Console, failed: Sequence[Checked]) -> None:
 
 
 def _tables(checked: Sequence[Checked]) -> list[CellTable]:
-    """Those of the cells, the most general first."""
+    """Return the tables of the cells, the most general first."""
     ways = {one.cell.way.name: one.cell.way for one in checked}
     return list(
         dict.fromkeys(
@@ -243,7 +242,7 @@ def _tables(checked: Sequence[Checked]) -> list[CellTable]:
 
 
 def _advice(console: Console, checked: Sequence[Checked]) -> None:
-    """What is not a failure and still worth knowing: one line per rule, profile and engine."""
+    """Print advice that is no failure: one line per rule, profile and engine."""
     groups: dict[tuple[str, str, str], list[tuple[Checked, Finding]]] = {}
     for one in checked:
         for finding in one.advice:
@@ -260,7 +259,7 @@ def _advice(console: Console, checked: Sequence[Checked]) -> None:
 
 
 def _summary(checked: Sequence[Checked], failed: Sequence[Checked]) -> Text:
-    """The verdict in one line."""
+    """Return the verdict in one line."""
     gated = [one for one in checked if one.cell.gated]
     scenes = len({one.cell.scene.name for one in gated})
     engines = len({one.cell.engine for one in gated})
@@ -273,7 +272,7 @@ def _summary(checked: Sequence[Checked], failed: Sequence[Checked]) -> Text:
 
 
 def suite(checked: Sequence[Checked], facts: Mapping[str, str]) -> Element:
-    """One test case per cell; a cell that is shown without being gated is skipped, with its
+    """Return one test case per cell; a cell that is shown without being gated is skipped, with its
     findings in the message."""
     return suite_of(
         "verify",
@@ -285,7 +284,7 @@ def suite(checked: Sequence[Checked], facts: Mapping[str, str]) -> Element:
 
 
 def _case(one: Checked) -> Element:
-    """One cell."""
+    """Return the test case of one cell."""
     cell = one.cell
     case = case_of(f"{cell.engine}.{cell.profile}", cell.scene.name, f"{one.wall_s:.3f}")
     text = "\n".join(_line(finding) for finding in one.failures)
@@ -302,7 +301,7 @@ def _case(one: Checked) -> Element:
 
 
 def _line(finding: Finding) -> str:
-    """A finding with its rule and cure."""
+    """Return a finding with its rule and cure."""
     rule = RULES[finding.rule]
     return f"{rule.id} {rule.title}: {finding.text}" + (
         f"\n  cure: {finding.cure}" if finding.cure else ""
