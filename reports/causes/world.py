@@ -135,7 +135,7 @@ def _changed(
     point: Callable[[PointMotion], Orders],
     slider: Callable[[SliderMotion], Orders],
 ) -> Motion:
-    """Return a motion with other orders of its bodies."""
+    """Return a motion with changed positions and rates of its bodies."""
     return replace(
         motion,
         links={name: LinkMotion(*link(own)) for name, own in motion.links.items()},

@@ -146,7 +146,7 @@ def differenced_rows(beside: Beside, at: Instants) -> Iterable[Error]:
     inner = at[1:-1]
     for place in beside.places:
         track = beside.judged(place, at.time_s)
-        # The logged numbers are rounded too: that is part of what a difference is uncertain by.
+        # The logged numbers are rounded too: that is part of the uncertainty of a difference.
         unsure = (track.bound + EPSILON * track.magnitude)[1:-1]
         for name, order in orders:
             once = order == 1

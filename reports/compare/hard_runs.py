@@ -107,7 +107,7 @@ def compared(chain: WindowChain, done: Run) -> ChainErrors:
     motion, turning = done.motion, ChainMotion(chain)
     theta, _, _ = turning.at(motion.time_s)
     arm = chain.length_m * np.stack([np.cos(theta), np.sin(theta)], axis=-1)
-    with np.errstate(all="ignore"):  # what has come apart may overflow
+    with np.errstate(all="ignore"):  # a run that came apart may overflow
         return ChainErrors(
             chain,
             done,
@@ -187,7 +187,7 @@ def toggle_passage(barrier: ToggleBarrier, run: Run) -> TogglePassage:
     motion = run.motion
     assert motion is not None
     one, other = barrier.links
-    with np.errstate(all="ignore"):  # what has come apart may overflow
+    with np.errstate(all="ignore"):  # a run that came apart may overflow
         turned = motion.links[other].theta - motion.links[one].theta
         share = 1.0 + (turned - turned[0]) / barrier.open_rad
         gap = np.max([np.abs(pin) for pin in run.gaps.values()], axis=0)

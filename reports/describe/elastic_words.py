@@ -158,7 +158,7 @@ def certainty(motion: ElasticHistory) -> list[str]:
     """Return the uncertainty of a motion, in sentences. Raises CrankcheckError where no other can
     be computed."""
     if isinstance(motion.by, Segments):
-        return []  # it is what an engine has, and not the beam
+        return []  # a model of engines, and not the beam
     time_s = np.linspace(0.0, motion.until_s, SAMPLES)
     own = motion.at(time_s)
     notes = [_by_other_shapes(motion, time_s, own)]

@@ -112,9 +112,9 @@ def _travels(scene: Scene, along: Sequence[Along]) -> Iterator[str]:
         return
     for output, travel in every.items():
         if isinstance(output, Along) and not isinstance(travel, Travel):
-            yield f"{_called(output)}: does not move"  # what moves along a line turns back on it
+            yield f"{_called(output)}: does not move"  # a motion along a line turns back on it
         if not isinstance(travel, Travel) or _is_driver(scene, output):
-            continue  # it turns fully, stands still, or is told of as the driver
+            continue  # it turns fully, stands still, or is described as the driver
         turns = _turns(scene, output)
         size = f"{_deg(travel.stroke)} deg" if turns else f"{travel.stroke:.6g} m"
         line = f"{_called(output)}: {'swing' if turns else 'stroke'} {size}"

@@ -207,7 +207,7 @@ def largest_of(scene: Scene, turn: Motion, acting: Forces) -> list[Largest]:
         mean = math.nan
         if not acting.has_equilibria(0).any():
             mean = float(np.nanmean(values[:-1]))
-            # What comes and goes alike has no mean but rounding.
+            # A series that comes and goes alike has no mean but rounding.
             mean = mean if abs(mean) > 1e-9 * abs(value) else 0.0
         rows.append(Largest(name, value, unit, float(places[at]) if value else math.nan, mean))
     return rows

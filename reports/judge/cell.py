@@ -149,7 +149,7 @@ def examined(
 def _examined(cell: Cell, runner: CellRunner, adapter: Engine | None) -> tuple[Checked, Run | None]:
     """Return `examined`, but for the time."""
     try:
-        truth = cell.truth  # before the run: the truth of another scene is let go
+        truth = cell.truth  # before the run: the reference of another scene is dropped
         own = adapter or engine(cell.engine)
         runs = _Runs(cell, truth, truth.start, cell.given, own, runner, adapter)
         done = runs.run(1)

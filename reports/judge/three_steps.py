@@ -74,7 +74,7 @@ def convergence(
     known: float = 0.0,
     solved: float = 0.0,
 ) -> Convergence:
-    """Read three errors at dt, dt/2, dt/4 (see the module); ``rounding`` needs no step.
+    """Read three errors at dt, dt/2, dt/4 (see the module); below ``rounding`` no step matters.
 
     Where errors of several kinds may cancel at one of the steps, as those of a phase, a floor
     counts only where the last halving leaves most of the error. An error up to ``known`` is no

@@ -121,7 +121,7 @@ def beyond_engine(name: str, errors: Errors) -> float:
     """Return the model error of an engine's links, as a pure number of a quantity."""
     links = errors.of_links
     own, segments = links.beyond(name), links.limits.get("segments")
-    if name in FORCES and segments:  # what bends by another share pushes by as much more
+    if name in FORCES and segments:  # a relative error of bending is one of the force
         return own + 0.5 * (default(segments, errors) + links.locked)
     return own
 

@@ -179,7 +179,7 @@ def _values(column: pa.ChunkedArray) -> Any:
     if pa.types.is_floating(column.type) or pa.types.is_integer(column.type):
         if column.null_count:
             return np.array(column.to_pylist(), dtype=object)
-        # In numpy's memory, which goes back to the system; arrow keeps what it has had.
+        # In numpy's memory, which goes back to the system; arrow keeps its own.
         return np.concatenate([chunk.to_numpy() for chunk in column.chunks])
     return np.array([plain(cell) for cell in column.to_pylist()], dtype=object)
 

@@ -107,7 +107,7 @@ def wanted(scene: Scene, map_: Map, *, forces: bool = False) -> Callable[[str], 
                 return True
             found = meaning(column, named)
         except CrankcheckError:
-            return True  # a name that contradicts itself, which is told later
+            return True  # a name that contradicts itself, reported later
         return not isinstance(found, str) and (found.gap or found.of not in scene.ground)
 
     return is_wanted

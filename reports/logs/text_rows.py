@@ -109,7 +109,7 @@ class RowReader:
             )
 
         try:
-            try:  # where a type is told, the text is let go block by block
+            try:  # with given types, the text is freed block by block
                 return table(types)
             except pa.ArrowInvalid:
                 if misfits:

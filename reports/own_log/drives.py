@@ -321,7 +321,7 @@ def _left(time_s: Array, signals: Array, frequency: float) -> float:
         return math.inf
     turns = frequency * np.outer(time_s - time_s[0], np.arange(1, HARMONICS + 1))
     waves = np.concatenate([np.ones((time_s.size, 1)), np.cos(turns), np.sin(turns)], axis=-1)
-    # The normal equations: a tenth of the time of a decomposition, for what is only a guess.
+    # The normal equations: a tenth of the time of a decomposition, for a mere guess.
     normal = waves.T @ waves + 1e-9 * time_s.size * np.eye(waves.shape[-1])
     weights = np.linalg.solve(normal, waves.T @ signals)
     return float(np.sum((signals - waves @ weights) ** 2))

@@ -74,7 +74,7 @@ def _low_pass(stretch: Inquiry, column: str) -> Account | None:
     _, log_constant, feed = best
     constant = step * math.exp(log_constant)
     if constant > (excerpt.instants[-1] - excerpt.instants[0]):
-        return None  # what stays is of no signal
+        return None  # the output would be constant
     errors = {column: residual(np.array([log_constant]), feed)}
     phrase = (
         f"{{who}} went through a low-pass of first order, time constant {duration(constant)} "

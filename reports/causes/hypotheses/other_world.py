@@ -70,7 +70,7 @@ def _later(inquiry: Inquiry, world: World, cost: float, phrase: str) -> Iterator
         if column in inquiry.open:
             size = excerpt.size.rms
             gains += (excerpt.error / size) ** 2 - (others[column] / size) ** 2
-    after = np.cumsum(gains[::-1])[::-1]  # what is gained where all from a sample on is of another
+    after = np.cumsum(gains[::-1])[::-1]  # gain with the other world from a sample on
     first = int(np.argmax(after))
     if first == 0 or after[first] <= 0.0:
         return

@@ -189,7 +189,7 @@ def _grids(excerpt: Excerpt) -> Iterator[RoundingGrid]:
 def _on(numbers: Array, step: Array, lost: Array) -> bool:
     """True if numbers are whole steps, and the steps exceed the loss in reading."""
     off = np.abs(numbers / step - np.round(numbers / step)) * step
-    steps = np.ptp(numbers) > 0.5 * np.max(step)  # what is less than one step is on every grid
+    steps = np.ptp(numbers) > 0.5 * np.max(step)  # values within one step are on every grid
     return bool(steps and np.all(off <= ON_GRID * step + lost) and np.all(step > 1e3 * lost))
 
 

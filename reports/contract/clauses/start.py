@@ -103,7 +103,7 @@ def _every_scene(subject: Subject) -> Iterator[str]:
                 if not str(refused).strip():
                     yield f"{at}: refused without a word"
                 continue
-            except Exception as error:  # whatever an engine raises is what is looked for
+            except Exception as error:  # any error of an engine counts
                 yield f"{at}: open raised {failure(error)}, in place of EngineError"
                 continue
             try:

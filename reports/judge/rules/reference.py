@@ -100,7 +100,7 @@ def _bounds(errors: Errors) -> Iterator[tuple[str, str, float]]:
     for (quantity, body), bound in errors.uncertain.items():
         yield quantity, body, bound
     for row in errors.rows:
-        if row.kind == "total":  # the others are shown, or held to limits of their own
+        if row.kind == "total":  # the others are shown, or have separate limits
             yield row.tolerance, row.body, row.pure_bound
 
 
