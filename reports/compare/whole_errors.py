@@ -262,7 +262,7 @@ TWICE = 4.0
 
 
 def summed(law: Law, dt_s: float, steps: int) -> float:
-    """Return the largest effect of rounding on the driver's angle in ``steps`` steps [rad].
+    """Return the largest effect of rounding on the driver's angle in ``steps`` of ``dt_s`` [rad].
 
     At constant speed an engine adds ``speed * dt`` to the angle at every step (MuJoCo ``qpos += dt
     * qvel``, pymunk ``angle += omega * dt``). Each sum is rounded by at most eps/2 of the angle,

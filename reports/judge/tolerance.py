@@ -40,9 +40,9 @@ Where links bend, rates have as many joints in a row as there are segments, each
 own: their budget grows with the root of that number. The deflection of the links, a share of its
 largest, has the budget of positions over that (``bends``), and the error of the swings of the
 springs (`ElasticFacts.deflecting`); all quantities compared with the beam have the exact chain's
-own difference from it in addition (`reports.compare.elastic`), as that is no engine's fault. A beam
-of an engine's own has no joints within: its deflection error is the relative error of the bending
-loads. For exudyn it is a quarter of all that on the shipped scenes.
+own difference from it in addition (`reports.compare.elastic_errors`), as that is no engine's fault.
+A beam of an engine's own has no joints within: its deflection error is the relative error of the
+bending loads. For exudyn it is a quarter of all that on the shipped scenes.
 
 Forces are shares of the largest of the reference, in which the masses cancel: no ratio of these is
 in their budget, but in that of the start (`reports.judge.rules.limits`).

@@ -40,7 +40,7 @@ ITSELF = (
     "every reading is that of the reference to the last bit: it may have been compared with itself"
 )
 STEPPED = ("CC116", "CC118")
-"""Rules that need a step; the others of `_RULES` need none."""
+"""Rules that need a step; the others of `RULES` need none."""
 NOT_OF_LOGS = ("CC110", "CC111", "CC115", "CC117")
 """Rules for runs: a log was not requested, is not run again, and may well be a closed form."""
 

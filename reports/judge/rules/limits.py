@@ -146,7 +146,7 @@ def allowance(tolerance: str, errors: Errors, placing: Placing = "integrated") -
     The correction of an impulse solver at its start is half a step's change of momentum: the forces
     of its first step are off by half of themselves, at every step, and those of the second by as
     much to the other side. Where iterations leave half of it, it rings off within a dozen steps,
-    and these alone are the start (`reports.compare.compare.OF_STEPS`). Observed for pymunk, as
+    and these alone are the start (`reports.compare.whole_errors.OF_STEPS`). Observed for pymunk, as
     multiples of half the largest force at the start: up to 1.26, at 90 and 720 steps a turn on
     every shipped scene.
 
