@@ -20,7 +20,7 @@ from models.files.reading import every_shipped, load_scene
 from models.scene import KEPT, Scene
 from reports.output.numbers import listed
 from reports.plan.steps import positive
-from reports.quantities import EVERY
+from reports.quantities.limits import EVERY
 from sim.engine import SettingValue
 from sim.engine.settings import profile_of, resolved
 from sim.registry import FIRST, engine

@@ -8,7 +8,7 @@ from typing import Any
 
 from models.errors import CrankcheckError, shown, suggestion
 from reports.plan.steps import positive
-from reports.quantities import DEFAULTS
+from reports.quantities.limits import DEFAULTS
 from reports.requests.any_log import LogLike, MapLike
 from reports.requests.arguments import SceneLike, is_true, told_at_the_call
 from reports.requests.check import CellVerdict

@@ -83,7 +83,7 @@ def _over_inertia() -> Sequence[Callable[[InertiaMap], Figure]]:
 
 AT_A_SPEED = Files[SteadyVibration](
     {
-        "vibration_figures.json": files.vibration_document,
+        "vibration.json": files.vibration_document,
         "turn.csv": lambda found: csv(files.turn_frame(found)),
         "natural.csv": lambda found: csv(files.natural_frame(found)),
         "spectrum.csv": lambda found: csv(files.spectrum_frame(found)),

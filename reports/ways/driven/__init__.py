@@ -22,7 +22,8 @@ from reports.plan.singular import (
     refuse_singular,
 )
 from reports.plan.steps import TURNS, counted
-from reports.quantities import DEFAULTS, MOVES, named
+from reports.quantities import MOVES, named
+from reports.quantities.limits import DEFAULTS
 from reports.quantities.quantity import Role, Tolerance
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import ResultKind, StudyLengths, Way

@@ -17,7 +17,7 @@ from reports.plan.requirements import (
     logged_every,
     refuse_unelastic,
 )
-from reports.quantities import ELASTIC
+from reports.quantities.limits import ELASTIC
 from reports.way.length import SEGMENTS, GivenAs, Length, Planned
 from reports.way.way import ResultKind, StudyLengths, StudyLinks
 from reports.ways.driven import DrivenWay

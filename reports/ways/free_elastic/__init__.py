@@ -15,7 +15,7 @@ from reports.plan.requirements import (
     refuse_unelastic,
     shortened_note,
 )
-from reports.quantities import FREE_ELASTIC
+from reports.quantities.limits import FREE_ELASTIC
 from reports.way.length import GivenAs, Length, Planned
 from reports.way.way import StudyLengths
 from reports.ways.elastic import Bending
