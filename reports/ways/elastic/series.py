@@ -14,11 +14,11 @@ CHAIN = ("segments",)
 
 
 def elastic_error_series(trial: Trial, run: Run) -> ErrorSeries:
-    """A run of the segments of a scene, with its elastic links as such.
+    """The errors of a run of the segments of a scene, with its elastic links as such.
 
-    The error of place is the largest of two: that of the deflection beside the exact chain, over
-    the largest deflection, which is what an engine itself is off by; and that of a place beside the
-    beam, as of rigid links.
+    The error of place is the larger of two: the error of the deflection against the exact chain,
+    over the largest deflection, which is the engine's own; and the error of a place against the
+    beam, as for rigid links.
     """
     truth = _truth(trial)
     folded = truth.logged(run)
@@ -58,7 +58,7 @@ def elastic_start(trial: Trial) -> State:
 
 
 def elastic_motion(trial: Trial, time_s: Array) -> Motion:
-    """The exact chain with all of its nodes, to be drawn."""
+    """The exact chain with all of its nodes, to draw."""
     return _truth(trial).exact.motion.at(time_s)
 
 
