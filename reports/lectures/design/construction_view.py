@@ -127,8 +127,7 @@ def placements_of(examined: Examined) -> tuple[PlacedMechanism | None, ...]:
 
 
 def _placed(scene: Scene, position: PrecisionPosition) -> PlacedMechanism | None:
-    """Place the mechanism on the scene's own branches where these meet the position, else
-    nearest."""
+    """Place the mechanism on the scene's own branches if they meet the position, else nearest."""
     signed = SignedScene.of(scene)
     every = (
         signed.with_signs(signs) for signs in itertools.product((1, -1), repeat=len(signed.dyads))
