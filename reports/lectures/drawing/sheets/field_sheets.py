@@ -97,8 +97,7 @@ def _block(axes: Axes, place: Array, along: Array) -> None:
 
 
 def _along(chain: Chain, joint: Joint, at: Mapping[Joint, Array]) -> Array:
-    """The direction of a slider: along an edge of its first link, or along a bar if there is
-    one."""
+    """The direction of a slider: along an edge of its link with fewer joints, as of a bar."""
     link = min(joint, key=lambda one: chain.degrees[one])
     others = [one for one in chain.joints_of(link) if one != joint]
     way = np.asarray(at[others[0]] - at[joint])

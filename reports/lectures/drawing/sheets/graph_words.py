@@ -71,8 +71,7 @@ def _width_mm(column: list[str]) -> float:
 
 
 def draw_table(axes: Axes, drawn: DrawnGraphs, box: Box) -> None:
-    """Draw the table in its box: every second, third... row where room is lacking, with a note on
-    it."""
+    """Draw the table in its box: every second, third... row where room is lacking, with a note."""
     columns = table_cells(drawn)
     rows, room = len(columns[0]) - 2, int(box.height / ROW_MM) - 4
     every = math.ceil(rows / room)
@@ -102,8 +101,7 @@ def share(off: float) -> str:
 
 
 def own_rates_off(drawn: DrawnGraphs, order: Order) -> float | None:
-    """Largest error of a log's own rate at the divisions, over the size; None without such a
-    rate."""
+    """Largest error of a log's own rate at the divisions, over the size; None without rate."""
     if drawn.log is None:
         return None
     rates = drawn.log.at_divisions(order, drawn.parts)
@@ -123,8 +121,7 @@ def told_errors(drawn: DrawnGraphs, graphs: ThreeGraphs) -> str:
 
 
 def told_log(drawn: DrawnGraphs) -> list[str]:
-    """Lines on the errors of the log's graphs, the engine's part of them, and the reading of the
-    log."""
+    """Lines on the errors of the log's graphs, the engine's part of them, and their reading."""
     assert drawn.log is not None
     assert drawn.logged is not None
     symbols, order = drawn.span.symbols, READ[drawn.by]

@@ -142,8 +142,7 @@ class LogInstants:
 
     @staticmethod
     def of_file(scene: Scene, path: Path, map_: Map) -> LogInstants:
-        """Read a file, as `judge` does. Raises CrankcheckError for a file that is no log of the
-        scene."""
+        """Read a file, as `judge` does. Raises CrankcheckError for no log of the scene."""
         return LogInstants._of(SheetLog.of_file(scene, path, map_, "polygons"))
 
     @staticmethod

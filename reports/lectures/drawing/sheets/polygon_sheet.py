@@ -224,8 +224,7 @@ def _frame(axes: Axes, sheet: PolygonSheet, note: str) -> None:
 
 
 def _doubts(axes: Axes, sheet: PolygonSheet) -> None:
-    """Write the parts not drawn, above the legend of each polygon; also a polygon that is one
-    point."""
+    """Write the parts not drawn above the legend of each polygon; also that it is one point."""
     for drawn in (sheet.velocity, sheet.acceleration):
         box = sheet.boxes[drawn.polygon.quantity]
         told = doubts(sheet.drawn)
