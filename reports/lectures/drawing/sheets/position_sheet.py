@@ -122,8 +122,7 @@ def _check_apart(sheet: PositionSheet, divisions: int) -> None:
 
 
 def _driven(scene: Scene) -> tuple[str, ...]:
-    """The points that the driver moves: those of a crank, the point of a slider, a pin of two
-    links."""
+    """The points that the driver moves: of a crank, the point of a slider, a pin of two links."""
     driver = scene.driver
     if driver.slider is not None:
         return (scene.sliders[driver.slider].point,)

@@ -64,8 +64,7 @@ def sense_of_law(scene: Scene) -> float:
 
 
 def range_of_law(scene: Scene) -> tuple[float, float]:
-    """The range of the driver: of its law, or reachable from its start [rad or m]; as
-    `range_about`."""
+    """The range of the driver by its law, or from its start [rad or m]; as `range_about`."""
     law = scene.driver.law
     if isinstance(law, Oscillating):
         swing = abs(law.amplitude_rad)
@@ -83,8 +82,7 @@ TRAVEL, LONGEST = 73, 2.0
 """Number of driver angles in the search for travel; the longest drawn travel to either side, over
 the longest link: near a singular position a block goes far away."""
 ALONG = 0.005
-"""Distance of a bar from the line of a slider, over the longest link, below which it is its
-guide."""
+"""Distance of a bar from a slider's line, over the longest link, below which it is its guide."""
 LOOKED_AT = 61
 """Places along a slot at which the bar may be joined to it."""
 
@@ -92,8 +90,7 @@ Travel = tuple[Array, Array]
 
 
 def travels(placement: PlacedMechanism) -> dict[str, Travel]:
-    """The ends of the travel [m], (2,) each, of every block that needs a slot, with its link as
-    placed.
+    """The ends of the travel [m], (2,) each, of every block that needs a slot, its link as placed.
 
     Raises CrankcheckError as `range_about`.
     """
@@ -129,8 +126,7 @@ def _on_bar(placement: PlacedMechanism, name: str) -> bool:
 def draw_slots(
     axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array], ends: Mapping[str, Travel]
 ) -> None:
-    """Draw slots with the ends of travel at ``ends``, the points of the links at ``places``
-    [mm]."""
+    """Draw slots with the ends of travel at ``ends``, the links' points at ``places`` [mm]."""
     for name, (low, high) in ends.items():
         along = placement.along(name)
         start, end = low - SLOT_SPARE_MM * along, high + SLOT_SPARE_MM * along
@@ -303,8 +299,7 @@ def _rails(axes: Axes, place: Array, along: Array) -> None:
 
 
 def _turning(axes: Axes, placement: PlacedMechanism, places: Mapping[str, Array]) -> None:
-    """Draw the arrow of the driver's rotation about its pivot; two heads where the driver
-    swings."""
+    """Draw the arrow of the driver's rotation about its pivot; a swing has two heads."""
     scene, theta = placement.scene, math.degrees(placement.driver.theta)
     middle = places[scene.driver_pivot]
     crank = max(math.dist(places[p], middle) for p in scene.links[scene.driver.link].points)

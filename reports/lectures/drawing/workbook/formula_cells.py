@@ -111,8 +111,7 @@ def _append_outcome(sheet: Worksheet, table: FormulaTable) -> None:
 
 
 def write_columns(book: Workbook, table: FormulaTable) -> None:
-    """Write the sheet of columns; a row that can not be assembled has #N/A, which charts leave
-    out."""
+    """Write the sheet of columns; rows not assembled have #N/A, which charts leave out."""
     sheet = book.create_sheet(TABLE)
     sheet.append([_head(each.head, table) for each in table.columns])
     for row in range(2, table.count + 2):

@@ -3,8 +3,7 @@
 Spreadsheets take -a^2 for (-a)^2: a subtracted square is in brackets.
 
 A formula is written with names: ``{AB}`` an input, ``[phi]`` the same row's value of a column,
-``[phi-1]`` the value of the row before. The first row may have another formula, as no row is before
-it.
+``[phi-1]`` the value of the row before. The first row may have another formula.
 """
 
 import math

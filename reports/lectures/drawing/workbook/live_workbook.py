@@ -238,8 +238,7 @@ def left_out(count: int) -> str:
 def live_sheet(
     scene: Scene, time_s: Array, columns: Sequence[str]
 ) -> tuple[str, Callable[[Any], None]]:
-    """The parts missing from a workbook, in words, and the function that adds formulas and
-    charts."""
+    """The parts missing from a workbook, in words, and the function that fills the rest."""
     return left_out(time_s.size), beside_values(scene, time_s, columns)
 
 
