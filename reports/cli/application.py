@@ -118,7 +118,7 @@ def main() -> None:
                     sys.stdout.flush()
         finally:
             finish()
-    except Stopped as stopped:  # it came while another end was told, or before all was finished
+    except Stopped as stopped:  # during the message of another end, or before all was finished
         _end(stopped.code, stopped.word)
 
 

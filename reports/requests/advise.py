@@ -52,8 +52,8 @@ class AdviseRequest:
 
     def run(self, console: Console, progress: Console) -> int:
         """Answer, and return the exit code: 0 where some settings reach the target, 1 where none
-        do, 2 where none could be run. Raises CrankcheckError for a faulty request before anything
-        runs."""
+        do, 2 where none could be run. Raises CrankcheckError for a faulty request before any
+        run."""
         read = [*find_scenes(self.scenes), *stored_files(self.study)]
         outputs = Outputs({"--json": self.json})
         outputs.check(read)

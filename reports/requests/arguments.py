@@ -94,7 +94,7 @@ def is_true(value: object, name: str) -> bool:
 def path_of(value: object, name: str) -> Path:
     """A path. Raises CrankcheckError for anything else."""
     try:
-        text = fspath(value)  # type: ignore[call-overload]  # that is what is asked
+        text = fspath(value)  # type: ignore[call-overload]  # checked here
     except TypeError:
         text = None
     if isinstance(text, str) and text and "\0" not in text:

@@ -1,5 +1,4 @@
-"""`solve` of a scene with elastic links: their bending, beside the same mechanism with rigid
-links."""
+"""`solve` of a scene with elastic links: their bending, beside rigid links."""
 
 from __future__ import annotations
 
@@ -70,8 +69,7 @@ class ElasticSolution(Solution):
 
     def frame(self) -> pd.DataFrame:
         """Table of `Solution`, with ``coupler_deflection_m`` and ``coupler_extension_m`` of elastic
-        links, the angles with rigid links, ``rocker_theta_rigid_rad``, and the energies of free
-        motion."""
+        links, rigid angles, ``rocker_theta_rigid_rad``, and the energies of free motion."""
 
         rigid = self.rigid if self.forces is not None else replace(self.rigid, forces=None)
         energy = energy_columns(self.vibration, self.time_s)

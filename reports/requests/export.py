@@ -108,8 +108,7 @@ class ViewRequest:
     def run(self, console: Console, progress: Console) -> int:
         """Show a scene; the viewer draws no forces of ours, so that these go into a file.
 
-        Raises CrankcheckError for a scene or a file that can not be used, or a scene without
-        forces.
+        Raises CrankcheckError for a scene or a file that can not be used, or for lack of forces.
         """
         output = self.output
         read = [find_scene(self.scene)]

@@ -146,8 +146,7 @@ def _measured(
     uv: str | None,
     tell: Callable[..., None],
 ) -> VersionResult:
-    """The result of one version in ``folder``, kept from before or made now; or the reason why
-    there is none."""
+    """The result of one version in ``folder``, kept or made now; or the reason for none."""
     lock = cache / "locks" / f"{asked.name}.lock"
     try:
         with alone(lock, lambda: tell("waiting for another crankcheck")):

@@ -43,8 +43,8 @@ def output_option(help: str) -> Any:
 
 
 def note_of(field: str, kind: object, note: object, default: object) -> Any:
-    """The annotation of a field as typer takes it; a flag whose default is False has no option that
-    denies it."""
+    """The annotation of a field as typer takes it; a flag that is False by default has no
+    denial."""
     if not isinstance(note, str):
         return note
     return option(note, name_of(field) * (kind is bool and not default))

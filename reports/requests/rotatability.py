@@ -45,7 +45,7 @@ class RotatabilityRequest:
         try:
             circuits = circuits_of(scene)
         except StructureError as error:
-            analyse(scene)  # which says what is no mechanism at all
+            analyse(scene)  # which refuses whatever is no mechanism
             if self.position:
                 raise
             document = _of_own_branch(scene, str(error))

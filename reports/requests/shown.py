@@ -1,7 +1,6 @@
 """Base of all results: the text that the command prints, and a picture of it for notebooks.
 
-The HTML needs no scripts or style sheets, and has the colours of the notebook around it, light or
-dark.
+The HTML needs no scripts or style sheets, and has the colours of the notebook, light or dark.
 """
 
 from __future__ import annotations

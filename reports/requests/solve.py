@@ -214,7 +214,7 @@ class DrivenSolving(Solving):
     def answer(self, scene: Scene, request: SolveOptions, choice: ElasticChoice) -> Solution:
         for text in request.along:
             _along(scene, text)
-        analyse(scene)  # which says what is no mechanism at all
+        analyse(scene)  # which refuses whatever is no mechanism
         if not request.at_place:
             motion = kinematics.solve(scene, instants_of(scene, request))
         else:  # moving as the law of the driver moves it there

@@ -151,7 +151,7 @@ def sweep(
     forces : bool
         Compare reactions and torque as well, of engines that report them.
     free : bool
-        Run the scenes in free motion; those of free motion for ().
+        Release the scenes; () takes those of free motion.
     dt_s : float or Iterable[float]
         Steps of free motion [s], which has no turns.
     duration_s : float or None
@@ -235,8 +235,7 @@ class SweepRequest:
         """Run the cells of the study that are not done yet; return the exit code, 0.
 
         A cell that failed is a row with its status and reason, and no failure of the sweep. Damage
-        to the store is mended and reported. Raises CrankcheckError for a faulty request before
-        running.
+        to the store is mended and reported. Raises CrankcheckError for a faulty request.
         """
         from reports.sweep.running import Manner, show_sweep, swept
 

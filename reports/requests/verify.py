@@ -150,8 +150,7 @@ def plan(request: VerifyOptions) -> list[Cell]:
 
 
 def _scenes(request: VerifyOptions) -> list[Scene]:
-    """The scenes: with ``free`` in free motion; else under their controller, where they have
-    one."""
+    """The scenes: with ``free`` in free motion; else under their controller, if any."""
     if request.free:
         return scenes_of(request.scenes, free=True)
 

@@ -135,8 +135,7 @@ class Way(Protocol):
         ...
 
     def counted(self, scene: Scene, length: Length, given: GivenAs) -> tuple[float, int]:
-        """Step [s] and number of steps of a run. Raises CrankcheckError for an impossible
-        length."""
+        """Step [s] and number of steps of a run. Raises CrankcheckError where it has none."""
         ...
 
     def lengths(self, scene: Scene, study: StudyLengths, given: GivenAs) -> list[Length]:
@@ -192,8 +191,7 @@ class Way(Protocol):
         ...
 
     def opened(self, scene: Scene) -> tuple[Scene, State]:
-        """The scene that an engine is given, and its start. Raises CrankcheckError where it has
-        none."""
+        """The scene that an engine is given, and its start. Raises CrankcheckError."""
         ...
 
     def held_steps(self, scene: Scene) -> tuple[float, ...]:

@@ -288,8 +288,7 @@ class Synthesis(Shown):
         return solution_frame(self.details.examined)
 
     def proof(self, engine: str, profile: str = "tuned", *, best: int = 1) -> pd.DataFrame:
-        """Prove the best solutions without a defect in an engine: a row for each requirement at
-        each position.
+        """Prove the best sound solutions in an engine: a row for each requirement at each position.
 
         Raises
         ------

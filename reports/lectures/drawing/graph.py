@@ -138,7 +138,7 @@ def counts(text: str) -> Sequence[int]:
         raise CrankcheckError(
             f"--divisions {shown(text)}: give whole numbers, such as 24, or 12,24,48"
         )
-    # Zeros in front count as digits, too: what is too long is out of bounds either way.
+    # Zeros in front count as digits, too: a number too long is out of bounds either way.
     found = [int(word) if len(word.strip()) <= MOST_DIGITS else MOST_PARTS + 1 for word in words]
     if not all(LEAST_PARTS <= each <= MOST_PARTS for each in found):
         raise CrankcheckError(

@@ -40,8 +40,7 @@ class MobilityRequest:
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show one scheme, or list the shipped ones. Raises CrankcheckError for a faulty
-        request."""
+        """Show a scheme, or list the shipped ones. Raises CrankcheckError for a faulty request."""
         if self.output is not None and not self.replace:
             raise CrankcheckError("-o writes the scheme that --replace makes; add --replace")
         if self.scheme is None:
@@ -165,8 +164,7 @@ class JointRequest:
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show one joint, or list the shipped ones. Raises CrankcheckError for an unreadable
-        file."""
+        """Show a joint, or list the shipped ones. Raises CrankcheckError for a bad file."""
         if self.joint is None:
             _list_contacts(console)
         else:

@@ -41,8 +41,8 @@ class NumberRow:
 
 @dataclass(frozen=True)
 class WorkRow:
-    """The work of a source in a cycle [J], and its mean torque on the driver, along the motion [N
-    m]."""
+    """The work of a source in a cycle [J], and its mean torque on the driver, positive if it drives
+    [N m]."""
 
     name: str
     work_j: float
@@ -234,8 +234,7 @@ def cycle_series(cycle: SteadyCycle) -> CycleSeries:
 
 
 def cycle_frame(cycle: SteadyCycle, bare: SteadyCycle | None = None) -> pd.DataFrame:
-    """Table of samples, a row each; with the speed without a flywheel, where that is another
-    cycle."""
+    """Table of samples, a row each; with the speed without a flywheel, if that cycle is given."""
     import pandas as pd
 
     series, link = cycle_series(cycle), cycle.machine.scene.driver.link

@@ -86,8 +86,7 @@ class MachineCycle(Shown):
         return cycle_scene(self.details, cycles)
 
     def frame(self) -> pd.DataFrame:
-        """Table of the cycle, a row each half degree of the driver: speed, inertia, torques, work,
-        energy."""
+        """Table of the cycle, a row each half degree: speed, inertia, torques, work, energy."""
         from reports.lectures.machine.cycle_rows import cycle_frame
 
         return cycle_frame(self.details)

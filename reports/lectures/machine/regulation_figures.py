@@ -165,8 +165,7 @@ APART = 6.0
 
 
 def draw_speed(of: Regulated) -> Figure:
-    """Draw one panel; a second one, closer, where the flywheel takes nearly all of the
-    fluctuation."""
+    """Draw one panel; a second, closer one where the flywheel takes most of the fluctuation."""
     cycle, bare = of.cycle, of.bare
     with_it = "with the flywheel" if of.wanted is not None else "speed"
     entries: list[tuple[Artist, str]] = [

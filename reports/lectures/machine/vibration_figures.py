@@ -112,8 +112,7 @@ def draw_over_speed(over: OverSpeeds) -> Figure:
 
 
 def _mark_critical(axes: Axes, over: OverSpeeds) -> None:
-    """Draw dotted lines at the strongest critical speeds, with the order above where it has
-    room."""
+    """Draw dotted lines at the strongest critical speeds, with the order where it has room."""
     low, high = over.speeds[0], over.speeds[-1]
     taken: list[float] = []
     for each in over.critical[:12]:

@@ -138,7 +138,7 @@ def stability_text(vibration: SteadyVibration) -> str:
             "vibration, and the mechanism does not stay on this motion. Take another speed, a "
             "lighter link that the elastic one moves, or more damping_s."
         )
-    if damped and largest == 0.0:  # below what a number holds
+    if damped and largest == 0.0:  # below the smallest number
         return "Stable: deviations die out within a turn."
     if damped and largest < 1.0 - STABLE:
         turns = -math.log(10.0) / math.log(largest)
@@ -165,8 +165,7 @@ MOST_ROWS = 12
 
 @dataclass(frozen=True)
 class Unstable:
-    """Adjacent speeds at which the motion is unstable [rad/s], and the largest multiplier among
-    them."""
+    """Adjacent speeds of unstable motion [rad/s], and the largest multiplier among them."""
 
     low_rad_s: float
     high_rad_s: float

@@ -131,8 +131,7 @@ def _notes(console: Console, told: Iterable[str]) -> None:
 
 
 def turn_frame(vibration: SteadyVibration) -> pd.DataFrame:
-    """Table over a turn, a row per instant: deflections, extensions, and those of the linear
-    theories."""
+    """Table of instants of a turn: deflections, extensions, deflections by linear theories."""
     import pandas as pd
 
     columns = {
@@ -160,8 +159,7 @@ def natural_frame(vibration: SteadyVibration) -> pd.DataFrame:
 
 
 def spectrum_frame(vibration: SteadyVibration) -> pd.DataFrame:
-    """Table of amplitudes of the middles (of extensions, for links that only stretch) over
-    orders."""
+    """Table of amplitudes over orders: of middles, or of extensions of links that only stretch."""
     import pandas as pd
 
     each = {f"{name}_m": own.amplitudes for name, own in vibration.swings.items()}

@@ -89,8 +89,7 @@ def of_no_cause(case: LogCase, causes: Sequence[Cause], errors: Errors) -> tuple
 
 
 def seldom(case: LogCase) -> Iterator[str]:
-    """Notes on a driver's angle that is out of tolerance and turns by half a turn or more from row
-    to row."""
+    """Notes on a driver's angle out of tolerance that turns by half a turn or more per row."""
     scene, time_s = case.truth.scene, case.log.time_s
     try:
         angle = scene.driver.law.at(time_s)[0]

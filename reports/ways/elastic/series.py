@@ -25,7 +25,7 @@ def elastic_error_series(trial: Trial, run: Run) -> ErrorSeries:
     beside = truth.beside(folded)
     assert beside is not None
     time_s, driver = beside.motion.time_s, beside.driver_rad
-    with np.errstate(all="ignore"):  # what has come apart is judged, not warned
+    with np.errstate(all="ignore"):  # a broken run is judged, not warned
         bent = [
             length(track.error) / track.scale
             for track in beside.tracks(CHAIN, truth.exact_at(time_s))

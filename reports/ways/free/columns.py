@@ -1,5 +1,4 @@
-"""The columns of free cells: the time to which they are followed, and for which each class of
-precision holds."""
+"""The columns of free cells: times to which they are followed and classes of precision hold."""
 
 from reports.compare.free_facts import FreeFacts
 from reports.judge.cell import Checked

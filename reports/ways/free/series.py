@@ -36,7 +36,7 @@ def free_error_series(trial: Trial, run: Run) -> ErrorSeries:
     known = truth.beside(first_samples(run, followed))
     assert isinstance(known, FreeBeside)
     whole = FreeBeside(truth, run, motion, whole_run=run, free=truth.free)
-    with np.errstate(all="ignore"):  # what has come apart is judged, not warned
+    with np.errstate(all="ignore"):  # a broken run is judged, not warned
         same_time = np.zeros_like(motion.time_s)
         same_time[: known.motion.time_s.size] = _same_time(known)
         parts = {

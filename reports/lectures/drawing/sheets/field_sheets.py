@@ -1,5 +1,4 @@
-"""Sheets of schemes, each in its own field with its name below: chains, and assemblies of a
-scene."""
+"""Sheets of schemes, each in a field with its name below: chains, and assemblies of a scene."""
 
 import math
 from collections.abc import Mapping, Sequence

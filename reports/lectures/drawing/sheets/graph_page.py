@@ -132,8 +132,7 @@ def draw_rays(
 def draw_graph(
     canvas: Canvas, sheet: GraphSheet, panel: Panel, drawn: ThreeGraphs, color: str, layer: str
 ) -> None:
-    """Draw the points of a graph, and the chords or steps between them; with `tangents` its
-    tangents."""
+    """Draw the points of a graph, and the chords or steps between, or also its tangents."""
     axes = canvas.layer(f"graph-{panel.symbol}{layer}")
     graph = drawn.graphs[panel.order]
     x, y = sheet.along_mm(graph.x), panel.height_mm(graph.y)

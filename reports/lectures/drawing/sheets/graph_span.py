@@ -239,7 +239,7 @@ def _let_go(scene: Scene, name: str, over: Over, duration_s: float | None) -> Gr
         )
     if not (math.isfinite(duration_s) and duration_s > 0.0):
         raise CrankcheckError(f"--duration {duration_s:g}: give seconds above 0")
-    # What integrates it is not loaded for what is driven.
+    # The integrator is not loaded for a driven scene.
     from reports.compare.free_truth import free_truth_until
 
     truth = free_truth_until(scene, duration_s, 0.0)

@@ -35,8 +35,8 @@ class Ink:
     below_left: Array
 
     def within(self, middles: Array, half: Array) -> Array:
-        """The darkness, times the area [mm²], in boxes of half a size (2,) about places (k, 2)
-        [mm]; shape (k,)."""
+        """Darkness times area [mm²], in boxes of half a size (2,) about places (k, 2) [mm];
+        (k,)."""
         most = np.array(self.below_left.shape)[::-1] - 1
         low = np.clip(np.floor((middles - half) / PIXEL_MM), 0, most).astype(int)
         high = np.clip(np.ceil((middles + half) / PIXEL_MM), 0, most).astype(int)
@@ -101,8 +101,8 @@ ROUNDING = 1e-6
 
 @dataclass(frozen=True)
 class Letter:
-    """A text that names one of the places ``at`` (n, 2) [mm], at which a symbol of some radius [mm]
-    is drawn."""
+    """A text that names one of the places ``at`` (n, 2) [mm], drawn as a symbol of a radius
+    [mm]."""
 
     text: str
     at: Array

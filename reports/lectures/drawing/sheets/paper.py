@@ -83,7 +83,7 @@ class Paper:
                 f"--paper {told}: no size; use {', '.join(SIZES)}, or WIDTHxHEIGHT in mm, such as "
                 "297x210"
             )
-        width, height = SIZES.get(text.upper()) or (float(match[1]), float(match[2]))  # type: ignore[index]  # told apart above
+        width, height = SIZES.get(text.upper()) or (float(match[1]), float(match[2]))  # type: ignore[index]  # checked above
         if width < LEAST_MM[0] or height < LEAST_MM[1] or max(width, height) > MOST_MM:
             raise CrankcheckError(
                 f"--paper {told}: {width:g} x {height:g} mm; a sheet that can be read needs "

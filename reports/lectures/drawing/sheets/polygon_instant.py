@@ -70,7 +70,7 @@ def placed_at_time(scene: Scene, at_s: float) -> PlacedMechanism:
     motion = _motion_at(scene, time_at(scene, at_s))
     placed = PlacedMechanism.standing(scene, motion)
     driver = placed.driver
-    if abs(driver.omega) < REST * math.sqrt(abs(driver.alpha)):  # it is let go from rest
+    if abs(driver.omega) < REST * math.sqrt(abs(driver.alpha)):  # released from rest
         placed = replace(placed, driver=replace(driver, omega=0.0))
     if not (placed.driver.omega or placed.driver.alpha):
         turns = "swings" if isinstance(scene.driver.law, Oscillating) else "moves"
@@ -175,8 +175,7 @@ class LogInstants:
         )
 
     def at_time(self, at_s: float) -> LoggedInstant:
-        """Errors at the sample nearest to a time [s]. Raises CrankcheckError for a time that is not
-        in the log."""
+        """Errors at the sample nearest to a time [s]. Raises CrankcheckError off the log."""
         time_s = self.log.time_s
         row = int(np.argmin(np.abs(time_s - at_s)))
         if not abs(time_s[row] - at_s) <= np.diff(time_s).max() / 2:  # or no number

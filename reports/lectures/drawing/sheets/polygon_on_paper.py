@@ -19,8 +19,7 @@ from reports.lectures.drawing.sheets.paper import Box, arrow, line
 from reports.lectures.drawing.sheets.sheet_log import LOGGED
 
 MOST_MM = 8.0
-"""Greatest length of the largest error, which is longer than a tenth of it; longer at its own scale
-alone."""
+"""Greatest length of the largest error [mm], ten times its least; it may be longer to scale."""
 STAR = "*"
 """Suffix of the letter of a point in the log."""
 
@@ -90,8 +89,7 @@ def logged_lines(
 def draw_errors(
     axes: Axes, drawn: MagnifiedErrors, links: Iterable[Iterable[str]], gid: str
 ) -> None:
-    """Draw the errors as arrows, and the log's ``links``; lines of errors are named ``gid`` and the
-    point."""
+    """Draw errors as arrows, and the log's ``links``; lines are named ``gid`` and the point."""
     for start, end in logged_lines(drawn, links):
         line(axes, start, end, color=LOGGED, linewidth=0.6, linestyle=(0, (3, 1.5)), zorder=2)
     for name, tip in drawn.tips.items():
@@ -196,8 +194,7 @@ def frame_of(
 
 
 def crossing_line(drawn: DrawnPolygon, vector: Vector) -> tuple[Array, Array] | None:
-    """The ends of the dashed line along a direction that crosses another [mm]; None for a known
-    vector."""
+    """The ends of the dashed line along a direction that crosses another; None if known [mm]."""
     start, end = drawn.at(vector.start), drawn.at(vector.end)
     length = float(np.hypot(*(end - start)))
     if not vector.direction or length < 1e-9:

@@ -66,8 +66,7 @@ DOUBT = "#a52a16"
 @dataclass(frozen=True)
 class PolygonSheet:
     """The contents of the sheet: the polygons, each with its scale; the scale of lengths [m/mm],
-    and the middle of the scheme [m]; the log beside it, if there is one; the time [s], where
-    known."""
+    and the middle of the scheme [m]; the log beside it, if any; the time [s], where known."""
 
     drawn: DrawnPolygons
     velocity: DrawnPolygon
@@ -102,8 +101,7 @@ def laid_out(
 ) -> PolygonSheet:
     """Lay out polygons on paper, at the finest round scales that fit; with ``k`` at the book's
     scales, the crank's vectors k times as long as the drawn crank; with the images of a ``log``
-    beside them, or of an instant named by its time [s]. Raises CrankcheckError for too small
-    paper."""
+    beside them, or of an instant named by its time [s]. Raises CrankcheckError for small paper."""
     boxes = _boxes(paper)
     places = extent_of(drawn.placement)
     length_scale, middle = boxes["scheme"].fitted(places, SCHEME_PADDING)

@@ -195,8 +195,7 @@ def _arc(axes: Axes, centre: Array, through: Array) -> None:
 
 
 def _letters(sheet: PositionSheet) -> list[Letter]:
-    """Letters of the points in the first position, numbers along the driver's path, and the names
-    of the loci."""
+    """Letters of points in the first position, numbers on the driver's path, names of loci."""
     spots = {name: sheet.at(at[0]) for name, at in sheet.points.items()}
     letters = point_letters(sheet.placement, spots)
     pivot = sheet.scene.driver_pivot if sheet.scene.driver.is_crank else ""

@@ -36,8 +36,7 @@ OF_ROWS = ("start_deg", "step_deg")
 def varied(table: FormulaTable, name: str, values: Sequence[float]) -> Input:
     """The input that members differ in, by its name or by the link whose length it is.
 
-    Raises CrankcheckError for an unknown name; too few, too many or equal values; and a value out
-    of range.
+    Raises CrankcheckError for an unknown name; too few, too many or equal values; one out of range.
     """
     inputs = [each for each in table.inputs if each.name not in OF_ROWS]
     one = next((each for each in inputs if name and name in (each.name, each.link)), None)
@@ -245,8 +244,7 @@ def scene_family(scene: Scene, name: str, values: Sequence[float], time_s: Array
 
 
 def _close_all_the_way(member: Scene, time_s: Array) -> None:
-    """Assemble a member at small steps on the path of its driver: between the instants, too. Raises
-    ReachError."""
+    """Assemble a member at small steps of its driver: between instants, too. Raises ReachError."""
     count = math.ceil(float(time_s[-1]) * member.driver.law.peak_speed_rad_s / CLOSE_RAD)
     angles = member.driver.law.at(np.linspace(0.0, time_s[-1], min(count, MOST_CLOSE) + 1))[0]
     low, high = float(angles.min()), float(angles.max())

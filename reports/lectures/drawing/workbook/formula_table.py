@@ -54,8 +54,7 @@ class Input:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of formulas; ``head`` is its heading, with the unit, or a formula of inputs that
-    gives it."""
+    """A column of formulas; ``head`` is its heading, with the unit, or a formula of inputs."""
 
     name: str
     head: str
@@ -149,8 +148,7 @@ def evaluated(table: FormulaTable) -> dict[str, Array]:
     """Every column by name, (rows,); NaN where a mechanism can not be assembled. Columns of words
     are arrays of text.
 
-    Columns that build on the row before are known by ``first``: numbers of rows, or angles that are
-    continuous.
+    Columns that build on the row before are known by ``first``: row numbers, or continuous angles.
     """
     values: dict[str, Array] = {}
     given = {each.name: each.value for each in table.inputs}
