@@ -6,9 +6,9 @@
 
     ENGINE = cc.Engine("mine", profiles, version, check, open)
 
-An adapter opens a session at a state, steps it, and returns the poses of its bodies, as `Poses`;
-everything after that is crankcheck's. docs/how-to/add-an-engine.md shows an adapter from top to
-bottom; ``crankcheck engines check package.module:ENGINE`` lists its remaining faults.
+An adapter opens a session at a state, steps it, and reports its model, as `Facts`, and its motion,
+as `Poses`; everything after that is crankcheck's. docs/how-to/add-an-engine.md shows an adapter
+from top to bottom; ``crankcheck engines check package.module:ENGINE`` lists its remaining faults.
 
 All names here are public. ``drive`` gives the command of the crank at each step,
 ``load_magnitudes`` the sizes of the loads of a scene meanwhile, and ``tree`` lays out a mechanism

@@ -29,8 +29,8 @@ class ResultKind:
     """Words and targets of stored cells.
 
     ``unit`` is that of the compared error, ``axis`` its name on diagrams and ``promise`` in a
-    recommendation; ``targets`` are those of recommendations, ``kept`` the things counted within a
-    target, ``head`` its column, and ``notes`` precede settings to be copied. ``error`` explains the
+    recommendation; ``targets`` are those of recommendations, ``kept`` names the items kept within
+    one, ``head`` its column, and ``notes`` precede settings to be copied. ``error`` explains the
     error on a page, in the place ``stands`` among other kinds; a common axis is that of the kind
     with the lowest ``leads``.
     """

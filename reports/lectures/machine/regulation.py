@@ -296,7 +296,7 @@ class FlywheelRequest:
 
 
 def _check(request: FlywheelRequest) -> None:
-    """Refuse files that can not be written, and `free` without a file. Raises CrankcheckError."""
+    """Refuse files that can not be written, and ``free`` without a file. Raises CrankcheckError."""
     check_outputs_of(request.scene, request.output, request.figures)
     if request.free and request.written is None:
         raise CrankcheckError("--free: it says how the scene is written; give --write FILE.toml")

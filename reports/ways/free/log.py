@@ -30,8 +30,7 @@ MOST_TIMES = 10.0
 """Longest log, in durations of its scene: each second of its reference takes a part of a second to
 integrate, or some seconds."""
 BEGUN = 1e-3
-"""Largest error of a reading in the first row, as a pure number, of a log from the scene's
-start."""
+"""Largest error of a first reading, as a pure number, of a log from the scene's start."""
 OPEN, CLOSED = 0.3, 0.03
 """Limits of the part of an error of place that remains at the run's own angle: above the first the
 geometry is off, below the second it is not."""
