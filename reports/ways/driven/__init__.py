@@ -31,7 +31,7 @@ from sim.engine import Drive
 
 
 class DrivenWay(Way):
-    """As of `Way`."""
+    """The way of driven scenes with rigid links."""
 
     name = "driven"
     drive: Drive = "prescribed"
@@ -102,7 +102,7 @@ class DrivenWay(Way):
         return self.truth(run)
 
     def refuse_made(self, run: Planned) -> None:
-        """Nothing: it was refused before it was run."""
+        """Do nothing: such a run was refused before it was run."""
 
     def motion(self, scene: Scene, time_s: Array) -> Motion:
         return solve(scene, time_s, bound=False)

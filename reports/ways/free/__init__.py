@@ -34,7 +34,7 @@ UNITS = (
 
 
 class FreeWay(DrivenWay):
-    """As of `Way`."""
+    """The way of free motion with rigid links."""
 
     name = "free"
     drive: Drive = "free"

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class FreeElasticWay(Bending, FreeWay):
-    """As of `Way`."""
+    """The way of free motion with elastic links."""
 
     name = "free_elastic"
     limits = FREE_ELASTIC
